@@ -7,7 +7,7 @@ with. Of a kind are words between which and names some rule gives a choice.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise, zip_longest
 
@@ -16,7 +16,6 @@ from grammar.notation.edits import (
     AddRule,
     Edit,
     Insert,
-    MakeOptional,
     RemoveAlternative,
     RemoveRule,
     Replace,
@@ -134,35 +133,23 @@ class Folding:
         return is_choice or bool(words and words <= self.types)
 
     def _leading(self) -> Iterator[Inferred]:
-        """Words that may begin a line or be missing there, in other lines of the same rule."""
+        """Lines without a word that may be missing at their head, where the next one is a word."""
         for rule in self.grammar.rules:
-            if rule.is_lexer or rule.name in self.rules.recursive:
-                continue
-            lines = {n: self._line(rule.name, n) for n in range(1, len(rule.alternatives) + 1)}
-            often = Counter(
-                word
-                for elements in lines.values()
-                for element in elements[:1]
-                if isinstance(element, Repeat) and element.operator == "?"
-                for word in self._words(element.item)
-            )
-            for number, elements in lines.items():
+            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+                elements = self._line(rule.name, number)
                 first = self._words(elements[0]) if len(elements) > 1 else frozenset()
-                if first & self.prefixes and self._is_led(elements[1]):
-                    ahead = rule.source_of(elements[1])
-                    title = f"{min(first)} may be missing ahead of {ahead} in {rule.name}"
-                    yield Inferred(title, (MakeOptional(rule.name, (number, 1)),), (), breadth=2)
-                for word, count in often.items() if first else ():
-                    passed = {word, *self.prefixes, *self.types, *self.rules.named_words}
-                    if count > 1 and not first & passed:
-                        title = f"{word} ahead of {min(first)} in {rule.name}"
-                        edit = Insert(rule.name, (number, 1), f"{word}?")
-                        yield Inferred(title, (edit,), (), breadth=_LONGER)
-
-    def _is_led(self, element: Element) -> bool:
-        """Whether an element says with a word what a line is."""
-        words = self._words(element.item if isinstance(element, Repeat) else element)
-        return bool(words) and not words & self.rules.named_words
+                if not first & self.prefixes:
+                    continue
+                second = elements[1]
+                word = second.item if isinstance(second, Repeat) else second
+                words = self._words(word)
+                if words and not words & self.rules.named_words:
+                    # what says which line it is has to be there
+                    every = self._alternative(rule.name, number).elements[2:]
+                    text = f"{rule.source_of(word)} {self._source(rule.name, every)}"
+                    title = f"{min(words)} without {min(first)} in {rule.name}"
+                    edits = (AddAlternative(rule.name, text),)
+                    yield Inferred(title, edits, (), breadth=len(every) + _LONGER)
 
     def _signs(self) -> Iterator[Inferred]:
         """Signs ahead of an operand, where another sign of the same level between operands is."""

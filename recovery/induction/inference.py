@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
+from grammar.notation.addresses import Address, sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Insert, Replace, Widen
-from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat
+from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.blocks import BlockLines
@@ -100,16 +101,13 @@ class Inference:
             () if line.is_enormous else self.reader.symbols(tokens)
             for line, tokens in zip(lines, self.tokens, strict=True)
         ]
-        #: Reserved words that lines have as names, by the number of the line.
-        self._named: dict[int, tuple[str, ...]] = {}
-        for number, symbols in enumerate(self.symbols):
-            self.symbols[number] = self._with_names(number, symbols)
+        self.symbols = [self._listed(symbols) for symbols in self.symbols]
         self._operator_lines: set[int] = set()
         self._operators: set[str] = {f"'{sign}'" for sign in _PREFIXES}
         self.writer = FormWriter(self.reader, operands_of(self.symbols))
 
-    def _with_names(self, number: int, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
-        """The symbols with words as names where they are items of a list whose others are names."""
+    def _listed(self, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+        """The symbols with reserved words as operands where they are items of a list of names."""
         name = Symbol("", Operand((self.rules.name_kind,)))
         ends = [i for i, symbol in enumerate(symbols) if symbol.text == "','"] + [len(symbols)]
         items = {right - 1 for left, right in pairwise(ends) if right == left + 2}
@@ -118,16 +116,10 @@ class Inference:
         # the first item stands behind the name of what the list belongs to
         first = ends[0] - 1
         items |= {first} if first > 0 and symbols[first - 1] == name else set()
-        words = {i: symbols[i].text for i in items if _WORD.fullmatch(symbols[i].text)}
-        self._named[number] = tuple(sorted(set(words.values()) & self.grammar.by_name.keys()))
-        return tuple(name if i in words else symbol for i, symbol in enumerate(symbols))
-
-    def _naming(self, members: Sequence[int]) -> tuple[Edit, ...]:
-        """The edits that let reserved words be names which lines have as such."""
-        words = {word for number in members for word in self._named.get(number, ())}
+        kinds = {i: self.lexer.kind_of.get(symbols[i].text) for i in items}
         return tuple(
-            AddAlternative(self.rules.names or "name", word)
-            for word in sorted(words - self.rules.named_words)
+            Symbol("", Operand((kind,))) if (kind := kinds.get(i)) else symbol
+            for i, symbol in enumerate(symbols)
         )
 
     def inner(self) -> Iterator[Inferred]:
@@ -535,6 +527,26 @@ class Inference:
                 if len(first) > 1 or (first and len(rule.alternatives) == 1):
                     yield rule.name, number, first
 
+    def _inner_lines(self) -> Iterator[tuple[str, Address, tuple[Element, ...]]]:
+        """The lines within blocks and at their end: rule, place of the first element, elements."""
+        end = self.profile.line_end
+        for rule in self.grammar.rules:
+            for address, sequence in () if rule.is_lexer else sequences(rule):
+                elements = sequence.elements
+                ends = [i for i, e in enumerate(elements) if rule.source_of(e) == end]
+                starts = [0] * (len(address) > 1) + [i + 1 for i in ends]
+                for begin in starts if ends else ():
+                    start = begin
+                    stop = next((i for i in ends if i >= start), len(elements))
+                    while start < stop and not self._is_within_line(elements[start]):
+                        start += 1  # the lines of a body come first
+                    if start < stop:
+                        yield rule.name, (*address, start + 1), elements[start:stop]
+
+    def _is_within_line(self, element: Element) -> bool:
+        called = {e.name for e in walk(element) if isinstance(e, Reference) and not e.is_token}
+        return called <= self.rules.within_lines
+
     def _hosts(self, number: int) -> tuple[str, ...]:
         """Rules that a line could be where it begins, those that end with a line end last."""
         before = self.lines[number].form.before
@@ -595,7 +607,7 @@ class Inference:
             for host in hosts:
                 ending = f" {self.profile.line_end}" if self.profile.closing(host) else ""
                 added = AddAlternative(host, f"{text}{ending}")
-                edits = (*self.reserving(text), *self._naming(members), added)
+                edits = (*self.reserving(text), added)
                 yield Inferred(f"{title} … as {host}", edits, tuple(members))
 
     def _grown(
@@ -603,7 +615,8 @@ class Inference:
     ) -> Iterator[Inferred]:
         """An alternative that begins with the same words, so that it reads these lines too."""
         words = head.split()
-        for rule, number, first in self._alternatives():
+        outer = ((rule, (number, 1), first) for rule, number, first in self._alternatives())
+        for rule, place, first in (*outer, *self._inner_lines()):
             inside = [e for e in first if not (isinstance(e, Repeat) and e.operator == "?")]
             leads = [_words(e) for e in inside[:2]]
             if not inside or words[0] not in leads[0]:
@@ -612,8 +625,8 @@ class Inference:
                 continue
             old = samples_of(self.rules, first)
             for text in self._forms(shapes, old):
-                edit = Replace(rule, (number, 1), text, len(first))
-                edits = (*self.reserving(text), *self._naming(members), edit)
+                edit = Replace(rule, place, text, len(first))
+                edits = (*self.reserving(text), edit)
                 yield Inferred(f"{head} … in {rule}", edits, tuple(members))
 
     def _forms(

@@ -26,9 +26,6 @@ line
     | MOVE NAME (FAST | SLOW)?
     | TURN NAME SLOW*
     | NAME '=' expression
-    | LOUD? PLAY NAME
-    | LOUD? SING NAME
-    | HUM NAME
     | later
     ;
 
@@ -55,10 +52,6 @@ DIM : 'DIM' ;
 GO : 'GO' ;
 MOVE : 'MOVE' ;
 TURN : 'TURN' ;
-LOUD : 'LOUD' ;
-PLAY : 'PLAY' ;
-SING : 'SING' ;
-HUM : 'HUM' ;
 FAST : 'FAST' ;
 SLOW : 'SLOW' ;
 COLON : ':' ;
@@ -104,11 +97,7 @@ def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
         "a list behind DIM in line",
         "FAST, SLOW at the end of lines",
         "one form for what follows a name in line",
-        "LOUD ahead of GO in line",
-        "LOUD ahead of HUM in line",
-        "LOUD ahead of MOVE in line",
-        "LOUD ahead of TURN in line",
-        "DIM may be missing ahead of FAST in later",
+        "FAST without DIM in later",
         "'+' ahead of operands in primary",
     } == folds.keys()
 
@@ -131,8 +120,7 @@ def test_what_one_word_shows_holds_for_its_kind(
         ("FAST, SLOW at the end of lines", "MOVE A SLOW FAST\nTURN B FAST\n"),
         ("a list behind DIM in line", "DIM INT A, B, C, D, E\n"),
         ("one form for what follows a name in line", "REAL A[1], B\n"),
-        ("LOUD ahead of HUM in line", "LOUD HUM A\n"),
-        ("DIM may be missing ahead of FAST in later", "FAST 1\n"),
+        ("FAST without DIM in later", "FAST 1\n"),
         ("'+' ahead of operands in primary", "A = +1\n"),
     ],
 )

@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from grammar.notation.edits import AddAlternative, AddToken, apply
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusFile, held_out
@@ -67,6 +68,31 @@ def test_a_word_of_one_statement_is_no_operator(
     recognizer = Recognizer(_grown(toy, (*toy_files, *more)).grammar)
     texts = ("COUNT D UPTO 4\n", "Y := 1 OVER D\n", "Y := 1 UPTO D\n")
     assert [True, True, False] == [recognizer.accepts(text) for text in texts]
+
+
+def test_the_lines_within_a_block_grow(toy: Grammar) -> None:
+    """What a line within a block may be is found where the block is known, and only there."""
+    block = "PICK expression eol (WHEN NUMBER eol statement*)+ ENDPICK eol"
+    words = tuple(AddToken(word) for word in ("PICK", "WHEN", "ENDPICK"))
+    start = apply(toy, (*words, AddAlternative("statement", block)))
+    files = tuple(
+        CorpusFile(f"{o}/a.toy", f"PICK {o}\nWHEN 1\nHALT\nWHEN {o}\nENDPICK\n", frozenset({o}))
+        for o in ("A", "B", "C")
+    )
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = ("PICK 1\nWHEN D\nENDPICK\n", "WHEN D\n")
+    assert [True, False] == [recognizer.accepts(text) for text in texts]
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_one_file_shows_what_it_has_often(toy: Grammar, count: int) -> None:
+    """Three different lines of one file are trusted, two are not."""
+    more = "".join(f"GLIDE {name} {n}\n" for n, name in enumerate("ABC"[:count]))
+    files = (
+        CorpusFile("one/a.toy", f"HALT\n{more}", frozenset({"one"})),
+        CorpusFile("two/a.toy", "HALT\n", frozenset({"two"})),
+    )
+    assert (count > 2) == Recognizer(_grown(toy, files).grammar).accepts("GLIDE D 7\n")
 
 
 def test_the_ledger_replays(growth: Growth) -> None:
