@@ -143,7 +143,8 @@ class Folding:
                 second = elements[1]
                 word = second.item if isinstance(second, Repeat) else second
                 words = self._words(word)
-                if words and not words & self.rules.named_words:
+                led = {w for a in rule.alternatives for e in a.elements[:1] for w in self._words(e)}
+                if words and not words & (led | self.rules.named_words):
                     # what says which line it is has to be there
                     every = self._alternative(rule.name, number).elements[2:]
                     text = f"{rule.source_of(word)} {self._source(rule.name, every)}"

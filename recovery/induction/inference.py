@@ -116,9 +116,14 @@ class Inference:
         # the first item stands behind the name of what the list belongs to
         first = ends[0] - 1
         items |= {first} if first > 0 and symbols[first - 1] == name else set()
-        kinds = {i: self.lexer.kind_of.get(symbols[i].text) for i in items}
+        # a word that the grammar does not reserve yet is one of the names
+        kinds = {
+            i: self.lexer.kind_of.get(symbols[i].text, self.rules.name_kind)
+            for i in items
+            if _WORD.fullmatch(symbols[i].text)
+        }
         return tuple(
-            Symbol("", Operand((kind,))) if (kind := kinds.get(i)) else symbol
+            Symbol("", Operand((kinds[i],))) if i in kinds else symbol
             for i, symbol in enumerate(symbols)
         )
 

@@ -140,3 +140,16 @@ def test_a_fold_reads_all_that_was_read(grammar: Grammar, folds: dict[str, Infer
         folded = apply(grammar, fold.edits)
         recognizer = Recognizer(folded)
         assert (None, []) == (problem(folded), [t for t in texts if not recognizer.accepts(t)])
+
+
+def test_a_fold_is_offered_once(grammar: Grammar, folds: dict[str, Inferred]) -> None:
+    """What has been folded is not to be folded again, so that folding comes to an end."""
+    again = [
+        title
+        for title, fold in folds.items()
+        for after in Folding(
+            Recognizer(apply(grammar, fold.edits)), (), frozenset({"DIM"})
+        ).candidates()
+        if after.edits == fold.edits
+    ]
+    assert [] == again
