@@ -65,8 +65,9 @@ _PREFIX_TOKENS = 5
 _NAMED_LINES = 3
 # Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
 _OPERAND_FILES = 5
-# Distinct lines of a single file that an edit needs.
+# Different lines of a single file that an edit with a new word needs, and places without one.
 _LINES_OF_ONE_FILE = 3
+_PLACES_IN_ONE_FILE = 2
 # Files on which a block is tried, the shortest that open one.
 _BLOCK_FILES = 12
 
@@ -393,12 +394,13 @@ class Induction:
             files = {p for n in lines for p in known[n].files}
             is_wide = len(origins) == 1 and not fixed.isdisjoint(operands)
             enough = _OPERAND_FILES if is_wide else least[1]
-            texts = set[tuple[str, ...]]().union(*(known[n].texts for n in lines))
             reason = ""
             if len(origins) < least[0] or len(files) < enough:
                 reason = "only one origin shows it"
-            elif len(files) < LEAST_FILES_ALONE and len(texts) < _LINES_OF_ONE_FILE:
-                reason = "only a line or two of one file show it"
+            elif len(files) < LEAST_FILES_ALONE and not _is_repeated(
+                edits, [known[n] for n in lines]
+            ):
+                reason = "too few lines of one file show it"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again
             else:
@@ -637,6 +639,13 @@ def _standing(failures: Sequence[Sequence[Failure]]) -> tuple[int, int]:
 
 def _is_name(element: Element) -> bool:
     return isinstance(element, Reference) and element.name == "NAME"
+
+
+def _is_repeated(edits: Sequence[Edit], lines: Sequence[_Line]) -> bool:
+    """Whether lines of a single file show edits often enough to be no slip."""
+    if any(isinstance(edit, AddToken) for edit in edits):
+        return len({text for line in lines for text in line.texts}) >= _LINES_OF_ONE_FILE
+    return sum(len(line.seen) for line in lines) >= _PLACES_IN_ONE_FILE
 
 
 def _size(edit: Edit) -> int:

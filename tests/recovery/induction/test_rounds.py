@@ -84,15 +84,20 @@ def test_the_lines_within_a_block_grow(toy: Grammar) -> None:
     assert [True, False] == [recognizer.accepts(text) for text in texts]
 
 
-@pytest.mark.parametrize("count", [2, 3])
-def test_one_file_shows_what_it_has_often(toy: Grammar, count: int) -> None:
-    """Three different lines of one file are trusted, two are not."""
-    more = "".join(f"GLIDE {name} {n}\n" for n, name in enumerate("ABC"[:count]))
+@pytest.mark.parametrize(
+    ("word", "count", "accepted"),
+    [("GLIDE", 2, False), ("GLIDE", 3, True), ("HALT", 1, False), ("HALT", 2, True)],
+)
+def test_one_file_shows_what_it_has_often(
+    toy: Grammar, word: str, count: int, accepted: bool
+) -> None:
+    """Three different lines of one file are trusted, where the word is known two places are."""
+    more = "".join(f"{word} {name} {n}\n" for n, name in enumerate("ABC"[:count]))
     files = (
         CorpusFile("one/a.toy", f"HALT\n{more}", frozenset({"one"})),
         CorpusFile("two/a.toy", "HALT\n", frozenset({"two"})),
     )
-    assert (count > 2) == Recognizer(_grown(toy, files).grammar).accepts("GLIDE D 7\n")
+    assert accepted == Recognizer(_grown(toy, files).grammar).accepts(f"{word} D 7\n")
 
 
 def test_the_ledger_replays(growth: Growth) -> None:
