@@ -123,7 +123,7 @@ def recover(
         return recover_auto(
             roots,
             chosen,
-            first.name,
+            f"KRL.g4 less {len(gone)} constructs" if without else first.name,
             out,
             json_file,
             rejected,
