@@ -145,8 +145,8 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
     shown, text, reason = _shown(site), site.text, f"expected: {words}" if words else ""
     before = site.tokens[site.place - 1][0] if site.place else ""
     if not before:
-        if site.expects("HALT") and not _BEGINNING.match(text):
-            return _Mistake(f"no statement begins with {shown}", reason=reason)
+        if not _BEGINNING.match(text):
+            return _Mistake(f"no line begins with {shown}", reason=reason)
     elif text in _OPENED and site.words[: site.place].count(_OPENED[text]) <= site.words[
         : site.place
     ].count(text):
@@ -157,11 +157,13 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
         return _Mistake(f"{before} has no value", reason=reason)
     elif "THEN" in site.words and site.expects("="):
         return _Mistake(f"THEN belongs to IF, and this line begins with {site.tokens[0][0]}")
-    elif site.expects("="):
+    elif site.expects("(", "="):
         return _Mistake(f"= is missing before {shown}", reason=reason)
     if near := nearest(site.failure.text, filter(str.isalpha, site.failure.expected[:_FEW]), 1):
         return _Mistake(f"{shown} is no word of KRL", Fix(f"did you mean {near[0]}?"), reason)
-    if words and not site.expects("NEWLINE") and len(site.failure.expected) <= _FEW:
+    if before and site.expects("NEWLINE"):
+        return _Mistake(f"{shown} is too much on this line", reason=reason)
+    if words and len(site.failure.expected) <= _FEW:
         return _Mistake(f"{words} is missing before {shown}")
     return _Mistake(f"{shown} cannot stand here", reason=reason)
 

@@ -221,9 +221,11 @@ def test_expected_is_told_in_words() -> None:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("= 5", 'no statement begins with "="'),
+        ("= 5", 'no line begins with "="'),
         ("XHOME PTP", "PTP stands at the beginning of its line"),
         ("N 5 =", "= is missing before 5"),
+        ("N[1]X . = 5", '"." or "=" is missing before X'),
+        ("DECL INT N 5", "5 is too much on this line"),
         ("I N THEN", "THEN belongs to IF, and this line begins with I"),
         ("N = {X 1,Y ,Z 3}", "Y has no value"),
         ("N = {X 1,Y 2Z 3}", '"," or "}" is missing before Z'),
