@@ -86,7 +86,8 @@ class RunSetup:
     ``scene`` is what stands around the arm, ``robot_file`` an arm in place of that of the project.
     ``is_tolerant``: where another arm stands in for one whose machine data is not understood, or a
     declaration for one that the project lacks, the controller skips motions that cannot be planned
-    and predefined routines that are not simulated.
+    and predefined routines that are not simulated, and where it ``skips_failures`` also all other
+    statements that fail, unless somebody debugs.
     """
 
     executor: str = "tree"
@@ -107,6 +108,7 @@ class RunSetup:
     scene: Scene | None = None
     robot_file: RobotFile | None = None
     is_tolerant: bool = False
+    skips_failures: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +183,10 @@ def run_program(
     tracking = _tracking(arm, robot, machine, start, setup)
     trace = Trace(take, kinds=_kinds(program, setup))
     sink, submit_sink = trace.sink(), trace.sink("submit")
-    limits = setup.limits or Limits(per_slice=profile.statements)
+    limits = replace(
+        setup.limits or Limits(per_slice=profile.statements),
+        skips_failures=setup.skips_failures and profile.is_tolerant and debugger is None,
+    )
     executor = prepared.executor(setup.executor, limits, sink)
     if debugger is not None:
         executor = debugger.around(executor, limits.per_slice)

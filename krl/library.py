@@ -197,6 +197,7 @@ def run(
             is_full=full,
             until=round(seconds * 1e6),
             is_tolerant=not strict,
+            skips_failures=not strict,
         )
         done = run_program(program, setup)
     outcome = done.outcome

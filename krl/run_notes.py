@@ -1,6 +1,7 @@
 """What is said of a run behind it: what stood in, what was skipped, what was touched."""
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ _MOST_TOLD = 3
 
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
-    """What stood in, which motions were skipped, and what a program that never ends waited for."""
+    """What stood in, what was skipped, and what a program that never ends waited for."""
     from interp.standins.completion import summary
 
     used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
@@ -21,11 +22,11 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
         yield f"stood in: {summary(used)}"
     if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
         yield f"stood in: {done.machine_note}"
-    skipped = done.controller.skipped_motions
-    for at, error in skipped[:_MOST_TOLD]:
-        yield f"motion skipped: {at.file}:{at.line}: {error}"
+    skipped = done.controller.skipped
+    for (file, number), error in islice(skipped.items(), _MOST_TOLD):
+        yield f"skipped: {file}:{number}: {error}"
     if len(skipped) > _MOST_TOLD:
-        yield f"motion skipped: {len(skipped) - _MOST_TOLD} more"
+        yield f"skipped: {len(skipped) - _MOST_TOLD} more lines"
     yield from _seen(done)
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"

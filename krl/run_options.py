@@ -207,6 +207,7 @@ def prepared_run(
         motion=options.motion.value,
         until=round(seconds * 1e6),
         is_tolerant=not options.strict,
+        skips_failures=not options.strict,
         machine=own.machine,
         robot_file=own.file,
         scene=own.scene,

@@ -11,7 +11,7 @@ that obliges: the inputs that a WAIT FOR waits for come after a second.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
@@ -26,17 +26,17 @@ from interp.controller.input_script import Script, ScriptError
 from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
-from interp.port.requests import At
 from interp.program.load import CheckedProgram, load_all
-from interp.session import RunSetup, run_program, submit_of
+from interp.session import RunResult, RunSetup, run_program, submit_of
 from interp.standins.uses import FOLDER
-from interp.values.faults import Fault, LinkError
+from interp.values.faults import FAULTS, Fault, LinkError
 
 __all__ = [
     "PATIENCE",
     "MainProgram",
     "Ran",
     "Result",
+    "is_of_controller",
     "main_programs",
     "run_main",
     "survey_profile",
@@ -82,9 +82,9 @@ class Ran:
     """What came of a main program: virtual seconds, motions made, and where and why it ended.
 
     ``at`` is where it was when its time was over. ``inputs``: how many changes of inputs it
-    took to fulfil its waits. ``skipped`` are motions that could not be planned where something
+    took to fulfil its waits. ``skipped`` are lines that failed where something
     stood in for what the backup lacks, ``stood_in`` what did. ``is_own_fault``: it
-    stopped in a line of the backup that names nothing that stood in.
+    stopped at a line of the backup that names nothing that stood in, or skipped one.
     """
 
     result: Result
@@ -137,11 +137,17 @@ def main_programs(
     return found, list(unread)
 
 
+def is_of_controller(path: str) -> bool:
+    """Whether a file lies in a folder of the controller or of its packages."""
+    return not _NOT_OF_USERS.isdisjoint(_folders(path))
+
+
 def _is_of_users(path: str, *, is_controller: bool) -> bool:
-    folders = [part.upper() for part in PurePosixPath(path).parts[:-1]]
-    if is_controller and "R1" not in folders:
-        return False
-    return _NOT_OF_USERS.isdisjoint(folders)
+    return (not is_controller or "R1" in _folders(path)) and not is_of_controller(path)
+
+
+def _folders(path: str) -> list[str]:
+    return [part.upper() for part in PurePosixPath(path).parts[:-1]]
 
 
 def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
@@ -246,19 +252,31 @@ def run_main(
         reason,
         run.machine.name,
         run.controller.automatic_inputs.count,
-        len(run.controller.skipped_motions),
+        len(run.controller.skipped),
         stood_in,
-        result in ("fault", "unlinked") and _is_own(program, outcome.at, stood_in),
+        any(_own_faults(program, run, stood_in)),
     )
 
 
-def _is_own(program: CheckedProgram, at: At | None, stood_in: Iterable[str]) -> bool:
-    """Whether the line of a fault is one of the backup and names nothing that stood in."""
+def _own_faults(
+    program: CheckedProgram, run: RunResult, stood_in: Iterable[str]
+) -> Iterator[tuple[str, int]]:
+    """The lines of the backup that failed and name nothing that stood in.
+
+    A motion that another arm than its own cannot make is none.
+    """
+    failed = dict(run.controller.skipped)
+    outcome = run.outcome
+    if outcome.ending == "fault" and outcome.at is not None and outcome.error is not None:
+        failed[outcome.at.file, outcome.at.line] = outcome.error
     texts = {unit.module.path: unit.source for unit in program.units.values()}
-    if at is None or at.file not in texts or at.file.startswith(FOLDER):
-        return False
     names = {name.upper() for name in stood_in}
-    return names.isdisjoint(words_of(texts[at.file].line(at.line)))
+    for (file, line), error in failed.items():
+        is_of_arm = bool(run.machine_note) and getattr(error, "slug", "") not in FAULTS
+        if is_of_arm or file not in texts or file.startswith(FOLDER):
+            continue
+        if names.isdisjoint(words_of(texts[file].line(line))):
+            yield file, line
 
 
 @dataclass(slots=True)

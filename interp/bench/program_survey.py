@@ -11,15 +11,17 @@ from __future__ import annotations
 import hashlib
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from random import Random
+from typing import Any, Final, Literal
 
 from grammar.syntax.source import Source
 from interp.bench.main_programs import (
     MainProgram,
+    is_of_controller,
     main_programs,
     run_main,
     survey_profile,
@@ -31,7 +33,7 @@ from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 from support.parallel.sticky_pool import StickyPool
 
-__all__ = ["Bounds", "Origin", "Surveyed", "survey"]
+__all__ = ["Bounds", "Chance", "Origin", "Part", "Surveyed", "remaining", "survey"]
 
 #: Statements of one program: what computes longer without end is known to do so by then.
 _STATEMENTS: Final = 3_000_000
@@ -50,11 +52,44 @@ class Origin:
     scripts: tuple[tuple[str, str], ...] = ()
 
 
+#: What there is of a backup: all, what its users wrote without the folders of the controller, all
+#: but the data lists, or each program file by itself.
+Part = Literal["whole", "modules", "code", "file"]
+
+
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """Draws a share of paths, as they are given: each by itself, whatever others there are."""
+
+    share: float = 1.0
+    seed: int = 1
+
+    def draws(self, path: str) -> bool:
+        """Whether a path is among them."""
+        return Random(f"{self.seed} {path}").random() < self.share
+
+
+def remaining(origins: Iterable[Origin], part: Part, kept: Chance) -> Iterator[Origin]:
+    """The origins with what there is of them; `kept` draws from that the files that are there."""
+    for origin in origins:
+        some = [one for one in origin.sources if _remains(one, part) and kept.draws(one.path)]
+        if part == "file":
+            yield from (replace(origin, name=one.path, sources=(one,)) for one in some)
+        else:
+            yield replace(origin, sources=tuple(some))
+
+
+def _remains(source: Source, part: Part) -> bool:
+    if part == "modules":
+        return not is_of_controller(source.path)
+    return part == "whole" or source.kind != "dat"
+
+
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """How programs are run: ``until`` is the most virtual time in µs, ``cpu`` the most CPU time.
+    """How programs are run, and which: those that ``sample`` draws.
 
-    That is in seconds.
+    ``until`` is the most virtual time in µs, ``cpu`` the most CPU time in seconds.
     """
 
     executor: str
@@ -63,6 +98,7 @@ class Bounds:
     cpu: float = 30.0
     stands_in: bool = True
     is_every: bool = False
+    sample: Chance = Chance()
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +230,7 @@ def _list_programs(origin: Origin, bounds: Bounds) -> tuple[list[str], list[tupl
     _programs[:] = [
         (main, f"{origin.script}\n{scripts.get(Path(main.path).stem, '')}")
         for main in mains
-        if bounds.is_every or main.has_machine
+        if (bounds.is_every or main.has_machine) and bounds.sample.draws(main.path)
     ]
     return [main.path for main, _ in _programs], unread
 
@@ -210,6 +246,7 @@ def _run_program(place: int, bounds: Bounds) -> dict[str, Any]:
         until=bounds.until,
         limits=Limits(_STATEMENTS, profile.statements),
         is_tolerant=bounds.stands_in,
+        skips_failures=bounds.stands_in,
     )
     start, used = time.perf_counter(), time.process_time()
     ran = run_main(main, setup, script, is_over=lambda: time.process_time() - used > bounds.cpu)

@@ -113,6 +113,7 @@ class Controller:
         channels.listeners.append(player.received)
         motions = MotionRequests(state, queue)
         table = _table(
+            state,
             VariableAccess(state, queue, advance, automatic),
             PredefinedRoutines(state, arm, frames, channels, advance),
             waits,
@@ -143,7 +144,7 @@ class Controller:
         self.core = arm.core
         self.variables = state.variables
         self.automatic_inputs = automatic
-        self.skipped_motions = motions.skipped
+        self.skipped = state.skipped
         self._queue = queue
         self._state = state
 
@@ -214,6 +215,7 @@ def _task(
 
 
 def _table(
+    state: ControllerState,
     variables: VariableAccess,
     routines: PredefinedRoutines,
     waits: Waits,
@@ -231,6 +233,7 @@ def _table(
     table.add(requests.Wait, waits.wait)
     table.add(requests.Poll, waits.poll)
     table.add(requests.Slice, waits.slice)
+    table.add(requests.Skip, state.skip)
     table.add(requests.Halt, waits.halt)
     table.add(requests.Confirm, waits.confirm)
     table.add(requests.Continue, advance.exempt)

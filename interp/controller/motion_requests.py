@@ -6,7 +6,7 @@ from interp.controller.messages import own_fault
 from interp.controller.motion_queue import MotionQueue
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
-from interp.port.requests import At, Move, MoveEmily, MoveSpline
+from interp.port.requests import At, Move, MoveEmily, MoveSpline, Skip
 from interp.values.faults import Fault
 
 __all__ = ["MotionRequests"]
@@ -18,8 +18,6 @@ class MotionRequests:
     def __init__(self, state: ControllerState, queue: MotionQueue) -> None:
         self._state = state
         self._queue = queue
-        #: Motions that could not be planned, where and why, if the profile is tolerant.
-        self.skipped: list[tuple[At, Fault]] = []
 
     def move(self, task: Task, request: Move | MoveSpline) -> Answer:
         """A motion is planned; the program goes on once it is at most $ADVANCE motions ahead.
@@ -64,7 +62,5 @@ class MotionRequests:
         """Go on without a motion if the profile is tolerant; else raises its `Fault`."""
         if not self._state.profile.is_tolerant:
             raise error
-        self.skipped.append((at, error))
-        text = f"motion skipped: {error}"
-        self._state.messages.post(task.name, at, error.number or 0, text, "notification")
+        self._state.skip(task, Skip(at, error))
         return None

@@ -36,6 +36,7 @@ __all__ = [
     "Resume",
     "SetCyclicFlag",
     "SetTrigger",
+    "Skip",
     "Slice",
     "SplineItem",
     "SplineRange",
@@ -330,6 +331,13 @@ class Fail(Asking):
 
 
 @dataclass(frozen=True, slots=True)
+class Skip(Asking):
+    """A statement has failed, and the program goes on behind it. Reply: ``None``."""
+
+    fault: Exception
+
+
+@dataclass(frozen=True, slots=True)
 class Crash(Asking):
     """The executor itself has failed, which cannot happen."""
 
@@ -357,6 +365,7 @@ Request = (
     | BrakeArm
     | Resume
     | SwitchSignal
+    | Skip
     | End
     | Fail
     | Crash

@@ -39,12 +39,14 @@ class Limits:
     """How much a program may do.
 
     ``statements`` until it counts as endless, ``per_slice`` until time has to pass, ``depth`` of
-    calls until the stack overflows [SCO-12].
+    calls until the stack overflows [SCO-12]. Where it ``skips_failures``, a statement that fails is
+    told as `interp.port.requests.Skip`, and the program goes on behind it.
     """
 
     statements: int = 10_000_000
     per_slice: int = 1_000
     depth: int = 64
+    skips_failures: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -136,8 +136,9 @@ class TreeExecutor:
         What a condition calls may compute and read; `LinkError` where it does more.
         """
         handed, guard = self._run.handed(code), self._run.guard
-        depth, cells = self._run.depth, self._run.cells
+        depth, cells, skips = self._run.depth, self._run.cells, self._run.skips
         self._run.guard = Guard.OFF  # it holds for a statement, which this is no part of
+        self._run.skips = False
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
         node: Any = handed.node
         stack = [_Active(Statements(self._run, frame).truth(node), frame)]
@@ -155,6 +156,7 @@ class TreeExecutor:
                 reply = self._looked_up(asked, read, stack)
         finally:
             self._run.guard, self._run.depth, self._run.cells = guard, depth, cells
+            self._run.skips = skips
         value: Value = reply
         return value
 
@@ -264,13 +266,16 @@ class TreeExecutor:
         return _Active(Statements(self._run, frame).routine(routine.node), frame)
 
     def _is_for_caller(self, active: _Active, error: RuntimeFailure) -> bool:
-        """Whether a routine faults before its first statement began, so that its caller's did."""
-        return (
-            isinstance(error, Fault)
-            and self._run.guard is Guard.NOW
-            and not active.frame.has_begun
-            and active.interrupted is None
-            and len(self._stack) > 1
+        """Whether a routine faults before its first statement began, so that its caller's did.
+
+        Where failures are skipped, also that of a function that has come to its end.
+        """
+        run = self._run
+        if not isinstance(error, Fault) or active.interrupted is not None or len(self._stack) == 1:
+            return False
+        is_taken = run.guard is Guard.NOW or run.skips
+        return (is_taken and not active.frame.has_begun) or (
+            run.skips and error.slug == "no_result"
         )
 
     def _left(self, active: _Active) -> None:

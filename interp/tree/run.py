@@ -110,6 +110,7 @@ class ProgramState:
         self.depth = 0
         self.cells = 0
         self.guard = Guard.OFF
+        self.skips = self.limits.skips_failures
         self.begun = 0
         self.due = self.limits.per_slice
         self._sizes: dict[Routine, int] = {}

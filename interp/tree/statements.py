@@ -14,13 +14,13 @@ from typing import Any
 from grammar.semantics.types import INT, Array
 from grammar.syntax import ast
 from interp.port import requests
-from interp.port.requests import Poll, Write
+from interp.port.requests import Poll, Skip, Write
 from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.program.variables import is_complete
 from interp.tree.motions import Motions
 from interp.tree.places import SystemPlace, fresh, is_left_out, of_type
 from interp.tree.run import Guard, Steps, at_once
-from interp.values.faults import Fault, LinkError, fault
+from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 from interp.values.operators import apply
 from interp.values.values import Value, converted, known
 
@@ -145,11 +145,14 @@ class Statements(Motions):
                 if not self._is_entered(node):
                     yield from self._begin(node)
                 yield from rule(self, node)
-            except Fault as error:
-                if self.run.guard is not Guard.NOW:
+            except RuntimeFailure as error:
+                if isinstance(error, Fault) and self.run.guard is Guard.NOW:
+                    self.run.guard = Guard.OFF
+                    yield Write(self.at(), ("$ERR", "NUMBER"), error.number or 1)
+                elif self.run.skips and error.is_of_statement:
+                    yield Skip(self.at(), error)
+                else:
                     raise
-                self.run.guard = Guard.OFF
-                yield Write(self.at(), ("$ERR", "NUMBER"), error.number or 1)
         except Resumed:
             return
 

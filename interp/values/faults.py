@@ -24,9 +24,19 @@ __all__ = [
 class RuntimeFailure(Exception):
     """Anything that ends a run; its text is one clear line."""
 
+    @property
+    def is_of_statement(self) -> bool:
+        """Whether one statement has failed, so that others may do."""
+        return False
+
 
 class LinkError(RuntimeFailure):
     """The program cannot be run: something it calls is nowhere, or it does not check."""
+
+    @property
+    def is_of_statement(self) -> bool:
+        """See `RuntimeFailure`."""
+        return True
 
 
 class Fault(RuntimeFailure):
@@ -44,6 +54,11 @@ class Fault(RuntimeFailure):
         self.text = text
         self.number = number
         self.rules = rules
+
+    @property
+    def is_of_statement(self) -> bool:
+        """Whether one statement has failed: not where calls never come to an end."""
+        return self.slug != "stack"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Fault) and (self.slug, self.text) == (other.slug, other.text)

@@ -75,10 +75,10 @@ def run(
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
     The same program gives the same trace on every executor and robot. Exit status 0 when it ran to
-    its end or to a HALT, 1 after a fault, where its time or budget was used up, where a motion was
-    skipped or a line cannot be read, where the arm touched something or could not bear a torque.
+    its end or to a HALT, 1 after a fault, where its time or budget was used up, where a line failed
+    and was skipped or cannot be read, where the arm touched something or could not bear a torque.
     What the project lacks, a routine behind an inline form for instance, stands in and is listed;
-    motions that cannot be planned for want of it are skipped.
+    statements that fail for want of it, motions above all, are skipped and listed.
     """
     with expected_errors():
         check_files(trace, path, html, video, png, observations)
@@ -107,7 +107,7 @@ def run(
     typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
     if html is not None:
         typer.echo(one_line(f"page: {html}"))
-    is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped_motions
+    is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped
     is_fine &= all(seen.is_estimate for seen in done.observations)
     used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
     is_fine &= all(one.origin != "unreadable" for one in used)

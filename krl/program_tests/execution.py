@@ -214,8 +214,8 @@ def _failures(
             yield from _told(test, line, check.text, check.actual or "nothing", program, check)
     for check in evaluate_ending(read, seen, program.main.module.path):
         yield from _told(test, test.line, check.text, check.actual, program, check)
-    for at, reason in done.controller.skipped_motions:
-        place = f"{at.file}:{at.line}: {reason}"
+    for (file, number), reason in done.controller.skipped.items():
+        place = f"{file}:{number}: {reason}"
         yield from _told(test, test.line, "all motions can be planned", place)
     for event in done.events:
         if event.kind == "call" and event.fields["name"] == UNREADABLE:

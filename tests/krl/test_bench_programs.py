@@ -93,14 +93,14 @@ def test_what_stands_in(found: dict[str, dict[str, Any]]) -> None:
 
 
 def test_whose_fault_it_is(tmp_path: Path) -> None:
-    """A fault is not the program's own where its line names something that stood in."""
+    """A fault that is skipped is not the program's own where its line names what stood in."""
     texts = {
         "own": f"own ( )\nREAL X\n{MOVE}nothing ( )\nX=X+1.0\n",
         "ours": f"ours ( )\n{MOVE}$VEL.CP=other[999]\n$VEL.CP=-other[1]\n",
     }
     programs = {f"R1/Program/{name}": text for name, text in texts.items()}
     found = results(lay(tmp_path / "cell", programs))
-    assert {"own": ("fault", True), "ours": ("fault", False)} == {
+    assert {"own": ("end", True), "ours": ("end", False)} == {
         name: (found[name]["result"], found[name]["is_own_fault"]) for name in texts
     }
 
@@ -144,6 +144,25 @@ def test_own_machine_data_is_asked_for(tmp_path: Path) -> None:
     (backup / "R1" / "Mada" / "$machine.dat").unlink()
     assert {} == results(backup, "--own-arm")
     assert ["ends"] == list(results(backup))
+
+
+@pytest.mark.parametrize(
+    ("options", "found"),
+    [
+        (["--part", "modules"], {"cell", "ends", "lacks"}),
+        (["--part", "file"], {"cell", "ends", "lacks", "part"}),
+        (["--missing", "0.5", "--seed", "3"], {"cell", "ends"}),
+        (["--sample", "0.5", "--seed", "6"], {"ends", "lacks"}),
+        (["--sample", "0"], set()),
+    ],
+)
+def test_incomplete_backups(
+    options: list[str], found: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Parts of a backup are run: what users wrote, each file alone, files or programs by chance."""
+    some(tmp_path, "ends", "part", "lacks", "tech", "cell")
+    monkeypatch.chdir(tmp_path)
+    assert found == set(results(Path("plant"), *options))
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ _KINDS: Mapping[str, str] = {
 }
 _ASSIGNMENT = ("path", "value")
 #: What no program asks for: the executor sends it by itself.
-_UNASKED = (requests.Slice, requests.End, requests.Fail, requests.Crash)
+_UNASKED = (requests.Skip, requests.Slice, requests.End, requests.Fail, requests.Crash)
 
 
 def _kinds(request: type) -> tuple[str, ...]:

@@ -27,7 +27,18 @@ from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
 from interp.port.inspection import Seen, StackFrame
-from interp.port.requests import At, CodeHandle, Crash, End, Fail, Request, Slice, Value, Write
+from interp.port.requests import (
+    At,
+    CodeHandle,
+    Crash,
+    End,
+    Fail,
+    Request,
+    Skip,
+    Slice,
+    Value,
+    Write,
+)
 from interp.program.load import Limits
 from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
@@ -283,19 +294,28 @@ class Machine:
             self._failed(error)
 
     def _failed(self, error: RuntimeFailure) -> None:
-        """The program ends, or the fault is noted where ON_ERROR_PROCEED holds."""
+        """The program ends, or the fault is noted or skipped where its limits or it say so."""
         state, services = self._state, self._services
-        if (
-            services.counter.guard is not Guard.NOW
-            or not isinstance(error, Fault)
-            or (error.slug == "no_result" and state.statement >= 0)  # behind the last statement
-        ):
+        is_fault = isinstance(error, Fault)
+        # Behind the last statement of a function.
+        is_late = isinstance(error, Fault) and error.slug == "no_result" and state.statement >= 0
+        is_noted = is_fault and services.counter.guard is Guard.NOW and not is_late
+        is_skipped = not is_noted and self._limits.skips_failures and error.is_of_statement
+        if is_late and is_skipped and self.depth:
+            self._leave_frame()
+            is_late = False
+        if is_late or not (is_noted or is_skipped):
             state.request, state.completion = Fail(services.at(), error), None
             return
-        services.counter.guard = Guard.OFF
+        if is_noted:
+            services.counter.guard = Guard.OFF
         while state.statement < 0:  # a routine in which no statement has begun
             self._leave_frame()
-        state.request = Write(services.at(), ("$ERR", "NUMBER"), error.number or 1)
+        state.request = (
+            Write(services.at(), ("$ERR", "NUMBER"), getattr(error, "number", None) or 1)
+            if is_noted
+            else Skip(services.at(), error)
+        )
         state.completion = lambda _reply: self._behind_statement()
         services.counter.asked()
 

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -46,6 +47,15 @@ _RESULTS = {
 _SERVED = ("end", "halt", "waits", "goes on")
 
 
+class Part(StrEnum):
+    """What there is of a backup."""
+
+    WHOLE = "whole"
+    MODULES = "modules"
+    CODE = "code"
+    FILE = "file"
+
+
 def programs(
     paths: ProgramsArgument = None,
     executor: Annotated[
@@ -78,6 +88,22 @@ def programs(
         typer.Option(metavar="DIR", help="Keep results here, and take over what has not changed."),
     ] = None,
     json_file: JsonOption = None,
+    part: Annotated[
+        Part,
+        typer.Option(
+            help="What there is of a backup: all, its users' modules, no data lists, or each .src "
+            "alone."
+        ),
+    ] = Part.WHOLE,
+    missing: Annotated[
+        float,
+        typer.Option(min=0, max=0.99, metavar="SHARE", help="Leave so many files out, by chance."),
+    ] = 0.0,
+    sample: Annotated[
+        float,
+        typer.Option(min=0, max=1, metavar="SHARE", help="Run so many of the programs, by chance."),
+    ] = 1.0,
+    seed: Annotated[int, typer.Option(metavar="N", help="Draws files and programs.")] = 1,
 ) -> int:
     """Run the main programs of backups with their own machine, tools, bases and points.
 
@@ -87,7 +113,7 @@ def programs(
     Each origin is shown as soon as its programs have run.
     Exit status 1 after a defect of ours.
     """
-    from interp.bench.program_survey import Bounds, survey
+    from interp.bench.program_survey import Bounds, Chance, remaining, survey
     from interp.controller.input_script import ScriptError
     from interp.executors import available
 
@@ -99,12 +125,18 @@ def programs(
         cpu=max_cpu,
         stands_in=not strict,
         is_every=every,
+        sample=Chance(sample, seed),
     )
-    origins = _origins(programs_or_ours(paths), scripts)
+    whole = _origins(programs_or_ours(paths), scripts)
+    origins = list(remaining(whole, part.value, Chance(1.0 - missing, seed)))
     record: dict[str, Any] = {
         "bench": "programs",
         "executor": bounds.executor,
         "robot": bounds.robot,
+        "part": part.value,
+        "missing": missing,
+        "sample": sample,
+        "seed": seed,
         "results": {},
         "moved": 0,
         "served": 0,
@@ -222,6 +254,6 @@ def _print_summary(console: Console, record: Mapping[str, Any]) -> None:
         moved, served = (record[name] / len(rows) for name in ("moved", "served"))
         console.print(
             f"{moved:.0%} executed a motion, {served:.0%} ended or serve for ever, "
-            f"{record['own_faults'] / len(rows):.0%} stopped at a fault of their own",
+            f"{record['own_faults'] / len(rows):.0%} have a fault of their own",
             soft_wrap=True,
         )

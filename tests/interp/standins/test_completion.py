@@ -110,13 +110,13 @@ def test_motion_data_of_inline_forms() -> None:
     body = "LDAT_ACT=LCPDAT1\nFDAT_ACT=FP1\nBAS (#CP_PARAMS,1 )\nLIN XP1\n"
     body += "PDAT_ACT=PPDAT1\nBAS (#PTP_PARAMS,50 )\nPTP XP2\n"
     run = _run(_main(body))
-    assert (("end", ""), []) == (_outcome(run), run.controller.skipped_motions)
+    assert (("end", ""), []) == (_outcome(run), [*run.controller.skipped])
 
 
 def test_line_at_the_beginning() -> None:
     """A program that has lost its first PTP begins with a hand that is bent: a LIN is possible."""
     run = _run(_main("LIN XP1\n"))
-    assert (("end", ""), []) == (_outcome(run), run.controller.skipped_motions)
+    assert (("end", ""), []) == (_outcome(run), [*run.controller.skipped])
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
@@ -175,7 +175,7 @@ def test_points_without_a_data_list(executor: str) -> None:
     program = _main(body)
     run = _run(program, executor)
     assert ("end", "") == _outcome(run)
-    assert [] == run.controller.skipped_motions
+    assert {} == run.controller.skipped
     assert ["PTP", "LIN", "CIRC", "LIN", "LIN"] == _planned(run)
     assert 5 == len({str(point.position) for point in run.controller.points})
     places = {"XP1", "XP2", "XP3", "XP4", "ROW", "HIGH"}
@@ -190,13 +190,13 @@ def test_ways_between_places(points: list[str], data: st.DataObject) -> None:
     lines = [f"{data.draw(kinds)} X{point}{data.draw(st.integers(1, 99))}\n" for point in points]
     run = _run(_main(f"PTP XSTART\n{''.join(lines)}"))
     assert ("end", "") == _outcome(run)
-    assert [] == run.controller.skipped_motions
+    assert {} == run.controller.skipped
 
 
 def test_offset_of_an_undeclared_point() -> None:
     """Of a point and an offset that is written out the point has the place."""
     run = _run(_main("PTP XP1\nLIN XP2:{X 0.0,Y 0.0,Z -20.0,A 0.0,B 0.0,C 0.0}\n"))
-    assert (("end", ""), []) == (_outcome(run), run.controller.skipped_motions)
+    assert (("end", ""), []) == (_outcome(run), [*run.controller.skipped])
     assert 2 == len(run.controller.points)
 
 
@@ -225,8 +225,51 @@ def test_same_name_elsewhere() -> None:
 def test_skipped_motion() -> None:
     """With stand-ins a point out of reach is skipped with a message; the next motion is made."""
     run = _run(_main(f"OPT ( )\n{HOME}LIN {{X 9000.0}}\nPTP {{A1 5.0}}\n"))
-    skipped = [(at.line, fault.number) for at, fault in run.controller.skipped_motions]
+    skipped = [
+        (line, getattr(fault, "number", None))
+        for (_, line), fault in run.controller.skipped.items()
+    ]
     assert (("end", ""), [(4, 1366)]) == (_outcome(run), skipped)
+
+
+#: Each fails in line 4 of the program.
+_FAILING = (
+    "IF N==1 THEN\nPTP {A1 1}\nELSE\nPTP {A1 2}\nENDIF\n",
+    "FOR I=1 TO N\nPTP {A1 1}\nENDFOR\n",
+    "$OUT[99999]=TRUE\n",
+    "$OUT[1]=F ( )\n",
+    "IF F ( ) THEN\nPTP {A1 1}\nENDIF\n",
+    "N=#NOTHING_HAS_IT\n",
+)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize("failing", _FAILING)
+def test_failing_statements_are_skipped(failing: str, executor: str) -> None:
+    """With stand-ins the program goes on behind a statement that fails, a function in its call."""
+    text = f"DEF main ( )\nINT N,I\nOPT ( )\n{failing}PTP {{A1 5.0}}\nEND\n"
+    text += "DEFFCT BOOL F ( )\nBOOL X\nRETURN X\nENDFCT\n"
+    setup = RunSetup(executor=executor, is_tolerant=True, skips_failures=True)
+    run = run_program(_program({"main.src": text}), setup)
+    own = [line for _, line in run.controller.skipped if line <= text.count("\n") - 4]
+    assert (("end", ""), [4], ["PTP"]) == (_outcome(run), own, _planned(run))
+    assert [f"skipped: {one}" for one in run.controller.skipped.values()] == [
+        event.fields["text"] for event in run.events if event.kind == "message"
+    ]
+
+
+def test_nothing_is_skipped_in_a_complete_project() -> None:
+    """What fails there is the program's own fault, which ends it."""
+    program = _main("N=N+1\n", declared="INT N\n")
+    run = run_program(program, RunSetup(is_tolerant=True, skips_failures=True))
+    assert ("fault", {}) == (run.outcome.ending, run.controller.skipped)
+
+
+def test_endless_calls_are_not_skipped() -> None:
+    """A stack that overflows ends the program, whatever stands in."""
+    program = _main("OPT ( )\nmain ( )\nmain ( )\n")
+    run = run_program(program, RunSetup(is_tolerant=True, skips_failures=True))
+    assert ("fault", {}) == (run.outcome.ending, run.controller.skipped)
 
 
 def test_strict_run() -> None:
@@ -360,7 +403,7 @@ def test_paths_of_an_option_are_skipped() -> None:
     """A path that only an option package could follow counts as a motion that was skipped."""
     run = _run(_main(f'{HOME}MOVE_EMI DEVICE[] "path.emily" FLT 0\nPTP {{A1 5}}\n'))
     assert (("end", ""), ["PTP", "PTP"]) == (_outcome(run), _planned(run))
-    assert [3] == [at.line for at, _ in run.controller.skipped_motions]
+    assert [3] == [line for _, line in run.controller.skipped]
 
 
 def test_arrays_have_what_a_loop_counts_to() -> None:

@@ -36,7 +36,7 @@ def test_values(executor: str) -> None:
         _outcome(run),
         [one.fields["number"] for one in run.events if one.kind == "out"],
     )
-    assert [] == run.controller.skipped_motions
+    assert {} == run.controller.skipped
 
 
 def test_flag_that_is_waited_for() -> None:
