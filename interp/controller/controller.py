@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -47,7 +47,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ArmState", "Controller"]
 
-_MOST_WAITS = 5
+#: Of all waits the longest are told, each with its first variables.
+_MOST_WAITS, _MOST_NAMES = 5, 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,8 +187,9 @@ class Controller:
         """Where the program has waited longest, and for what; only with automatic inputs."""
         waited = sorted(self.automatic_inputs.waited.items(), key=lambda one: -one[1][0])
         return [
-            f"{', '.join(names) or 'a condition'} at {at.file}:{at.line}, {time / 1e6:g} s"
+            f"{_listed(names) or 'a condition'} at {at.file}:{at.line}, {time / 1e6:g} s"
             for at, (time, names) in waited[:_MOST_WAITS]
+            if time
         ]
 
     def run(self, until: int = HOUR) -> RunOutcome:
@@ -197,6 +199,13 @@ class Controller:
         cannot have.
         """
         return self._scheduler.run(until)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The first variables of a condition, its inputs before the others."""
+    shown = sorted(names, key=lambda name: not name.startswith("$IN["))
+    more = [f"{len(shown) - _MOST_NAMES} more"] if len(shown) > _MOST_NAMES else []
+    return ", ".join(shown[:_MOST_NAMES] + more)
 
 
 def _task(

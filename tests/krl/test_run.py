@@ -87,6 +87,11 @@ def test_automatic_inputs(run: Run) -> None:
     status, out, err = run("WAIT FOR $OV_PRO==50\n", "--io", "auto", "--until", "5")
     assert (1, "main.src: time after 5 s at main.src:2\n") == (status, out)
     assert err.startswith("waited for: $OV_PRO at main.src:2, 4.9")
+    outputs = " OR ".join(f"$OUT[{number}]" for number in range(1, 6))
+    _, _, err = run(f"WAIT FOR ({outputs}) AND $IN[7]\n", "--io", "auto", "--until", "5")
+    assert err.startswith(
+        "waited for: $IN[7], $OUT[1], $OUT[2], $OUT[3], 2 more at main.src:2, 4.9"
+    )
 
 
 def test_strict(run: Run) -> None:
