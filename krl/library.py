@@ -122,7 +122,8 @@ class Run:
     """A run: how it ended (``end``, ``halt``, ``fault``, ``time`` …), when, and what happened.
 
     ``at`` is ``file:line`` where a program ended it, ``error`` why; both may be empty. ``events``
-    are those of the trace; ``path`` are the set-points of the arm, ``None`` without a robot.
+    are those of the trace; ``path`` are the set-points of the arm, ``None`` without a robot;
+    ``notes`` tell, as `krl run` does, what stood in and which lines failed and were skipped.
     """
 
     ending: str
@@ -131,6 +132,7 @@ class Run:
     error: str
     events: tuple[TraceEvent, ...]
     path: PathRecord | None
+    notes: tuple[str, ...]
     _whole: tuple[RunResult, CheckedProgram, RunSetup]
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -184,6 +186,7 @@ def run(
     from interp.session import RunSetup, available, run_program
     from interp.values.faults import RuntimeFailure
     from krl.program_loading import load_program
+    from krl.run_notes import run_notes
 
     with as_input_errors(RuntimeFailure):
         program, _ = load_program(Path(file), strict=strict, stands_in=not strict)
@@ -208,6 +211,7 @@ def run(
         "" if outcome.error is None else str(outcome.error),
         tuple(done.events),
         done.path,
+        tuple(run_notes(done, program, setup)),
         (done, program, setup),
     )
 

@@ -45,6 +45,17 @@ def test_a_run_has_its_ending_trace_and_path(tmp_path: Path) -> None:
         still.path_dataframe()
 
 
+def test_a_run_tells_what_stood_in_and_was_skipped(tmp_path: Path) -> None:
+    """Its notes are what `krl run` says behind it."""
+    file = tmp_path / "a.src"
+    file.write_text("DEF a()\nINT N\nNOWHERE()\nN=N+1\nEND\n", encoding="utf-8")
+    run = krl.run(file, robot="none")
+    assert ("end", ("skipped: a.src:4: a value is used that was never set",)) == (
+        run.ending,
+        tuple(note for note in run.notes if not note.startswith("stood in: ")),
+    )
+
+
 def test_a_backup_has_routines_and_points(tmp_path: Path) -> None:
     """Points are what has coordinates; each component that is a number is a column."""
     (tmp_path / "a.src").write_text("DEF a()\nEND\nDEF b()\nHALT\nEND\n", encoding="utf-8")
