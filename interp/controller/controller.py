@@ -242,7 +242,7 @@ def _table(
     table.add(requests.Wait, waits.wait)
     table.add(requests.Poll, waits.poll)
     table.add(requests.Slice, waits.slice)
-    table.add(requests.Skip, state.skip)
+    table.add(requests.Skip, lambda task, one: state.skip(task.name, one.at, one.fault))
     table.add(requests.Halt, waits.halt)
     table.add(requests.Confirm, waits.confirm)
     table.add(requests.Continue, advance.exempt)

@@ -6,7 +6,7 @@ from interp.controller.messages import own_fault
 from interp.controller.motion_queue import MotionQueue
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
-from interp.port.requests import At, Move, MoveEmily, MoveSpline, Skip
+from interp.port.requests import At, Move, MoveEmily, MoveSpline
 from interp.values.faults import Fault
 
 __all__ = ["MotionRequests"]
@@ -62,5 +62,5 @@ class MotionRequests:
         """Go on without a motion if the profile is tolerant; else raises its `Fault`."""
         if not self._state.profile.is_tolerant:
             raise error
-        self._state.skip(task, Skip(at, error))
+        self._state.skip(task.name, at, error)
         return None

@@ -9,11 +9,10 @@ from interp.controller.clock import ActionQueue, Clock, TimedAction
 from interp.controller.messages import Messages
 from interp.controller.profile import Profile
 from interp.controller.signals import Signals
-from interp.controller.tasks import Task
 from interp.controller.timers import Timers
 from interp.controller.trace import TaskName, Trace
 from interp.controller.variables import Variables
-from interp.port.requests import At, Path, Skip, Value
+from interp.port.requests import At, Path, Value
 from interp.robot.kinematics.machine_data import MachineData
 from interp.values.json_form import to_json
 from interp.values.values import EnumValue
@@ -61,13 +60,12 @@ class ControllerState:
         value = self.variables.read(("$MODE_OP",))
         return value.name.upper() if isinstance(value, EnumValue) else "AUT"
 
-    def skip(self, task: Task, request: Skip) -> None:
+    def skip(self, task: TaskName, at: At, error: Exception) -> None:
         """Go on behind a statement that has failed, with a message the first time."""
-        place, error = (request.at.file, request.at.line), request.fault
-        if place not in self.skipped:
-            self.skipped[place] = error
+        if (at.file, at.line) not in self.skipped:
+            self.skipped[at.file, at.line] = error
             number = getattr(error, "number", None) or 0
-            self.messages.post(task.name, request.at, number, f"skipped: {error}", "notification")
+            self.messages.post(task, at, number, f"skipped: {error}", "notification")
 
     # ------------------------------------------------------------------------------ changes
 
