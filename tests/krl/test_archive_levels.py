@@ -18,6 +18,9 @@ CELLS = Path(__file__).parents[2] / "corpus" / "programs"
 #: An argument is missing, which only another file can tell, and two types do not agree.
 FAULTY = 'DEF faulty ( )\nINT N\nN="A"\nBAS (#INITMOV )\nEND\n'
 
+#: The tree needs no translation of the whole archive.
+QUICK = ("--executor", "tree", "--io", "auto", "--until", "2")
+
 Names = Callable[[str], str]
 Seen = tuple[int, list[dict[str, Any]], list[tuple[str, str, int]]]
 
@@ -61,8 +64,7 @@ def _file(folder: Path, name: str) -> Path:
 
 def _seen(file: Path, faulty: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> Seen:
     """Exit status and trace of a run, and the findings of a check, with names of files only."""
-    options = ["--io", "auto", "--until", "2", "--trace", str(out)]
-    status = main(["run", str(file), *options])
+    status = main(["run", str(file), *QUICK, "--trace", str(out)])
     capsys.readouterr()
     main(["check", str(faulty), "--format", "json", "--no-cache", "--no-settings", "--jobs", "1"])
     findings = json.loads(capsys.readouterr().out)
@@ -115,7 +117,7 @@ def test_zip(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     packed = tmp_path / "cell.zip" / file.relative_to(tmp_path)
     texts = []
     for one in (file, packed):
-        main(["run", str(one), "--io", "auto", "--until", "2", "--trace", str(out)])
+        main(["run", str(one), *QUICK, "--trace", str(out)])
         texts.append(out.read_text(encoding="utf-8").replace('"KRC/', '"'))
     capsys.readouterr()
     assert len(texts[0].splitlines()) > 5
