@@ -25,7 +25,7 @@ __all__ = ["kept"]
 
 #: Characters: what is made of less is made sooner than the digest of the code is.
 _FEWEST: Final = 10_000
-_MOST_KEPT: Final = 50
+_MOST_KEPT: Final = 200 << 20  # bytes
 
 _T = TypeVar("_T")
 
@@ -71,6 +71,9 @@ def _without_collection() -> Iterator[None]:
 
 
 def _drop_old(folder: Path) -> None:
-    files = sorted(folder.glob("*.pickle"), key=lambda one: one.stat().st_mtime)
-    for old in files[:-_MOST_KEPT]:
-        old.unlink(missing_ok=True)
+    room = _MOST_KEPT
+    states = ((file, file.stat()) for file in folder.glob("*.pickle"))
+    for file, state in sorted(states, key=lambda one: -one[1].st_mtime_ns):
+        room -= state.st_size
+        if room < 0:
+            file.unlink(missing_ok=True)

@@ -1,5 +1,6 @@
 """Values that are kept for the user."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -58,8 +59,12 @@ def test_what_cannot_be_kept_is_made(cache: Path) -> None:
 
 
 def test_the_oldest_go(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No more files than the limit are kept."""
-    monkeypatch.setattr(kept_values, "_MOST_KEPT", 2)
-    for name in "abc":
+    """No more bytes than the limit are kept, and what was used last stays."""
+    kept(_CODE, ("a", _LONG), lambda: 0)
+    (file,) = cache.iterdir()
+    monkeypatch.setattr(kept_values, "_MOST_KEPT", 2 * file.stat().st_size)
+    os.utime(file, ns=(1, 1))
+    for name in "bc":
         kept(_CODE, (name, _LONG), lambda: 0)
     assert 2 == len(list(cache.iterdir()))
+    assert 1 == kept(_CODE, ("a", _LONG), lambda: 1)
