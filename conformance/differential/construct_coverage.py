@@ -83,12 +83,14 @@ def needs(cases: Iterable[Case]) -> Needs:
 
 
 def _used(case: Case) -> Iterator[tuple[str, str]]:
+    known = language()
     for source in case.sources:
         module = read_module(source.text, source.path)
         if not isinstance(module, list) and isinstance(module.content, ast.Program):
             for routine in module.content.routines:
-                for node in walk(routine):
-                    yield from _of(node)
+                for kind, name in (each for node in walk(routine) for each in _of(node)):
+                    if name in known.get(kind, (name,)):  # names and headers are not executed
+                        yield kind, name
 
 
 def reached(rules: Needs, counts: Counts) -> Iterator[str]:

@@ -51,3 +51,13 @@ def test_a_rule_is_reached_by_all_that_it_needs() -> None:
         counts = counted(program, trace_of(program, EXECUTORS["tree"], "x"))
         found.append(list(reached(rules, counts)))
     assert [["A-02"], ["A-01", "A-02"]] == found
+
+
+def test_a_case_reaches_its_own_rule() -> None:
+    """Run like a generated program it executes all that the rule needs of it."""
+    case = read_case(CASES / "control/while_tests_first.src")
+    rules = needs([case])
+    program = prepared(tuple((one.path, one.text) for one in case.sources))
+    counts = counted(program, trace_of(program, EXECUTORS["tree"], "x"))
+    needed = rules["CTL-01"] - {("operator", "+")}  # on a line that is never executed
+    assert ["CTL-01"] == list(reached({"CTL-01": needed}, counts))
