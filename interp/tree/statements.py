@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from grammar.semantics.types import INT, Array
 from grammar.syntax import ast
@@ -59,13 +59,34 @@ class Selected(Exception):
     way: tuple[ast.Statement, ...]
 
 
+_Loop = TypeVar("_Loop", bound=ast.Node)
+
+
+def _left_by_exit(
+    loop: Callable[[Statements, _Loop], Steps[None]],
+) -> Callable[[Statements, _Loop], Steps[None]]:
+    def left(self: Statements, node: _Loop) -> Steps[None]:
+        self._loops += 1
+        try:
+            yield from loop(self, node)
+        except _Exit:
+            return
+        finally:
+            self._loops -= 1
+
+    return left
+
+
 class Statements(Motions):
     """Executes the statements of one frame.
 
-    ``_way`` is empty but on the way to a statement that was selected.
+    ``_way`` is empty but on the way to a statement that was selected. ``_blocks`` are those being
+    executed, from the outermost on, and ``_loops`` how many loops are.
     """
 
     _way: tuple[ast.Statement, ...] = ()
+    _blocks: tuple[tuple[ast.Statement, ...], ...] = ()
+    _loops = 0
 
     def routine(self, node: ast.Routine) -> Steps[Value | None]:
         """Execute a routine to its end; gives its result."""
@@ -77,10 +98,6 @@ class Statements(Motions):
                 raise fault("no_result")
         except _Return as returned:
             value = returned.value
-        except _Goto as jump:
-            raise LinkError(f"the label {jump.label} is not there to go to") from None
-        except _Exit:
-            raise LinkError("EXIT outside of a loop") from None
         if self.run.returns is not None:
             self.run.returns.leave(self.at(), self.frame.name)
         return value
@@ -111,20 +128,25 @@ class Statements(Motions):
     # ----------------------------------------------------------------------- blocks
 
     def _block(self, body: tuple[ast.Statement, ...]) -> Steps[None]:
+        around = self._blocks
+        self._blocks = (*around, body)
         place = max(self._place_on_way(body), 0)
-        while place < len(body):
-            try:
-                yield from self._statement(body[place])
-                place += 1
-            except _Goto as jump:
-                place = _place_of(jump.label, body)
-                if place < 0:
-                    raise
-            except Selected as selected:
-                self._way = selected.way
-                place = self._place_on_way(body)
-                if place < 0:
-                    raise
+        try:
+            while place < len(body):
+                try:
+                    yield from self._statement(body[place])
+                    place += 1
+                except _Goto as jump:
+                    place = _place_of(jump.label, body)
+                    if place < 0:
+                        raise
+                except Selected as selected:
+                    self._way = selected.way
+                    place = self._place_on_way(body)
+                    if place < 0:
+                        raise
+        finally:
+            self._blocks = around
 
     def _place_on_way(self, body: tuple[ast.Statement, ...]) -> int:
         """Which statement of a block leads to the one selected, or -1."""
@@ -195,55 +217,52 @@ class Statements(Motions):
         self._branch(0)
         yield from self._block(node.default or ())
 
+    @_left_by_exit
     def _for(self, node: ast.For) -> Steps[None]:
         step = 1 if node.step is None else (yield from self.integer(node.step))
         counter = self.variable(node.counter)
         yield from self.store(counter, (yield from self.integer(node.first)))
         last = yield from self.integer(node.last)
-        try:
-            while True:
-                value = known((yield from self.read(counter)))
-                if apply(">" if step > 0 else "<", value, last):
-                    return
-                yield from self._block(node.body)
-                yield from self._begin(node)
-                value = known((yield from self.read(counter)))
-                yield from self.store(counter, apply("+", value, step))
-        except _Exit:
-            return
+        while True:
+            value = known((yield from self.read(counter)))
+            if apply(">" if step > 0 else "<", value, last):
+                return
+            yield from self._block(node.body)
+            yield from self._begin(node)
+            value = known((yield from self.read(counter)))
+            yield from self.store(counter, apply("+", value, step))
 
+    @_left_by_exit
     def _while(self, node: ast.While) -> Steps[None]:
-        try:
-            while self._way or (yield from self._is_true(node.condition)):
-                yield from self._block(node.body)
-                yield from self._begin(node)
-        except _Exit:
-            return
+        while self._way or (yield from self._is_true(node.condition)):
+            yield from self._block(node.body)
+            yield from self._begin(node)
 
+    @_left_by_exit
     def _repeat(self, node: ast.Repeat) -> Steps[None]:
         is_done = False
-        try:
-            while not is_done:
-                yield from self._block(node.body)
-                yield from self._begin(node.condition)
-                is_done = yield from self._is_true(node.condition)
-        except _Exit:
-            return
+        while not is_done:
+            yield from self._block(node.body)
+            yield from self._begin(node.condition)
+            is_done = yield from self._is_true(node.condition)
 
+    @_left_by_exit
     def _loop(self, node: ast.Loop) -> Steps[None]:
-        try:
-            while True:
-                yield from self._block(node.body)
-                yield from self._begin(node)
-        except _Exit:
-            return
+        while True:
+            yield from self._block(node.body)
+            yield from self._begin(node)
 
     def _exit(self, _node: ast.Exit) -> Steps[None]:
+        if not self._loops:
+            raise LinkError("EXIT outside of a loop")
         raise _Exit
         yield
 
     def _goto(self, node: ast.Goto) -> Steps[None]:
-        raise _Goto(node.label.key)
+        label = node.label.key
+        if all(_place_of(label, body) < 0 for body in self._blocks):
+            raise LinkError(f"the label {label} is not there to go to")
+        raise _Goto(label)
         yield
 
     def _return(self, node: ast.Return) -> Steps[None]:

@@ -240,6 +240,8 @@ _FAILING = (
     "$OUT[1]=F ( )\n",
     "IF F ( ) THEN\nPTP {A1 1}\nENDIF\n",
     "N=#NOTHING_HAS_IT\n",
+    "EXIT\n",
+    "GOTO NOWHERE\n",
 )
 
 
