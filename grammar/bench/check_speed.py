@@ -29,9 +29,9 @@ from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.decode import decode
 from support.files.discovery import Found, IngestError, discover, read
+from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
-from support.parallel.gc_pause import gc_paused
 
 __all__ = ["measure_check", "steps"]
 

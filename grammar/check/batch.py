@@ -43,7 +43,7 @@ from support.files import archives
 from support.files.decode import digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
-from support.parallel.gc_pause import gc_paused
+from support.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 from support.parallel.sticky_pool import StickyPool
 

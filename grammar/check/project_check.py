@@ -28,7 +28,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.decode import decode, digest
-from support.parallel.gc_pause import gc_paused
+from support.gc_pause import gc_paused
 
 __all__ = [
     "LARGEST",

@@ -28,7 +28,7 @@ from krl.project_settings import Settings, baseline_place, read_baseline, settin
 from support.files import discovery
 from support.files.decode import decode
 from support.files.untrusted import read_bytes
-from support.parallel.gc_pause import gc_paused
+from support.gc_pause import gc_paused
 
 __all__ = ["MOST_FILES", "Looked", "OpenProject", "certain"]
 

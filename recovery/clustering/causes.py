@@ -39,7 +39,7 @@ from recovery.tuning import (
     MOST_PROPOSALS,
     TRIAL_GARBAGE,
 )
-from support.parallel.gc_pause import gc_paused
+from support.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 
 __all__ = ["find_causes", "merged_by_edits", "merged_by_first_word"]

@@ -8,18 +8,18 @@ there can run what they like as this user anyway. What comes from elsewhere is n
 from __future__ import annotations
 
 import contextlib
-import gc
 import hashlib
 import os
 import pickle
 import zlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, TypeVar
 
 from support.files.atomic_write import write_atomic
 from support.files.code_digest import code_digest
 from support.files.user_cache import user_cache
+from support.gc_pause import gc_paused
 
 __all__ = ["kept"]
 
@@ -44,7 +44,7 @@ def kept(packages: Sequence[str], made_of: Sequence[str], make: Callable[[], _T]
         data = text.encode("utf-8", "surrogatepass")
         key.update(b"%d:" % len(data) + data)
     file = folder / "values" / f"{key.hexdigest()}.pickle"
-    with contextlib.suppress(Exception), _without_collection():  # damage may raise anything
+    with contextlib.suppress(Exception), gc_paused(0):  # damage may raise anything
         value: _T = pickle.loads(zlib.decompress(file.read_bytes()))
         os.utime(file)
         return value
@@ -56,18 +56,6 @@ def kept(packages: Sequence[str], made_of: Sequence[str], make: Callable[[], _T]
         write_atomic(file, zlib.compress(pickle.dumps(value, 5), 1))
         _drop_old(file.parent)
     return value
-
-
-@contextlib.contextmanager
-def _without_collection() -> Iterator[None]:
-    """Nothing of what is read becomes garbage, and to look for it takes longer than to read."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 def _drop_old(folder: Path) -> None:

@@ -5,8 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from conformance.evaluation.evaluator import evaluate
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.path_laws import deviations
+from conformance.suite.case import Case
+from grammar.syntax.source import Source
 from interp.robot.models import default_machine
 from interp.robot.simulation.tracking import PathRecord
 
@@ -73,11 +76,31 @@ def test_a_motion_has_its_shape(kind: str, points: Any, law: str) -> None:
     assert [law] * bool(law) == [one.law for one in deviations(seen(kind, points))]
 
 
+def _late() -> Observation:
+    """A PTP of which one axis comes too late."""
+    share = np.linspace(0.0, 1.0, COUNT)
+    axes = STILL.copy()
+    axes[:, 0], axes[:, 5] = 20 * share, 10 * share**1.1
+    return seen("PTP", axes=axes)
+
+
 def test_a_motion_is_synchronous() -> None:
     """An axis that comes too late breaks an unconfirmed clause."""
     share = np.linspace(0.0, 1.0, COUNT)
     axes = STILL.copy()
     axes[:, 0], axes[:, 5] = 20 * share, 10 * share
     assert [] == [*deviations(seen("PTP", axes=axes))]
-    axes[:, 5] = 10 * share**1.1
-    assert ["MOT-01.b"] == [one.rule for one in deviations(seen("PTP", axes=axes))][-1:]
+    assert ["MOT-01.b"] == [one.rule for one in deviations(_late())][-1:]
+
+
+def test_a_broken_law_fails_every_case_unless_its_clause_is_unconfirmed() -> None:
+    """It is told at the line of the motion under way, whatever the case is about."""
+    source = Source("DEF a()\nEND\n", "a.src")
+    path: Any = None
+    case = Case("s/a", path, "t", ("CTL-01",), "run", "kss8", (source,), ())
+    bent = seen("LIN", LINE + BULGE * 0.2)
+    unmet = [
+        [(one.basis, one.line, one.is_sure) for one in evaluate(case, each) if one.state == "unmet"]
+        for each in (bent, _late())
+    ]
+    assert [[("", 3, True)], [("MOT-01.b", 3, False)]] == [found[-1:] for found in unmet]
