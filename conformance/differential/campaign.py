@@ -110,8 +110,9 @@ def fuzz(
     `support.parallel.workers.WorkersError`, also where a worker has not these executors.
     """
     names = tuple(executors)
+    wanted = dict(rules)
     shards = [
-        _Shard(seed, first, min(first + _SHARD, programs), names, dict(rules))
+        _Shard(seed, first, min(first + _SHARD, programs), names, wanted)
         for first in range(0, programs, _SHARD)
     ]
     findings: list[Finding] = []

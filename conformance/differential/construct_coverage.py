@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any, Final, get_args
 
 from conformance.differential.runs import Prepared
@@ -48,6 +49,7 @@ _VARIANTS: Final = (
 )
 
 
+@cache
 def language() -> Mapping[str, tuple[str, ...]]:
     """All there is of each kind."""
     nodes = {one.__name__ for one in get_args(ast.Statement | ast.Expression)}

@@ -61,8 +61,7 @@ class Trial:
 
     ``case`` is the one that noticed it, ``why`` what it said, or why none can. ``reached`` is how
     many cases run its lines, ``sure`` how many of them may fail, ``runs`` how many were run.
-    ``changed`` is the first that did
-    something else with it, whether it noticed that or not.
+    ``changed`` is the first that did something else with it, whether it noticed that or not.
     """
 
     mutant: Mutant

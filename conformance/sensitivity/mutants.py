@@ -145,8 +145,8 @@ def all_mutants() -> Iterator[str]:
     """The names of all mutants there are, package by package."""
     left_out = [one for _, some in PACKAGES.values() for one in some]
     for module in modules():
-        for number, one in enumerate(changes(_tree(module))):
-            if not any(fnmatchcase(f"{module}.{one.function}", each) for each in left_out):
+        for number, function in enumerate(_changed(module)):
+            if not any(fnmatchcase(f"{module}.{function}", each) for each in left_out):
                 yield f"{module}:{number}"
 
 
@@ -163,7 +163,8 @@ def named(name: str) -> Mutant:
     It may be of a module that none is drawn from.
     """
     module, _, number = name.partition(":")
-    if module not in _every_module() or not number.isdigit() or int(number) >= _count(module):
+    is_known = module in _every_module() and number.isdigit()
+    if not is_known or int(number) >= len(_changed(module)):
         raise KeyError(name)
     tree = _tree(module)
     one = _change(tree, int(number))
@@ -248,8 +249,9 @@ def _tree(module: str) -> ast.Module:
 
 
 @cache
-def _count(module: str) -> int:
-    return sum(1 for _ in changes(_tree(module)))
+def _changed(module: str) -> tuple[str, ...]:
+    """The function that each mutant of a module changes, by its number."""
+    return tuple(one.function for one in changes(_tree(module)))
 
 
 def _change(tree: ast.Module, number: int) -> Change:
@@ -352,8 +354,7 @@ def _functions() -> Mapping[tuple[Any, ...], Sequence[FunctionType]]:
     for name in modules():
         import_module(name)
     found: dict[tuple[Any, ...], list[FunctionType]] = {}
-    gc.unfreeze()  # what is set aside is not listed
-    for one in gc.get_objects():
+    for one in _objects():
         if inspect.isfunction(one) and str(one.__module__).partition(".")[0] == _ROOT:
             found.setdefault(_key(one.__code__), []).append(one)
     return found
@@ -365,13 +366,17 @@ def _forget() -> None:
         one.cache_clear()
 
 
+def _objects() -> list[Any]:
+    gc.unfreeze()  # what is set aside is not listed
+    return gc.get_objects()
+
+
 @cache
 def _caches() -> Sequence[Any]:
     wrapper = type(_text)
-    gc.unfreeze()
     return [
         one
-        for one in gc.get_objects()
+        for one in _objects()
         if type(one) is wrapper
         and str(one.__module__).startswith((f"{_ROOT}.", "conformance.evaluation."))
     ]

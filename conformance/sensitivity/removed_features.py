@@ -18,7 +18,6 @@ from typing import Any, Final, get_args
 
 from conformance.differential.construct_coverage import language
 from conformance.evaluation.execution import Setup
-from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.suite.case import Case
 from grammar.semantics.predefined import System
@@ -75,16 +74,11 @@ def try_removals(
 
 def _removals(cases: Sequence[Case]) -> list[Removal]:
     return [
-        Removal(case.name, feature, _verdict(without(case, feature)))
+        Removal(case.name, feature, run_case(without(case, feature), [_SETUP]).verdict)
         for case in cases
-        if (named := named_by(case)) and _verdict(case) == "pass"
+        if (named := named_by(case)) and run_case(case, [_SETUP]).verdict == "pass"
         for feature in named
     ]
-
-
-def _verdict(case: Case) -> str:
-    (result,) = run_case(case, [_SETUP], KnownFailures()).results
-    return result.verdict
 
 
 def removals_record(removals: Sequence[Removal]) -> dict[str, Any]:
@@ -141,10 +135,7 @@ def features(case: Case) -> Mapping[str, Sequence[_Edit]]:
 
 def _of(routine: ast.Routine, source: Source) -> Iterator[tuple[str, ast.Node, str]]:
     """Features below a routine, the node that each removal replaces, and by what."""
-    todo: list[ast.Node] = [*routine.body]
-    while todo:
-        node = todo.pop(0)
-        todo += children(node)
+    for node in (each for one in routine.body for each in walk(one)):
         if isinstance(node, _DECLARING):
             continue
         if isinstance(node, _STATEMENTS):

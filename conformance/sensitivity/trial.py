@@ -12,7 +12,6 @@ from functools import cache
 from typing import Any, Final
 
 from conformance.evaluation.execution import Setup
-from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity import (
     advance_run_faults,
@@ -113,15 +112,14 @@ def _verdict_of(fault: Fault, cases: Sequence[Case], executor: str) -> Verdict:
 @cache
 def _passes(case: Case, setup: Setup) -> bool:
     """Whether a case passes as it is; one that does not cannot find anything."""
-    (result,) = run_case(case, [setup], KnownFailures()).results
-    return result.verdict == "pass"
+    return run_case(case, [setup]).verdict == "pass"
 
 
 def _with(fault: Fault, case: Case, setup: Setup) -> str:
     """The verdict on a case with a fault where it is no longer ``pass``, else an empty text."""
     with several(fault.plant, *_ending())():
-        (result,) = run_case(case, [setup], KnownFailures()).results
-    return "" if result.verdict == "pass" else result.verdict
+        verdict = run_case(case, [setup]).verdict
+    return "" if verdict == "pass" else verdict
 
 
 def _ending() -> Iterator[Callable[[], Any]]:

@@ -257,7 +257,7 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
         if _may_be_elsewhere(use):
             uses.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))
-    data = context.project.data_of(context.module)
+    data = context.project.data_of(context.module) if uses else None
     unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
     return (*_members(context), *_others(context, uses, own, unused))
 
@@ -340,7 +340,7 @@ def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[st
 
 def _own_typos(context: Context, space: Space) -> Typos:
     """The names of the file itself, of its routines and of its data list."""
-    tables = [context.table.table, *(routine.table.table for routine in context.routines)]
+    tables = [*_own_tables(context)]
     data = context.project.data_of(context.module)
     if data is not None and data.table is not None:
         tables.append(data.table.table)

@@ -17,11 +17,12 @@ from grammar.diagnostics.open_blocks import innermost, lead
 from grammar.parser.tree import Tree
 from grammar.syntax.build import builder
 
-__all__ = ["LineEdit", "bracket", "doubled", "is_one_slip", "keyword", "left_out"]
+__all__ = ["BRACKETS", "LineEdit", "bracket", "doubled", "is_one_slip", "keyword", "left_out"]
 
 # Longer lines are data, and trying takes as long as reading them.
 _LONGEST = 1_000
-_BRACKETS = {")": "(", "]": "[", "}": "{"}
+#: The opening bracket of each closing one.
+BRACKETS = {")": "(", "]": "[", "}": "{"}
 #: What is written between two words or behind one, the likeliest first.
 _SIGNS = ("=", ",", ".", "(", "[")
 _SHORTEST_WORD = 3
@@ -64,7 +65,7 @@ def bracket(site: ErrorSite) -> LineEdit | None:
     """A bracket that is not closed or not opened."""
     missing = [
         closer
-        for closer, opener in _BRACKETS.items()
+        for closer, opener in BRACKETS.items()
         if site.words.count(opener) > site.words.count(closer)
     ]
     end = len(site.words)

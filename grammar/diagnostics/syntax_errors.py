@@ -18,6 +18,7 @@ from grammar.diagnostics.did_you_mean import nearest
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
 from grammar.diagnostics.line_edits import (
+    BRACKETS,
     LineEdit,
     bracket,
     doubled,
@@ -144,12 +145,11 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
     """What is wrong with a token in its place, ``words`` being what could have stood there."""
     shown, text, reason = _shown(site), site.text, f"expected: {words}" if words else ""
     before = site.tokens[site.place - 1][0] if site.place else ""
+    ahead = site.words[: site.place]
     if not before:
         if not _BEGINNING.match(text):
             return _Mistake(f"no line begins with {shown}", reason=reason)
-    elif text in _OPENED and site.words[: site.place].count(_OPENED[text]) <= site.words[
-        : site.place
-    ].count(text):
+    elif text in BRACKETS and ahead.count(BRACKETS[text]) <= ahead.count(text):
         return _Mistake(f"{shown} closes nothing", site.swap("", site.place), reason)
     elif text in statements() and site.expects("="):
         return _Mistake(f"{shown} stands at the beginning of its line", reason=reason)
@@ -168,8 +168,7 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
     return _Mistake(f"{shown} cannot stand here", reason=reason)
 
 
-_OPENED = {")": "(", "]": "[", "}": "{"}
-# Of so many tokens each is told.
+# Where more tokens could stand, none of them is named.
 _FEW = 12
 _ENDS_VALUE = re.compile(r"[\w\])]$")
 

@@ -49,7 +49,7 @@ def _reader(start: str) -> Lark:
 
 @lru_cache(maxsize=16)
 def read(text: str, *, source: str = "grammar") -> Grammar:
-    """Read the text of a ``.g4`` file; the same text is the same grammar and read once.
+    """Read the text of a ``.g4`` file; the last few are kept, by text and ``source``.
 
     Raises `GrammarError` with ``source`` and the line when the text is not of our style, or when a
     rule is defined twice, refers to what does not exist, or is left-recursive.

@@ -54,9 +54,9 @@ def fuzz(
 
     check_files(json_file)
     names = _chosen(executor or [])
-    begun = time.perf_counter()
     with as_input_errors(CaseError):
         rules = needs(find_cases())
+    begun = time.perf_counter()
     with as_input_errors(WorkersError), progress_bar("running programs", programs) as bar:
         found = run(programs, seed, names, all_cores(jobs), bar, scheduler, rules)
     record = record_of(found, time.perf_counter() - begun)

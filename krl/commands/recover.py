@@ -19,6 +19,7 @@ from krl.survey_summary import print_survey
 if TYPE_CHECKING:
     from grammar.notation.model import Grammar
     from recovery.growth.growth import LedgerSteps
+    from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
     from recovery.records import StartRecord, SurveyRecord
     from recovery.survey.survey import Survey
@@ -101,7 +102,6 @@ def recover(
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
-    from recovery.induction.growth_record import without_some
     from recovery.ledger.ledger import Ledger, replay
     from recovery.negatives.negatives import load
 
@@ -117,13 +117,19 @@ def recover(
             accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted if without else ()
         if without > len(accepted):
             raise InputError(f"--without {without}: there are {len(accepted)} constructs")
-        chosen, gone = without_some(chosen, accepted, without, seed) if without else (chosen, [])
+        name = first.name
+        gone: list[Construct] = []
+        if without:
+            from recovery.induction.growth_record import without_some
+
+            chosen, gone = without_some(chosen, accepted, without, seed)
+            name = f"KRL.g4 less {len(gone)} constructs"
         for construct in gone:
             typer.echo(f"taken out: {construct.id} {construct.title}")
         return recover_auto(
             roots,
             chosen,
-            f"KRL.g4 less {len(gone)} constructs" if without else first.name,
+            name,
             out,
             json_file,
             rejected,

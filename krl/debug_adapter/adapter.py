@@ -67,8 +67,8 @@ class Adapter:
             "stepIn": self._stepping("into"),
             "stepOut": self._stepping("out"),
             "stepMotion": self._stepping("motion"),
-            "stepBack": self._step_back,
-            "stepMotionBack": self._step_motion_back,
+            "stepBack": self._stepping_back("over"),
+            "stepMotionBack": self._stepping_back("motion"),
             "pause": self._pause,
             "gotoTargets": self._goto_targets,
             "goto": self._goto,
@@ -145,13 +145,8 @@ class Adapter:
     def _stepping(self, way: Way) -> Handler:
         return lambda arguments: self._program.go(StepCommand(way, self._program.task(arguments)))
 
-    def _step_back(self, arguments: Arguments) -> Json:
-        """Go back by a statement."""
-        return self._program.go(Back("over", self._program.task(arguments)))
-
-    def _step_motion_back(self, arguments: Arguments) -> Json:
-        """Go back to before the motion that has ended last."""
-        return self._program.go(Back("motion", self._program.task(arguments)))
+    def _stepping_back(self, way: Way) -> Handler:
+        return lambda arguments: self._program.go(Back(way, self._program.task(arguments)))
 
     def _pause(self, _arguments: Arguments) -> Json:
         """Stop at the next statement."""

@@ -124,7 +124,6 @@ class FormWriter:
             return None
         shapes = {tuple(s.text for s in piece) for piece in behind}
         longest = max(map(len, shapes))
-        item = self.form([piece for piece in behind if piece]) if longest else None
         out = []
         ahead: list[tuple[Symbol, ...]] = []
         for pieces in cut:
@@ -138,9 +137,7 @@ class FormWriter:
         if item is None:
             return out, None
         single = item
-        leading = self._first_item(ahead, behind)
         if any(not piece for piece in (*behind, *ahead)):
-            leading = None
             single = item if " " not in item else f"({item})"
             if single[-1] in "?*":
                 return out, None
@@ -150,7 +147,7 @@ class FormWriter:
             for _ in range(max(map(len, cut)) - 1):
                 text = f" (',' {single}{text})?"
             return out, f"{single}{text}"
-        return out, f"{leading or single} (',' {single})*"
+        return out, f"{self._first_item(ahead, behind) or single} (',' {single})*"
 
     def _first_item(
         self, ahead: Sequence[tuple[Symbol, ...]], behind: Sequence[tuple[Symbol, ...]]
@@ -158,7 +155,7 @@ class FormWriter:
         """The form of a first item, where many lists begin with what only some go on with."""
         shapes = {tuple(s.text for s in piece) for piece in ahead}
         others = {tuple(s.text for s in piece) for piece in behind}
-        if len(ahead) < _MANY_LISTS or () in shapes or not shapes < others:
+        if len(ahead) < _MANY_LISTS or () in others or not shapes < others:
             return None
         return self.form([p for p in (*ahead, *behind) if tuple(s.text for s in p) in shapes])
 

@@ -72,18 +72,18 @@ def conform(
     """
     check_files(json_file, survivors)
     with expected_extras(*ARM):
+        from conformance.evaluation.execution import Setup, missing
         from conformance.sensitivity.bench import measure, speed_of
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases
-        from interp.executors import is_available
     if removed:
         return _removals(json_file, all_cores(jobs))
     groups = list(dict.fromkeys(one.group for one in all_faults()))
     for name in group or ():
         if name not in (*groups, "none"):
             raise InputError(f"--group {name}: the groups are {', '.join(groups)}, none")
-    if not is_available(executor.value):
-        raise InputError(f"--executor {executor.value}: it takes a C compiler, and there is none")
+    if lacking := missing(Setup(executor.value, "none")):
+        raise InputError(f"--executor {executor.value}: {lacking}")
     faults = [one for one in all_faults() if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
