@@ -111,7 +111,7 @@ class _Routine:
     # ----------------------------------------------------------------- control flow
 
     def loop(self, node: ast.For) -> None:
-        """FOR: its counter, bounds and step are INT, the step a constant [CTL-05]."""
+        """FOR: its counter, bounds and step are INT, the step a constant [CTL-05, CTL-06]."""
         found = self.context.found(node.counter)
         if found is not None:
             verdict = _bound(UNKNOWN, self.checker.type_of(found))

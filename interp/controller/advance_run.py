@@ -2,7 +2,8 @@
 
 Statements and accesses that stop the advance run wait until the arm stands [ADV-04 to ADV-07],
 unless a CONTINUE exempts their line [ADV-08]. What then happens happens in the main run; what does
-not stop it happens while the arm is still on its way [ADV-09, ADV-13].
+not stop it happens while the arm is still on its way [ADV-09, ADV-13], also with $ADVANCE=0, where
+what a controller does is not known [CON-09].
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ class AdvanceRun:
         self._queue.stop_advance()
 
     def stop_here(self, task: Task, request: StopAdvance) -> Answer:
-        """An access that only stops the advance run [ADV-05]."""
+        """An access that only stops the advance run [ADV-05, ADV-06]."""
         return self.when_reached(task, request, lambda: None)
 
     def exempt(self, task: Task, request: Continue) -> Answer:

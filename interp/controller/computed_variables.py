@@ -35,7 +35,7 @@ def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQue
         "$ROB_STOPPED": lambda: arm.speed(clock.now) == 0.0,
         "$MOVE_BCO": lambda: queue.is_coincidence_run,
         "$ON_PATH": lambda: True,
-        "$ACT_ADVANCE": lambda: max(0, core.pending() - 1),
+        "$ACT_ADVANCE": lambda: max(0, core.pending() - 1),  # [ADV-03]
         "$VEL_ACT": lambda: single(arm.speed(clock.now)),
         "$DISTANCE": lambda: single(arm.distances(clock.now)[0]),
         "$DIST_NEXT": lambda: single(arm.distances(clock.now)[1]),
@@ -72,7 +72,7 @@ class _MainRunOutputs:
 
 
 def _program_state(state: ControllerState, task: TaskName) -> Value:
-    return word("PRO_STATE", state.program_states[task])
+    return word("PRO_STATE", state.program_states[task])  # [SUB-08]
 
 
 def _date(state: ControllerState) -> Value:

@@ -1,4 +1,7 @@
-"""Interrupts and calls of triggers: when they are entered, and what they may do [INT-01 ff.]."""
+"""Interrupts and calls of triggers: when they are entered, and what they may do [INT-01 ff.].
+
+Their routines may do all that others do [INT-16], but for what is refused here.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,7 @@ class InterruptUnit:
     # --------------------------------------------------------------- declaration and events
 
     def declare(self, task: Task, request: DeclareInterrupt) -> None:
-        """INTERRUPT DECL. Raises `Fault`."""
+        """INTERRUPT DECL, of a submit program too [SUB-10]. Raises `Fault`."""
         task.interrupts.declare(request)
 
     def switch(self, task: Task, request: SwitchInterrupt) -> None:

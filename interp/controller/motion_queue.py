@@ -241,7 +241,7 @@ class MotionQueue:
         return outputs, calls
 
     def set_trigger(self, task: Task, request: SetTrigger) -> None:
-        """A trigger for the next motion. Raises `Fault`."""
+        """A trigger for the next motion. Raises `Fault` [TRG-09]."""
         if task.levels or task.name == "submit":
             raise message_fault(1409)
         self._check_trigger(request)
@@ -364,7 +364,7 @@ class MotionQueue:
         if self._has_other_posture(motion):
             state.messages.post_number(motion.at, 2936)
         if event.arm is not None and event.arm.is_exact_unwanted:
-            number = 1442 if queued.stops_advance else 1123  # [ADV-12]
+            number = 1442 if queued.stops_advance else 1123  # [ADV-12, BLD-10, BLD-14]
             stops = state.variables.read(("$STOPNOAPROX",)) is True
             state.messages.post_number(
                 motion.at, number, "acknowledgement" if stops else "notification"

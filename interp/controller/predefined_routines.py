@@ -106,7 +106,7 @@ class PredefinedRoutines:
 
     # ------------------------------------------------------------------------ outputs, channels
 
-    def _pulse(self, _task: Task, request: Invoke) -> Reply:
+    def _pulse(self, _task: Task, request: Invoke) -> Reply:  # [IOT-07, IOT-08]
         _, level, time = (*request.arguments, None, None, None)[:3]
         path: Path = request.paths[0] or () if request.paths else ()
         if len(path) != 2 or path[0] != "$OUT" or not isinstance(path[1], int):

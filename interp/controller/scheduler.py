@@ -114,7 +114,7 @@ class Scheduler:
         self._outcome, self._limit = None, limit
         if states["robot"] == "P_RESET":
             states["robot"] = "P_ACTIVE"
-        if len(self.tasks) > 1 and states["submit"] == "P_FREE":
+        if len(self.tasks) > 1 and states["submit"] == "P_FREE":  # [SUB-02]
             states["submit"] = "P_ACTIVE"
         while True:
             self.quiet.begin_tick()

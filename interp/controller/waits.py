@@ -49,7 +49,7 @@ class Waits:
         return Blocked(request, lambda: self._state.clock.now >= time, then, time)
 
     def next_slice(self, task: Task) -> int:
-        """When a task may compute again that has used up its slice [SUB-03]."""
+        """When a task may compute again that has used up its slice [SUB-03, SUB-04]."""
         clock = self._state.clock
         if task.name == "robot":
             return clock.next_tick

@@ -1,6 +1,6 @@
 """The data lists of a program: their variables with the values they have at first.
 
-They live as long as the program, unlike the data of routines.
+They live as long as the program, unlike the data of routines [SCO-03].
 """
 
 from __future__ import annotations

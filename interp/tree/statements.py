@@ -218,7 +218,7 @@ class Statements(Motions):
         yield from self._block(node.default or ())
 
     @_left_by_exit
-    def _for(self, node: ast.For) -> Steps[None]:
+    def _for(self, node: ast.For) -> Steps[None]:  # [CTL-05, CTL-06]
         step = 1 if node.step is None else (yield from self.integer(node.step))
         counter = self.variable(node.counter)
         yield from self.store(counter, (yield from self.integer(node.first)))
@@ -233,13 +233,13 @@ class Statements(Motions):
             yield from self.store(counter, apply("+", value, step))
 
     @_left_by_exit
-    def _while(self, node: ast.While) -> Steps[None]:
+    def _while(self, node: ast.While) -> Steps[None]:  # [CTL-01]
         while self._way or (yield from self._is_true(node.condition)):
             yield from self._block(node.body)
             yield from self._begin(node)
 
     @_left_by_exit
-    def _repeat(self, node: ast.Repeat) -> Steps[None]:
+    def _repeat(self, node: ast.Repeat) -> Steps[None]:  # [CTL-01]
         is_done = False
         while not is_done:
             yield from self._block(node.body)
@@ -247,7 +247,7 @@ class Statements(Motions):
             is_done = yield from self._is_true(node.condition)
 
     @_left_by_exit
-    def _loop(self, node: ast.Loop) -> Steps[None]:
+    def _loop(self, node: ast.Loop) -> Steps[None]:  # [CTL-01]
         while True:
             yield from self._block(node.body)
             yield from self._begin(node)

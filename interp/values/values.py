@@ -104,7 +104,7 @@ def integer(number: int) -> int:
 
 
 def rounded(number: float) -> int:
-    """A REAL as INT: the nearest one, halves away from zero; faults ``overflow`` [ARI-03]."""
+    """A REAL as INT: the nearest, halves away from zero; faults ``overflow`` [ARI-03, CON-02]."""
     whole = math.floor(number + 0.5) if number >= 0 else -math.floor(0.5 - number)
     return integer(whole)
 
@@ -299,7 +299,7 @@ def copied(value: Any) -> Any:
 
 
 def known(value: Value | None) -> Value:
-    """The value; faults ``uninitialised`` where there is none [TYP-13]."""
+    """The value; faults ``uninitialised`` where there is none [TYP-13, SCO-08]."""
     if value is None:
         raise fault("uninitialised")
     return value

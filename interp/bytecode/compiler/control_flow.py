@@ -158,7 +158,7 @@ class ControlFlow:
     # ----------------------------------------------------------------------- loops
 
     def while_loop(self, node: ast.While, end: Label) -> None:
-        """WHILE."""
+        """WHILE [CTL-01]."""
         test, done = Label(), Label()
         self._writer.place(test)
         self._expressions.unless(node.condition, done)
@@ -199,7 +199,7 @@ class ControlFlow:
     # ----------------------------------------------------------------------- FOR
 
     def for_loop(self, node: ast.For, end: Label) -> None:
-        """FOR."""
+        """FOR [CTL-05, CTL-06]."""
         step = self._step(node.step)
         counter = self._designators.variable(node.counter)
         if step is None or not isinstance(counter, FrameCells | DataCells) or counter.type != INT:

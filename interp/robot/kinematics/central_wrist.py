@@ -215,7 +215,7 @@ class CentralWrist:
         return np.stack((a1, a2 - np.arctan2(height, out), bend - elbow), axis=-1)
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03 to POS-05].
+        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03, POS-04, POS-05, CON-01].
 
         1 where the wrist centre lies behind axis 1, 2 where A3 is not below `MachineData.elbow`, 4
         where A5 is negative.

@@ -71,7 +71,7 @@ class Kinematics(Protocol):
         ...
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03 to POS-05]."""
+        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03, POS-04, POS-05]."""
         ...
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:

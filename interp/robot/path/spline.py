@@ -1,4 +1,4 @@
-"""Spline blocks: one path through all points, whatever the speed [SPL-01 to SPL-03].
+"""Spline blocks: one path through all points, whatever the speed [SPL-01 to SPL-03, BLD-09].
 
 SLIN and SCIRC are exact lines and arcs. Between them a run of SPL is a cubic spline over the
 distances of its points, whose ends take tangent and curvature from a line or an arc beside them; so

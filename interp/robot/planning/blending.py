@@ -2,7 +2,9 @@
 
 A zone takes a share of the path before the point and of the path behind it, neither more than half
 [BLD-07]. How much is said by the criteria behind the first motion. Where both motions are
-paths of the tool in the same frames, the blend is one as well; else it is one of the axes.
+paths of the tool in the same frames, the blend is one as well; else it is one of the axes. So a
+motion has up to three parts [MOT-17], and the point itself is not passed [BLD-08]. Whether the two
+sides are alike is not known [CON-08].
 """
 
 from __future__ import annotations
@@ -70,7 +72,7 @@ def wants_blend(motion: Motion) -> bool:
 
 
 def zone_of(first: Track, second: Track) -> Zone | None:
-    """The zone between two motions, or ``None`` where they cannot be blended.
+    """The zone between two motions, or ``None`` where they cannot be blended [BLD-14].
 
     On a path of the tool the first criterion counts on both sides; behind PTP the second one, if
     there is one, for the path of the tool that follows. On the side of a PTP, C_PTP takes the

@@ -5,9 +5,11 @@ from importlib import resources
 from pathlib import Path
 
 from conformance.suite import semantics
+from conformance.suite.case import Case
 from conformance.suite.registry import registry
 from conformance.suite.semantics import PAGE, UNUSED, codes_of, page
 from grammar.diagnostics.codes import by_code
+from grammar.semantics.predefined import System
 from grammar.semantics.rules import tiers
 
 WORDS = {"grammar", "tables", "check", "lint", "run"}
@@ -41,6 +43,28 @@ def test_what_is_done_is_one_of_few_words() -> None:
         assert WORDS >= set(rule.today), rule
         if codes[rule.id]:
             assert {"check", "lint"} & set(rule.today), rule
+
+
+def test_what_runs_has_a_case_that_runs(own_cases: list[Case]) -> None:
+    """A rule that executors or the controller are said to follow is shown by a case that runs."""
+    shown = {id_ for case in own_cases if case.phase == "run" for id_ in case.rules}
+    said = {rule.id for rule in registry().values() if "run" in rule.today}
+    assert set() == said - shown
+
+
+def test_what_runs_is_cited_where_it_is_implemented() -> None:
+    """`git grep` for a rule, or for the number of its message, finds the code that follows it."""
+    folder = Path(str(resources.files("interp")))
+    files = [path for path in folder.rglob("*") if path.suffix in {".py", ".c", ".h", ".toml"}]
+    source = "".join(path.read_text(encoding="utf-8") for path in files)
+    numbers = [(str(m.number), m.source) for m in System.load().messages]
+
+    def is_cited(id_: str) -> bool:
+        words = [id_, *(number for number, rules in numbers if id_ in rules)]
+        return any(re.search(rf"\b{word}\b", source) for word in words)
+
+    said = [rule.id for rule in registry().values() if "run" in rule.today]
+    assert [] == [id_ for id_ in said if not is_cited(id_)]
 
 
 def test_every_code_is_given_by_a_check() -> None:
