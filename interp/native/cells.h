@@ -7,6 +7,7 @@
 #define KRL_CELLS_H
 
 #include <float.h>
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -68,7 +69,7 @@ static inline float krl_real_in(krl_cell cell)
 /* Neither infinite nor no number. */
 static inline int krl_is_finite(float value)
 {
-    return value >= -FLT_MAX && value <= FLT_MAX;
+    return fabsf(value) <= FLT_MAX;
 }
 
 #endif

@@ -1,10 +1,11 @@
-/* What programs are written with that were made from register code (compiled.py): a function for each
- * routine, a label for each step. A step is done as by the interpreter (steps.h), but is constant.
+/* What the C of a program is written with (compiled.py): a function for each routine, a label for each step.
  *
- * It is entered where a routine or a loop begins. Whatever is out of the ordinary, a fault, a request, the end of
- * the budget, is left to the interpreter: the function puts everything back as the interpreter has it, says at which
- * step, and returns, and so do all that called it, each noting its call. No step has done anything when it faults,
- * so that the interpreter can do it again.
+ * A step does what the interpreter does (steps.h), but its operands are constants. The function works on copies of
+ * the cells of its frame, which the C compiler keeps in registers of the processor. Interpreter and function take
+ * turns: a fault, a request, the end of the budget, all that is out of the ordinary is left to the interpreter. The
+ * function puts back what the interpreter needs (`OUT`), says where to go on, and ends, and so do all that have
+ * called it, each noting its call. The interpreter does the step again; that nothing but operands has changed since
+ * the place where it goes on is what register_flow.py sees to.
  */
 #ifndef KRL_COMPILED_H
 #define KRL_COMPILED_H
@@ -19,6 +20,8 @@
 #define krl_is_plain machine->outside->is_plain
 static const struct krl_array arrays[];
 
+/* ---------------------------------------------------------------------------- registers */
+
 /* A register in three parts, of which the C compiler keeps what is used. */
 typedef struct {
     enum krl_tag tag;
@@ -27,6 +30,7 @@ typedef struct {
 } krl_register;
 #define KRL_REGISTERS
 #define REGISTER_OF(cell) krl_register_of_ANY(cell)
+#define REGISTER_AT(place) krl_register_at(&(place))
 #define CELL_OF(register) krl_cell_of_ANY(register)
 #define HAS_VALUE(register) ((register).tag != KRL_TAG_NONE)
 #define INT(register) (register).bits
@@ -34,61 +38,63 @@ typedef struct {
 #define OF_INT(value) ((krl_register){KRL_TAG_INT, (value), 0})
 #define OF_BOOL(value) ((krl_register){KRL_TAG_BOOL, (value) != 0, 0})
 #define OF_REAL(value) ((krl_register){KRL_TAG_REAL, 0, (value)})
+/* The step that takes this result finds it too: see `deferred` in register_flow.py. */
+#define MUST_BE_FINITE (pc->tag == 0)
 
-static inline krl_register krl_register_of_INT(krl_cell cell)
-{
-    return cell == KRL_NOTHING ? (krl_register){0} : OF_INT(krl_int_in(cell));
-}
-static inline krl_register krl_register_of_BOOL(krl_cell cell)
-{
-    return cell == KRL_NOTHING ? (krl_register){0} : OF_BOOL(krl_int_in(cell));
-}
-static inline krl_register krl_register_of_REAL(krl_cell cell)
-{
-    return cell == KRL_NOTHING ? (krl_register){0} : OF_REAL(krl_real_in(cell));
-}
-static inline krl_register krl_register_of_ANY(krl_cell cell)
-{
-    return (krl_register){krl_tag_of(cell), krl_int_in(cell), krl_real_in(cell)};
-}
-static inline krl_cell krl_cell_of_INT(krl_register value)
-{
-    return HAS_VALUE(value) ? krl_of_int(value.bits) : KRL_NOTHING;
-}
-static inline krl_cell krl_cell_of_BOOL(krl_register value)
-{
-    return HAS_VALUE(value) ? krl_of_bool(value.bits) : KRL_NOTHING;
-}
-static inline krl_cell krl_cell_of_REAL(krl_register value)
-{
-    return HAS_VALUE(value) ? krl_of_real(value.real) : KRL_NOTHING;
-}
+/* Of and to cells of a type. */
+#define krl_register_of_INT(cell) ((krl_register){krl_tag_of(cell) ? KRL_TAG_INT : KRL_TAG_NONE, krl_int_in(cell), 0})
+#define krl_register_of_BOOL(cell) ((krl_register){krl_tag_of(cell) ? KRL_TAG_BOOL : KRL_TAG_NONE, krl_int_in(cell), 0})
+#define krl_register_of_REAL(cell) ((krl_register){krl_tag_of(cell) ? KRL_TAG_REAL : KRL_TAG_NONE, 0, krl_real_in(cell)})
+#define krl_register_of_ANY(cell) ((krl_register){krl_tag_of(cell), krl_int_in(cell), krl_real_in(cell)})
+#define krl_cell_of_INT(value) (HAS_VALUE(value) ? krl_of_int((value).bits) : KRL_NOTHING)
+#define krl_cell_of_BOOL(value) (HAS_VALUE(value) ? krl_of_bool((value).bits) : KRL_NOTHING)
+#define krl_cell_of_REAL(value) (HAS_VALUE(value) ? krl_of_real((value).real) : KRL_NOTHING)
 static inline krl_cell krl_cell_of_ANY(krl_register value)
 {
     return value.tag == KRL_TAG_REAL ? krl_of_real(value.real) : krl_tagged(value.tag, (uint32_t)value.bits);
 }
 
+/* The halves of a cell in memory are read one by one: no shifting, and only what is used. */
+static inline krl_register krl_register_at(const krl_cell *cell)
+{
+    static const uint16_t one = 1;
+    const char *bytes = (const char *)cell;
+    int low = *(const char *)&one ? 0 : 4;
+    uint32_t bits, tag;
+    memcpy(&bits, bytes + low, sizeof bits);
+    memcpy(&tag, bytes + (4 - low), sizeof tag);
+    return (krl_register){(enum krl_tag)tag, (int32_t)bits, krl_real_of_bits(bits)};
+}
+
 #include "steps.h"
+
+/* ---------------------------------------------------------------------------- routines */
 
 /* Calls in C that are open at once. */
 enum { MOST_NESTED = 200 };
 
-/* Runs from the step `at` on, or from the beginning if `at` is CALLED: then compiled code has called it. `left`,
- * `open` and `extent` stand for the fields of the machine, which have their values only while the interpreter runs.
- * Gives the statements left when the routine returns to compiled code, or 0 where the interpreter goes on. */
-typedef int32_t krl_routine_in_c(struct krl_machine *machine, krl_cell *const fp, int32_t at, int32_t left,
-                                 int32_t open, int32_t extent);
+/* How a call ends: the statements left, or 0 where the interpreter goes on within it; and its result. */
+typedef struct {
+    int32_t left;
+    krl_cell result;
+} krl_ended;
+
+/* `entry` is the step to go on at where the interpreter has come, or CALLED. `left`, `open` and `extent` stand for the
+ * fields of the machine, which have their values only while the interpreter runs. */
+#define PARAMETERS struct krl_machine *machine, krl_cell *const fp, int32_t left, int32_t open, int32_t extent
 enum { CALLED = -1 };
 
-#define CODE(number)                                                                               \
-    static int32_t code_##number(struct krl_machine *machine, krl_cell *const fp, int32_t at,      \
-                                 int32_t left, int32_t open, int32_t extent)
+/* A routine once for calls from compiled code, which hand over its first cells, and once for the interpreter. As both
+ * are this one with a constant `entry`, the C compiler leaves out of each what only the other needs. */
+#define INLINED static inline __attribute__((always_inline))
+#define BODY(number, ...)                                                                          \
+    INLINED krl_ended body_##number(PARAMETERS, const int32_t entry, int32_t at, ##__VA_ARGS__)
 #define ENTER(number, count, is_owner)                                                             \
     enum { CODE = number };                                                                        \
     krl_cell *const cells = machine->cells;                                                        \
     krl_register registers[count];                                                                 \
     int32_t statement = -1, serial = 0;                                                            \
-    if (LIKELY(at == CALLED)) {                                                                    \
+    if (entry == CALLED) {                                                                         \
         if (is_owner)                                                                              \
             serial = ++machine->serials;                                                           \
         goto start;                                                                                \
@@ -96,9 +102,11 @@ enum { CALLED = -1 };
     statement = machine->statement;                                                                \
     serial = machine->serial;                                                                      \
     switch (at)
-/* Between the frame and the copies of its cells that steps work on: of a type, or ANY. */
+/* Between the frame and the copies of its cells: of a type, or ANY; and from what a call hands over. */
 #define GET(number, type) registers[number] = krl_register_of_##type(fp[number]);
 #define PUT(number, type) fp[number] = krl_cell_of_##type(registers[number]);
+#define TAKE(number, type) registers[number] = krl_register_of_##type(p##number);
+#define TAKE_CELL(number, type) fp[number] = p##number;
 #define BLANK(number, type) registers[number] = (krl_register){0};
 #define BLANK_CELLS(first, end)                                                                    \
     for (int32_t i = first; i < end; i++)                                                          \
@@ -109,66 +117,61 @@ enum { CALLED = -1 };
     if (UNLIKELY(!HAS_VALUE(registers[number]))) {                                                 \
         machine->at = at;                                                                          \
         machine->is_begun = 0;                                                                     \
-        return 0;                                                                                  \
+        return (krl_ended){0};                                                                     \
     }
+
+/* ---------------------------------------------------------------------------- steps */
+
 /* The beginning of statements of which only a fault can come between; and of each. */
-#define BEGIN(number, count, save)                                                                 \
-    if (UNLIKELY(left <= count)) {                                                                 \
-        save                                                                                       \
-        at = 4 * number;                                                                           \
-        goto leave;                                                                                \
-    }                                                                                              \
-    left -= count;
+#define BEGIN(number, count)                                                                       \
+    if (UNLIKELY((left -= count) <= 0))                                                            \
+        goto wait_##number;
 #define STATEMENT(number) statement = steps[number].statement;
-/* A step for the interpreter, before which `later` statements were counted that have not begun; `save` puts
- * back what lies on the stack of operands. */
-#define INTERPRET(number, later, save)                                                             \
-    {                                                                                              \
-        save                                                                                       \
-        left += later;                                                                             \
-        at = 4 * number + 2;                                                                       \
-        goto leave;                                                                                \
-    }
-#define DO(name, number, later, save, put, otherwise)                                              \
+#define DO(name, number, out, put, otherwise)                                                      \
     {                                                                                              \
         int way = krl_step_##name(machine, cells, fp, registers, &steps[number]);                  \
         if (UNLIKELY(way >= 0))                                                                    \
-            INTERPRET(number, later, save)                                                         \
+            goto out_##out;                                                                        \
         put otherwise                                                                              \
     }
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;
-/* With the cells themselves, where a step needs them one behind the other. */
-#define DO_IN_FRAME(name, number, later, save)                                                     \
-    if (UNLIKELY(krl_step_##name(machine, cells, fp, registers, &steps[number]) >= 0))             \
-        INTERPRET(number, later, save)
 /* A frame of so many cells at `frame`, as `prepare` makes it; `save` puts back what nobody looks at unless
  * the interpreter goes on within the call. */
-#define CALL(number, callee, size, frame, prepare, save)                                           \
+#define CALL(number, out, function, size, frame, prepare, save, put, ...)                          \
     {                                                                                              \
         const int32_t behind = extent + steps[number].c;                                           \
         if (UNLIKELY(open >= machine->most_nested || size > KRL_MAX_CELLS - behind))               \
-            INTERPRET(number, 0, save)                                                             \
-        prepare left = code_##callee(machine, frame, CALLED, left, open + 1, behind);              \
+            goto out_##out;                                                                        \
+        prepare krl_ended ended = function(machine, frame, left, open + 1, behind, ##__VA_ARGS__); \
+        left = ended.left;                                                                         \
         if (UNLIKELY(left == 0)) {                                                                 \
             machine->calls[open] = krl_call_of(cells, fp, &steps[number], number, CODE, extent,    \
                                                statement, serial);                                 \
-            save return 0;                                                                         \
+            save return ended;                                                                     \
         }                                                                                          \
+        put                                                                                        \
     }
 #define RECEIVE(number)                                                                            \
     krl_receive(machine, &machine->routines[steps[number].b], fp + steps[number].d, fp + steps[number].a);
-/* A call in C finds the result in the first cell of the frame. */
-#define RETURN(number, save)                                                                       \
-    if (UNLIKELY(open == machine->open))                                                           \
-        INTERPRET(number, 0, save)                                                                 \
-    return left;
-#define RETURN_VALUE(number, save)                                                                 \
-    if (UNLIKELY(!HAS_VALUE(registers[steps[number].b]) || open == machine->open))                 \
-        INTERPRET(number, 0, save)                                                                 \
-    fp[0] = CELL_OF(registers[steps[number].b]);                                                   \
-    return left;
+#define RESULT(number, type)                                                                       \
+    registers[number] = (krl_register){KRL_TAG_##type, krl_int_in(ended.result), krl_real_in(ended.result)};
+#define RETURN(number)                                                                             \
+    if (entry != CALLED)                                                                           \
+        goto out_##number;                                                                         \
+    return (krl_ended){left, KRL_NOTHING};
+#define RETURN_VALUE(number, out)                                                                  \
+    if (UNLIKELY(!HAS_VALUE(registers[steps[number].b])) || entry != CALLED)                       \
+        goto out_##out;                                                                            \
+    return (krl_ended){left, CELL_OF(registers[steps[number].b])};
+
+/* ---------------------------------------------------------------------------- leaving */
+
+/* Where the interpreter goes on: before statements that were counted here; or at a step whose statement has begun,
+ * where `later` were counted that have not. `save` puts back what lies on the stack of operands. */
+#define WAIT(number, count, save) wait_##number: save left += count; at = 4 * number; goto leave;
+#define OUT(number, later, save) out_##number: save left += later; at = 4 * number + 2; goto leave;
 /* `at` is four times the step, and two more where the statement has begun: with one more, the C compiler would take
  * it from what says that a sum is too large, and would work that out as a number each time. */
 #define LEAVE()                                                                                    \
@@ -181,17 +184,18 @@ enum { CALLED = -1 };
     machine->code = CODE;                                                                          \
     machine->extent = extent;                                                                      \
     machine->serial = serial;                                                                      \
-    return 0
+    return (krl_ended){0}
 
 /* What the module looks for: a function, and what both have to agree on. */
+typedef void krl_entry_from_interpreter(PARAMETERS, int32_t at);
 #define PROGRAM(...)                                                                               \
     void krl_go(struct krl_machine *machine, int32_t at)                                           \
     {                                                                                              \
-        static krl_routine_in_c *const codes[] = {__VA_ARGS__};                                    \
+        static krl_entry_from_interpreter *const codes[] = {__VA_ARGS__};                          \
         int32_t most = machine->open + MOST_NESTED;                                                \
         machine->most_nested = most < machine->most_calls ? most : machine->most_calls;            \
-        codes[machine->code](machine, machine->cells + machine->fp, at, machine->left,             \
-                             machine->open, machine->extent);                                      \
+        codes[machine->code](machine, machine->cells + machine->fp, machine->left, machine->open,  \
+                             machine->extent, at);                                                 \
     }                                                                                              \
     const uint32_t krl_layout = KRL_LAYOUT;
 

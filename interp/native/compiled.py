@@ -37,9 +37,15 @@ _HEADERS: Final = (
     *("program.h", "cells.h", "isa.gen.h"),
 )
 #: Every product and sum is rounded by itself, as by the machine (docs/adr/0013-numbers.md).
-_FLAGS: Final = ("-std=c11", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-w")
+#: Dominators would let the C compiler take constants from what says that a sum is too large.
+_FLAGS: Final = (
+    *("-std=c11", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno"),
+    *("-fno-tree-dominator-opts", "-w"),
+)
 _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
+#: Steps of a routine that is no call in C, if it calls none itself.
+_SMALL: Final = 30
 #: What a cell of a type holds; of all others a number.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
 
@@ -124,22 +130,24 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
         for number, (code, body) in enumerate(zip(program.codes, bodies, strict=True))
         if code.kind is CodeKind.ROUTINE
     }
+    deferred = set[int]().union(*(routine.deferred for routine in routines.values()))
     yield '#include "compiled.h"'
     yield "static const struct krl_array arrays[] = {"
     for base, width, dimensions, *sizes in arrays or [(0, 0, 0, 1, 1, 1)]:
         yield f"{{{base}, {width}, {dimensions}, {{{', '.join(map(str, sizes))}}}}},"
     yield "};"
     yield "static const struct krl_step steps[] = {"
-    for name, a, b, c, d, tag, line in steps:
+    for place, (name, a, b, c, d, tag, line) in enumerate(steps):
         words = ", ".join(map(_int, (a, b, c, d, line)))
-        yield f"{{0, {words}, KRL_STEP_{name}, {tag}}},"
+        yield f"{{0, {words}, KRL_STEP_{name}, {int(place in deferred) or tag}}},"
     yield "};"
-    yield from (f"CODE({number});" for number in routines)
+    for routine in routines.values():
+        yield from routine.declarations()
     for routine in routines.values():
         yield from routine.lines()
     entries = sorted(entry for routine in routines.values() for entry in routine.entries)
     yield f"const int32_t krl_entries[] = {{{', '.join(map(str, [*entries, -1]))}}};"
-    names = (f"code_{number}" if number in routines else "NULL" for number in range(len(firsts)))
+    names = (f"enter_{number}" if number in routines else "NULL" for number in range(len(firsts)))
     yield f"PROGRAM({', '.join(names)})"
 
 
@@ -169,37 +177,74 @@ class _Routine:
         self._used = {one for place in body for one in steps[place].registers()}
         #: What lies in cells only, and the copies of all other cells that steps name.
         self._in_frame = self._addressed(arrays)
-        self._copies = sorted(self._used - self._in_frame)
+        self._copies = self._used - self._in_frame
         self._variables = [one for one in self._copies if one < program.frames[number]]
-        self._live = self._flow.live(set(self._copies).difference(self._variables))
+        stack = self._copies.difference(self._variables)
+        self._live = self._flow.live(stack)
+        self._restarts = self._flow.restarts(self._live, stack)
+        self._counted, self._later = self._flow.blocks()
+        #: Cells of its parameters, and whether calls put them into the frame instead of handing
+        #: them over.
+        self._received = sum(
+            one.cells for one in self._slots if isinstance(one.variable, Parameter)
+        )
+        self._is_copied = any(one.name == "CALL_COPY" and one.b == number for one in steps)
+        #: Steps that do not look whether their result is finite.
+        self.deferred = self._flow.deferred(self._restarts, self._live)
 
     @property
     def entries(self) -> set[int]:
         """Where the interpreter may enter it: at its beginning, and where a loop begins."""
         return {self._body[0], *self._flow.loops}
 
+    def declarations(self) -> Iterator[str]:
+        """The function, as calls and as the interpreter have it; what is small is no call in C."""
+        number, given = self._number, range(0 if self._is_copied else self._received)
+        parameters = "".join(f", krl_cell p{one}" for one in given)
+        is_small = len(self._body) <= _SMALL and not any(
+            self._steps[place].name in CALLS for place in self._body
+        )
+        yield f"BODY({number}{parameters});"
+        kind = "INLINED" if is_small else "static"
+        yield f"{kind} krl_ended call_{number}(PARAMETERS{parameters}) {{"
+        handed = "".join(f", p{one}" for one in given)
+        yield f"return body_{number}(machine, fp, left, open, extent, CALLED, CALLED{handed});"
+        yield "}"
+        handed = "".join(f", fp[{one}]" for one in given)
+        yield f"static void enter_{number}(PARAMETERS, int32_t at) {{"
+        yield f"body_{number}(machine, fp, left, open, extent, at, at{handed});"
+        yield "}"
+
     def lines(self) -> Iterator[str]:
-        """The function."""
-        number, frame = self._number, self._program.frames[self._number]
-        received = sum(one.cells for one in self._slots if isinstance(one.variable, Parameter))
+        """The function itself."""
+        number, frame, received = self._number, self._program.frames[self._number], self._received
         is_owner = any(code.owner == number for code in self._program.codes if code.captures)
-        yield f"CODE({number}) {{"
+        given = range(0 if self._is_copied else received)
+        yield f"BODY({number}{''.join(f', krl_cell p{one}' for one in given)}) {{"
         yield f"ENTER({number}, {max(self._used, default=0) + 1}, {int(is_owner)}) {{"
         yield from self._loop_entries()
         yield "}"
         yield "start:"
-        yield self._each("GET", [one for one in self._copies if one < received])
+        copied = [one for one in self._copies if one < received]
+        if self._is_copied:
+            yield self._each("GET", copied)
+        else:
+            yield self._each("TAKE", copied)
+            yield self._each("TAKE_CELL", set(given).difference(copied))
         yield self._each("BLANK", [one for one in self._copies if one >= received])
-        yield from _blank_cells(set(range(received, frame)) - set(self._copies))
-        yield f"goto do_{self._body[0]};"
-        counted, later = self._flow.blocks()
+        yield from _blank_cells(set(range(received, frame)) - self._copies)
         for place in self._body:
             yield f"do_{place}:;"
-            if place in counted:
-                yield f"BEGIN({place}, {counted[place]}, {self._each('PUT', self._live[place])})"
+            if place in self._counted:
+                yield f"BEGIN({place}, {self._counted[place]})"
             if self._steps[place].line >= 0:
                 yield f"STATEMENT({place})"
-            yield from self._step(place, later.get(place, 0))
+            yield from self._step(place)
+        for place, begun in self._counted.items():
+            yield f"WAIT({place}, {begun}, {self._each('PUT', self._live[place])})"
+        for place in sorted(set(self._restarts)):
+            save = self._each("PUT", self._live[place])
+            yield f"OUT({place}, {self._later.get(place, 0)}, {save})"
         yield "leave:"
         yield self._each("PUT", self._variables)
         yield "LEAVE();"
@@ -212,7 +257,7 @@ class _Routine:
             yield f"case {place}:"
             yield self._each("GET_VALUE", valued.intersection(self._copies))
             yield self._each("GET", set(self._variables) - valued)
-            yield self._each("BLANK", set(self._copies).difference(self._variables, valued))
+            yield self._each("BLANK", self._copies.difference(self._variables, valued))
             yield f"goto do_{place};"
 
     def _kinds_of_variables(self) -> Iterator[tuple[int, str]]:
@@ -243,45 +288,62 @@ class _Routine:
         whole = (cells for cells in variables if not reached.isdisjoint(cells))
         return frozenset(reached.union(*whole))
 
-    def _step(self, place: int, later: int) -> Iterator[str]:
-        """A step, before which ``later`` statements were counted that have not begun."""
-        step = self._steps[place]
-        name, roles, save = step.name, roles_of(step.name), self._each("PUT", self._live[place])
+    def _step(self, place: int) -> Iterator[str]:
+        step, out = self._steps[place], self._restarts[place - self._body.start]
+        name, roles = step.name, roles_of(step.name)
         if name in CALLS:
-            yield from self._call(place)
+            yield self._call(place, out)
         elif name in INTERPRETED:
-            yield f"INTERPRET({place}, {later}, {save})"
+            yield f"goto out_{out};"
         elif name == "AT":
             yield f"statement = {step.b};"
         elif name == "RETURN":
-            yield f"RETURN({place}, {save})"
-        elif roles is None:
-            yield self._each("PUT", self._copies)
-            yield f"DO_IN_FRAME({name}, {place}, {later}, {save}){self._each('GET', self._copies)}"
+            yield f"RETURN({out})"
+        elif roles is None:  # works on cells from `a` on, and on a view
+            cells = [one for one in self._copies if one >= step.a]
+            view = range(step.c, step.c + step.tag + 1) if "VIEW" in name else ()
+            yield self._each("PUT", {*cells, *self._copies.intersection(view)})
+            yield f"DO({name}, {place}, {out}, {self._each('GET', cells)}, )"
         else:
             yield self._each("GET", self._in_frame.intersection(step.named(roles[0])))
             written = self._each("PUT", self._in_frame.intersection(step.named(roles[1])))
             jump = f"JUMP_TO(do_{step.d})" if step.is_jump else ""
             if name == "RETURN_VALUE":
-                yield f"RETURN_VALUE({place}, {save})"
+                yield f"RETURN_VALUE({place}, {out})"
             else:
-                yield f"DO({name}, {place}, {later}, {save}, {written}, {jump})"
+                yield f"DO({name}, {place}, {out}, {written}, {jump})"
 
-    def _call(self, place: int) -> Iterator[str]:
-        """A call: what it passes is put where the frame begins, and its result is found there."""
+    def _call(self, place: int, out: int) -> str:
+        """A call, which hands over cells, and is put back if the interpreter goes on within it."""
         step = self._steps[place]
+        program, given = self._program, self._handed(step)
+        callee, cells = program.codes[step.b], range(step.a, step.a + len(given))
+        frame, prepare, handed = step.a, "", "".join(f", {one}" for one in given)
+        if step.name == "CALL_COPY":
+            frame, handed = step.d, ""
+            prepare = f"{self._each('PUT', self._copies.intersection(cells))}RECEIVE({place})"
+        below = {one for one in (*self._variables, *self._live[place]) if one < step.a}
+        result = ""
+        if callee.result is not None:
+            kind = _KINDS.get(program.types[callee.result], "INT")
+            result = f"RESULT({step.a}, {kind})"
+            result += self._each("PUT", self._in_frame.intersection({step.a}))
+        size = program.frames[step.b]
+        return (
+            f"CALL({place}, {out}, call_{step.b}, {size}, fp + {frame}, {prepare}, "
+            f"{self._each('PUT', below)}, {result}{handed})"
+        )
+
+    def _handed(self, step: Step) -> list[str]:
+        """What a call hands over, as cells."""
         callee = self._program.codes[step.b]
         end = step.a + sum(map(stack_cells, callee.parameters))
-        yield self._each("PUT", [one for one in self._copies if step.a <= one < end])
-        below = self._each("PUT", [one for one in self._copies if one < step.a])
-        is_copied = step.name == "CALL_COPY"
-        frame, prepare = (step.d, f"RECEIVE({place})") if is_copied else (step.a, "")
-        size = self._program.frames[step.b]
-        yield f"CALL({place}, {step.b}, {size}, fp + {frame}, {prepare}, {below})"
-        if callee.result is not None:
-            if frame != step.a:
-                yield f"fp[{step.a}] = fp[{frame}];"
-            yield self._each("GET", {step.a} - self._in_frame)
+        return [
+            f"krl_cell_of_{self._kinds.get(one, 'ANY')}(registers[{one}])"
+            if one in self._copies
+            else f"fp[{one}]"
+            for one in range(step.a, end)
+        ]
 
 
 def _blank_cells(cells: set[int]) -> Iterator[str]:

@@ -5,7 +5,8 @@ Classical data-flow analyses, over single steps: each goes on until nothing chan
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 
 from interp.native.register_code import CALLS, ENDS, Step, roles_of
 
@@ -13,6 +14,15 @@ __all__ = ["INTERPRETED", "RegisterFlow"]
 
 #: Steps that are left to the interpreter.
 INTERPRETED = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
+_KEEPS_INFINITE = re.compile("(ADD|SUB|MUL|NEG)_REAL(_K)?")
+
+
+def _finds_infinite(taker: Step, operand: int) -> bool:
+    """Whether what a step gives is not finite where this operand is not."""
+    return bool(_KEEPS_INFINITE.fullmatch(taker.name)) or (
+        taker.name in ("DIV_REAL", "DIV_REAL_K")
+        and (taker.name == "DIV_REAL_K" or taker.c != operand)
+    )
 
 
 class RegisterFlow:
@@ -45,18 +55,65 @@ class RegisterFlow:
             place = todo.pop()
             step = self._steps[place]
             roles = roles_of(step.name)
+            later = frozenset[int]().union(*(found[one] for one in self.after(place)))
             if step.name == "PYTHON":
                 live = frozenset(one for one in whole if one < step.a)
-            elif roles is None and step.name not in (*ENDS, "AT"):
-                live = whole
+            elif roles is None and step.name not in (*ENDS, "AT"):  # from `a` on
+                live = frozenset(one for one in whole if one >= step.a or one in later)
             else:
                 read, written = map(step.named, roles or ("", ""))
-                later = frozenset[int]().union(*(found[one] for one in self.after(place)))
                 live = (later - written) | whole.intersection(read)
             if live != found[place]:
                 found[place] = live
                 todo += before[place]
         return found
+
+    def restarts(self, live: Mapping[int, Collection[int]], stack: Collection[int]) -> list[int]:
+        """By steps of the body, a place not behind it where a step that faults can be begun again.
+
+        Since then nothing has changed but operands on the ``stack`` that were not ``live`` there,
+        and no statement has begun.
+        """
+        found: list[int] = []
+        only_operands = False
+        for place in self._body:
+            step = self._steps[place]
+            starts = place in self._targets or step.line >= 0 or not only_operands
+            found.append(place if starts else found[-1])
+            written = step.named((roles_of(step.name) or ("", ""))[1])
+            is_pure = written.issubset(stack) and written.isdisjoint(live[found[-1]])
+            only_operands = is_pure and (
+                bool(written) or (step.is_jump and not step.name.startswith("FOR_"))
+            )
+        return found
+
+    def deferred(self, restarts: Sequence[int], live: Mapping[int, Collection[int]]) -> set[int]:
+        """Sums and products whose overflow the step that takes them finds.
+
+        What is not finite stays so in sums, products and numerators; a step that faults on it is
+        begun again before the overflow.
+        """
+        found = set()
+        for place in self._body:
+            result = self._steps[place].a
+            if not _KEEPS_INFINITE.fullmatch(self._steps[place].name):
+                continue
+            for other in range(place + 1, self._body.stop):
+                taker = self._steps[other]
+                if restarts[other - self._body.start] > place:
+                    break
+                if self._reads(other, result):
+                    if _finds_infinite(taker, result) and (
+                        taker.a == result or result not in live[other + 1]
+                    ):
+                        found.add(place)
+                    break
+        return found
+
+    def _reads(self, place: int, register: int) -> bool:
+        step = self._steps[place]
+        roles = roles_of(step.name)
+        return roles is None or register in step.named(roles[0])
 
     def assigned(self) -> dict[int, frozenset[int]]:
         """Definite assignment: by place, the registers with a value on every way there."""

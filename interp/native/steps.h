@@ -28,6 +28,8 @@ enum { KRL_GO_NEXT = -1, KRL_GO_JUMP = -2 };
 #ifndef KRL_REGISTERS
 typedef krl_cell krl_register;
 #define REGISTER_OF(cell) (cell)
+#define REGISTER_AT(place) (place)
+#define MUST_BE_FINITE 1
 #define CELL_OF(register) (register)
 #define HAS_VALUE(register) ((register) != KRL_NOTHING)
 #define INT(register) krl_int_in(register)
@@ -67,7 +69,7 @@ typedef krl_cell krl_register;
 #define READ(name, place)                                                                          \
     krl_register name = (place);                                                                   \
     FAULT_IF(!HAS_VALUE(name), UNINITIALISED)
-#define READ_CELL(name, cell) READ(name, REGISTER_OF(cell))
+#define READ_CELL(name, cell) READ(name, REGISTER_AT(cell))
 
 /* ---------------------------------------------------------------------------- arithmetic */
 
@@ -100,7 +102,7 @@ static inline int rounds(float number, int32_t *result)
 #define REAL_RESULT(expression)                                                                    \
     do {                                                                                           \
         float result = (expression);                                                               \
-        FAULT_IF(!krl_is_finite(result), OVERFLOW);                                                \
+        FAULT_IF(MUST_BE_FINITE && !krl_is_finite(result), OVERFLOW);                              \
         A = OF_REAL(result);                                                                       \
         NEXT();                                                                                    \
     } while (0)
@@ -210,20 +212,21 @@ static inline int rounds(float number, int32_t *result)
     READ(index, B);                                                                                \
     uint32_t number = (uint32_t)INT(index) - 1;                                                    \
     FAULT_IF(number >= (uint32_t)pc->d, INDEX);                                                    \
-    int32_t place = pc->c + (int32_t)number
+    uint32_t place = (uint32_t)pc->c + number
 #define FIND_WIDE                                                                                  \
     const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
     READ(index, B);                                                                                \
     uint32_t number = (uint32_t)INT(index) - 1;                                                    \
     FAULT_IF(number >= (uint32_t)array->sizes[0], INDEX);                                          \
-    int32_t place = array->base + (int32_t)number * array->width
+    uint32_t place = (uint32_t)array->base + number * (uint32_t)array->width
 #define FIND_TWO                                                                                   \
     const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
     READ(index, B);                                                                                \
     READ(other, D);                                                                                \
     uint32_t number = (uint32_t)INT(index) - 1, behind = (uint32_t)INT(other) - 1;                 \
     FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1], INDEX);   \
-    int32_t place = array->base + ((int32_t)number * array->sizes[1] + (int32_t)behind) * array->width
+    uint32_t row = number * (uint32_t)array->sizes[1] + behind;                                    \
+    uint32_t place = (uint32_t)array->base + row * (uint32_t)array->width
 
 #define FIND_THREE                                                                                 \
     const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
@@ -234,8 +237,8 @@ static inline int rounds(float number, int32_t *result)
     FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1] ||         \
                  last >= (uint32_t)array->sizes[2],                                                \
              INDEX);                                                                               \
-    int32_t row = (int32_t)number * array->sizes[1] + (int32_t)behind;                             \
-    int32_t place = array->base + (row * array->sizes[2] + (int32_t)last) * array->width
+    uint32_t row = number * (uint32_t)array->sizes[1] + behind;                                    \
+    uint32_t place = (uint32_t)array->base + (row * (uint32_t)array->sizes[2] + last) * (uint32_t)array->width
 
 /* ---- where to go on */
 STEP(JUMP)
@@ -270,8 +273,8 @@ STEP(CASE)
 #define SET_DATA(value) cells[pc->a] = CELL_OF(value)
 FOR_STEP(FOR_UP, A, SET_A, <=)
 FOR_STEP(FOR_DOWN, A, SET_A, >=)
-FOR_STEP(FOR_DATA_UP, REGISTER_OF(cells[pc->a]), SET_DATA, <=)
-FOR_STEP(FOR_DATA_DOWN, REGISTER_OF(cells[pc->a]), SET_DATA, >=)
+FOR_STEP(FOR_DATA_UP, REGISTER_AT(cells[pc->a]), SET_DATA, <=)
+FOR_STEP(FOR_DATA_DOWN, REGISTER_AT(cells[pc->a]), SET_DATA, >=)
 KRL_COMPARISONS(RELATION_STEPS)
 
 /* ---- moving */
@@ -335,7 +338,7 @@ STEP(OFFSET)
 STEP(LOAD)
 {
     READ(b, B);
-    READ_CELL(found, cells[INT(b)]);
+    READ_CELL(found, cells[(uint32_t)INT(b)]);
     A = found;
     NEXT();
 }
@@ -345,7 +348,7 @@ STEP(STORE)
     READ(address, A);
     READ(value, B);
     machine->last = INT(address);
-    cells[INT(address)] = CELL_OF(value);
+    cells[(uint32_t)INT(address)] = CELL_OF(value);
     NEXT();
 }
 
@@ -353,7 +356,7 @@ STEP(STORE_K)
 {
     READ(address, A);
     machine->last = INT(address);
-    cells[INT(address)] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
+    cells[(uint32_t)INT(address)] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
     NEXT();
 }
 
@@ -622,6 +625,12 @@ STEP(FUNCTION)
     if (pc->tag == KRL_ATAN2) {
         READ(c, C);
         other = REAL(c);
+    }
+    /* Where single gives what double gives. */
+    if (pc->tag == KRL_ABS || pc->tag == KRL_SQRT) {
+        FAULT_IF(pc->tag == KRL_SQRT && REAL(b) < 0, DOMAIN);
+        A = OF_REAL(pc->tag == KRL_ABS ? fabsf(REAL(b)) : sqrtf(REAL(b)));
+        NEXT();
     }
     int fault = krl_compute((enum krl_function)pc->tag, REAL(b), other, &result);
     if (UNLIKELY(fault != KRL_FINE))

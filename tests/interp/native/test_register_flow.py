@@ -45,3 +45,23 @@ def test_statements_between_jumps_and_targets_count_together() -> None:
     counted, later = _FLOW.blocks()
     assert {0: 1, 1: 2, 5: 1} == counted
     assert {0: 0, 1: 1, 2: 1, 3: 0, 5: 0} == later
+
+
+def test_a_step_is_begun_again_where_only_operands_have_changed_since() -> None:
+    """Not before its statement, nor before an operand that it needs was written over."""
+    stack = {8, 9}
+    assert [0, 1, 1, 3, 3, 5] == _FLOW.restarts(_FLOW.live(stack), stack)
+
+
+def test_an_overflow_is_found_by_the_step_that_takes_the_result() -> None:
+    """A sum finds that of the product it adds; a relation does not, nor a variable."""
+    steps = [
+        _step("MUL_REAL", a=8, b=0, c=1, line=0),
+        _step("ADD_REAL", a=8, b=8, c=1),
+        _step("UNLESS_LT_REAL", b=8, c=0, d=4),
+        _step("ADD_REAL", a=0, b=0, c=1, line=1),
+        _step("RETURN", line=2),
+    ]
+    flow = RegisterFlow(steps, range(len(steps)))
+    live = flow.live({8})
+    assert {0} == flow.deferred(flow.restarts(live, {8}), live)
