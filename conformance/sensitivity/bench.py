@@ -10,7 +10,7 @@ from typing import Any, Final, get_args
 from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.mutant_trial import Fate, Trial
+from conformance.sensitivity.mutant_trial import OF_TRIAL, Fate, Trial
 from conformance.sensitivity.mutants import PACKAGES
 from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
@@ -24,7 +24,6 @@ AIM: Final = 0.95
 MUTANT_AIM: Final = 0.85
 _EXECUTOR: Final = "tree"
 _OF_MUTANT: Final = ("package", "file", "line", "function", "operator", "source", "was", "now")
-_OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
 
 
 def speed_of(
@@ -112,21 +111,28 @@ def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
     return {
         **_fates(every),
         "aim": MUTANT_AIM,
-        "seeds": [{"seed": seed, **_fates(found)} for seed, found in trials.items()],
-        "packages": [
-            {"package": package, **_fates(own)}
-            for package in PACKAGES
-            if (own := [one for one in every if one.mutant.package == package])
+        "seeds": [
+            {"seed": seed, **_fates(found), "packages": _by_package(found)}
+            for seed, found in trials.items()
         ],
+        "packages": _by_package(every),
         "trials": [
             {
                 "mutant": one.mutant.name,
                 **_fields(one.mutant, _OF_MUTANT),
-                **_fields(one, _OF_TRIAL),
+                **_fields(one, OF_TRIAL),
             }
             for one in every
         ],
     }
+
+
+def _by_package(trials: Sequence[Trial]) -> list[dict[str, Any]]:
+    return [
+        {"package": package, **_fates(own)}
+        for package in PACKAGES
+        if (own := [one for one in trials if one.mutant.package == package])
+    ]
 
 
 def _fields(of: object, names: Sequence[str]) -> dict[str, Any]:

@@ -21,12 +21,15 @@ from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity.mutants import modules
 from conformance.suite.case import Case
+from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 
-__all__ = ["Reach", "reach_of", "seen_digest"]
+__all__ = ["NOTHING_KEPT", "Reach", "reach_of", "seen_digest"]
 
 #: So many cases go to a process at once.
 _SHARE: Final = 16
+#: A store that forgets.
+NOTHING_KEPT: Final = ResultStore(None, "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,19 +54,49 @@ def reach_of(
     setup: Setup,
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
+    store: ResultStore = NOTHING_KEPT,
 ) -> list[Reach]:
-    """What each case runs with a setup, in the order of cases, without those that do not pass."""
-    shares = [cases[at : at + _SHARE] for at in range(0, len(cases), _SHARE)]
+    """What each case runs with a setup, in the order of cases, without those that do not pass.
+
+    ``store`` keeps it by the digest of the case.
+    """
+    found: dict[str, Reach | None] = {}
+    for case in cases:
+        row = store.get_record(_key(case))
+        if row is not None:
+            found[case.name] = _reach_of_row(case, row)
+    on_done(len(found))
+    new = [case for case in cases if case.name not in found]
+    shares = [new[at : at + _SHARE] for at in range(0, len(new), _SHARE)]
     tasks = ((share, setup) for share in shares)
-    found: list[Reach] = []
     for share, reached in zip(shares, ordered_map(_reached, tasks, jobs=jobs), strict=True):
-        found += reached
+        found.update(zip((case.name for case in share), reached, strict=True))
+        store.put((_key(case), _row(one)) for case, one in zip(share, reached, strict=True))
         on_done(len(share))
-    return found
+    return [one for case in cases if (one := found[case.name]) is not None]
 
 
-def _reached(cases: Sequence[Case], setup: Setup) -> list[Reach]:
-    return [found for case in cases if (found := _reach(case, setup)) is not None]
+def _key(case: Case) -> str:
+    return f"reach {case.name} {case.digest}"
+
+
+def _row(reach: Reach | None) -> dict[str, Any]:
+    """A reach as JSON; empty for a case that does not pass."""
+    if reach is None:
+        return {}
+    lines = {module: sorted(numbers) for module, numbers in reach.lines.items()}
+    return {"lines": lines, "cost": reach.cost, "seen": reach.seen}
+
+
+def _reach_of_row(case: Case, row: Mapping[str, Any]) -> Reach | None:
+    if not row:
+        return None
+    lines = {module: frozenset(numbers) for module, numbers in row["lines"].items()}
+    return Reach(case, lines, row["cost"], row["seen"])
+
+
+def _reached(cases: Sequence[Case], setup: Setup) -> list[Reach | None]:
+    return [_reach(case, setup) for case in cases]
 
 
 def _reach(case: Case, setup: Setup) -> Reach | None:

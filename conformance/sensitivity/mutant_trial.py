@@ -8,6 +8,7 @@ which the mutant is no part, does something else than the tree interpreter.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import pickle
 import tomllib
@@ -24,7 +25,7 @@ from typing import Final, Literal, NoReturn
 from conformance.evaluation.execution import Setup, missing
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import Result, run_case
-from conformance.sensitivity.line_reach import Reach, reach_of, seen_digest
+from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, reach_of, seen_digest
 from conformance.sensitivity.mutants import (
     InvalidMutant,
     Mutant,
@@ -33,9 +34,21 @@ from conformance.sensitivity.mutants import (
     uses_of,
 )
 from conformance.suite.case import Case
+from support.files.code_digest import code_digest
+from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 
-__all__ = ["MOST", "Fate", "Trial", "equivalent", "is_possible", "reaches_of", "try_mutants"]
+__all__ = [
+    "MOST",
+    "OF_TRIAL",
+    "Fate",
+    "Trial",
+    "equivalent",
+    "is_possible",
+    "kept_trials",
+    "reaches_of",
+    "try_mutants",
+]
 
 #: Red: a case has failed, or executors differ on it. Soft: only cases whose rules may not fail have
 #: noticed. Equivalent: none
@@ -47,6 +60,8 @@ _IN_C: Final = Setup("native", "kinematic")
 #: Packages of which the machine in C has its own: it is run beside the tree interpreter.
 _APART: Final = ("values", "tree")
 _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
+#: The fields of a trial but for its mutant.
+OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
 #: So many cases that may fail are run with a mutant that none of them notices.
 MOST: Final = 60
 #: So many seconds of computing a case may take; all of them take less than a tenth of it.
@@ -79,18 +94,27 @@ def is_possible() -> bool:
     return hasattr(os, "fork") and find_spec("resource") is not None
 
 
+def kept_trials(folder: Path | None) -> ResultStore:
+    """What is known of mutants of this code, in a folder; a context manager."""
+    return ResultStore(folder, f"mutants {code_digest('conformance', 'grammar', 'interp')}")
+
+
 def reaches_of(
-    cases: Sequence[Case], jobs: int = 1, on_done: Callable[[int], None] = lambda _count: None
+    cases: Sequence[Case],
+    jobs: int = 1,
+    on_done: Callable[[int], None] = lambda _count: None,
+    store: ResultStore = NOTHING_KEPT,
 ) -> list[Reach]:
     """What the cases run that can notice anything, in the order in which they are tried.
 
     Those that may fail come first; among them of each suite the one that expects most for what it
     costs, then the second of each, and so on. ``on_done`` is told of the cases as they are run.
+    ``store`` is one of `kept_trials`.
     """
     running = [case for case in cases if case.phase == "run"]
     places: Counter[tuple[bool, str]] = Counter()
     keyed = []
-    found = reach_of(running, _SETUP, jobs, on_done)
+    found = reach_of(running, _SETUP, jobs, on_done, store)
     for one in sorted(found, key=_price):
         kind = not one.case.may_fail, one.case.suite
         places[kind] += 1
@@ -109,20 +133,38 @@ def try_mutants(
     jobs: int = 1,
     most: int = MOST,
     on_done: Callable[[int], None] = lambda _count: None,
+    store: ResultStore = NOTHING_KEPT,
 ) -> list[Trial]:
     """What becomes of each mutant, in their order; the same whatever ``jobs`` is.
 
     Where more cases run its lines than ``most`` that may fail, only the first of them are tried.
-    ``on_done`` is told of the mutants as they are tried.
+    ``on_done`` is told of the mutants as they are tried. ``store`` is one of `kept_trials`: what it
+    holds for the same cases is not tried again.
     """
-    tasks = ((mutant, _that_may_notice(mutant, reaches), most) for mutant in mutants)
-    found: list[Trial] = []
+    tried = hashlib.sha256(repr([(most, one.case.name, one.seen) for one in reaches]).encode())
+    tried.update("".join(one.case.digest for one in reaches).encode())
+    keys = {one: f"trial {one.name} {tried.hexdigest()}" for one in mutants}
+    found: dict[Mutant, Trial] = {}
+    for one, key in keys.items():
+        row = store.get_record(key)
+        if row is not None:
+            found[one] = Trial(one, **row)
+    on_done(len(found))
+    new = [one for one in keys if one not in found]
+    tasks = ((mutant, _that_may_notice(mutant, reaches), most) for mutant in new)
     for trial in ordered_map(_tried, tasks, jobs=jobs):
-        reason = equivalent().get(trial.mutant.change, "")
-        is_known = reason and trial.fate == "survived"
-        found.append(replace(trial, fate="equivalent", why=reason) if is_known else trial)
+        found[trial.mutant] = trial
+        row = {each: getattr(trial, each) for each in OF_TRIAL}
+        store.put([(keys[trial.mutant], row)])
         on_done(1)
-    return found
+    return [_if_equivalent(found[one]) for one in mutants]
+
+
+def _if_equivalent(trial: Trial) -> Trial:
+    reason = equivalent().get(trial.mutant.change, "")
+    if not reason or trial.fate != "survived":
+        return trial
+    return replace(trial, fate="equivalent", why=reason)
 
 
 @cache

@@ -45,8 +45,12 @@ __all__ = [
 #: fed, recorded and shown, what another caller than a controller uses, and what only one of the
 #: robots needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
-    # left out: how values are written in traces, and equality, which tests alone ask for
-    "values": (("interp.values.*",), ("interp.values.json_form", "*.__eq__")),
+    # left out: how values are written in traces, equality, which tests alone ask for, and which
+    # random numbers there are
+    "values": (
+        ("interp.values.*",),
+        ("interp.values.json_form", "interp.values.builtins.Randomness.*", "*.__eq__"),
+    ),
     # left out: what a debugger asks of a program that stands
     "tree": (
         ("interp.tree.*",),

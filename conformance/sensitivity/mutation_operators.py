@@ -9,12 +9,12 @@ constant     a number more or less by one, or doubled, a truth value inverted
 statement    a call, an assignment to a part, ``raise``, ``break``, ``continue`` left out
 ============ ==================================================================
 
-A ``raise`` is left out where a program of KRL can come to it: a fault, or that it cannot be linked.
-What tells a caller in Python, or who wrote machine data or a profile, of a mistake is left as it
-is. So are texts, annotations, assertions, defaults of parameters, class bodies, and what stands
-behind a ``return`` or ``raise``: they decide nothing, or what they have decided cannot be replaced
-in a module that is loaded. A boundary is not moved where a number that is not whole is compared:
-what is equal to it is so by chance.
+A ``raise`` is left out where a program of KRL that a controller selects can come to it. What tells
+a caller in Python of a mistake, or who wrote machine data, a profile or a program of which parts
+are missing, is left as it is. So are texts, annotations, assertions, defaults of parameters, class
+bodies, and what stands behind a ``return`` or ``raise``: they decide nothing, or what they have
+decided cannot be replaced in a module that is loaded. A boundary is not moved where a number that
+is not whole is compared: what is equal to it is so by chance.
 """
 
 from __future__ import annotations
@@ -64,9 +64,11 @@ _ARITHMETIC: Final[Mapping[type[ast.operator], type[ast.operator]]] = {
 #: A number from here on is doubled instead: one more or less would be lost in rounding.
 _LARGE: Final = 100.0
 _COMPOUND: Final = (ast.If, ast.While, ast.For, ast.With, ast.Try, ast.Match)
-#: Exceptions that tell a caller in Python of its mistake, or who wrote machine data or a profile.
+#: Exceptions that tell a caller in Python of its mistake, or who wrote machine data, a profile or a
+#: program with names that nothing declares: a controller would not select it.
 _OWN_MISTAKE: Final = re.compile(
-    r"(?:Value|Type|Key|Index|Command|Assertion|NotImplemented|MachineData|Profile)Error\b"
+    r"(?:Value|Type|Key|Index|Command|Assertion|NotImplemented|MachineData|Profile|Link)Error\b"
+    r"|(?:untyped\w*|mismatched)\("
 )
 #: Fields that are not searched for changes.
 _LEFT_OUT: Final = frozenset({"decorator_list", "annotation", "returns", "ctx"})

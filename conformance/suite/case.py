@@ -100,6 +100,11 @@ class Case:
         return basis(one.basis or self.basis or self.rules[0]).may_fail and not self.unconfirmed
 
     @property
+    def expects_syntax_error(self) -> bool:
+        """Whether some line of it is no KRL."""
+        return any(one.kind == "syntax" for one in self.expectations)
+
+    @property
     def is_negative(self) -> bool:
         """Whether it is about what has to be refused: by the front end, or by a running program."""
         kinds = {one.kind for one in self.expectations}

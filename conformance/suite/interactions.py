@@ -5,17 +5,23 @@ it, when, what is triggered on it, what stands behind it, and what else there is
 follows from these values, each from the rule that is named with it. The rows are a covering array
 of strength two, chosen greedily. Run ``python -m conformance.suite.interactions`` after a change; a
 test fails when the cases are stale.
+
+`drawn` makes others by seed, with more values of each feature, that are kept nowhere and expect
+nothing: executors have to do the same, and no law may be broken.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import combinations, product
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
 from typing import Final
 
-from conformance.suite.case import CASES
+from conformance.suite.case import CASES, Case, find_cases
 
-__all__ = ["FEATURES", "FOLDER", "cases", "covering"]
+__all__ = ["FEATURES", "FOLDER", "cases", "covering", "drawn"]
 
 FOLDER: Final = CASES / "interaction"
 Row = Mapping[str, str]
@@ -41,6 +47,20 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
     "beside": ("none", "submit"),
     "override": ("100", "70"),
     "advance": ("1", "3", "5"),
+}
+
+#: Values of which no rule tells all that follows from them: what is drawn has them too.
+_MORE: Final[Mapping[str, tuple[str, ...]]] = {
+    "path": (
+        *("chain_blend", "circ_rel", "circ_long", "ori_blend", "vel_blend", "slin", "scirc"),
+        *("ptp_spline", "spline_blend", "turn_blend"),
+    ),
+    "act": ("brake_moves", "anout", "switch", "timer"),
+    "when": ("0.05", "0.7"),
+    "trigger": ("delay", "pulse", "onstart"),
+    "behind": ("out_c", "anin", "act_read", "tool"),
+    "override": ("35",),
+    "advance": ("0",),
 }
 
 _CP: Final = ("lin", "spline", "rel")
@@ -85,6 +105,25 @@ _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
         "",
     ),
     "rel": (("LIN_REL {X 100} ;> path line 445 0 810 to 545 0 810 [MOT-04]",), "545 0 810"),
+    "chain_blend": (
+        ("LIN {X 490} C_DIS", "LIN {Y 40} C_DIS", "LIN {X 545} C_DIS", "PTP {A1 10}"),
+        "",
+    ),
+    "circ_rel": (("CIRC_REL {X 50, Y 50}, {X 100, Y 0}",), ""),
+    "circ_long": (("CIRC {X 495, Y 50}, {X 545, Y 0}, CA 220",), ""),
+    "ori_blend": (("LIN {X 545, A 160} C_ORI", "LIN {Y 100}"), ""),
+    "vel_blend": (("LIN {X 545} C_VEL", "LIN {Y 100}"), ""),
+    "turn_blend": (("PTP {A1 30, A4 100} C_PTP", "LIN_REL {Z 60, C 20} C_DIS", "PTP {A1 0}"), ""),
+    "slin": (("SLIN {X 545}",), ""),
+    "scirc": (("SCIRC {X 495, Y 50}, {X 545, Y 0}",), ""),
+    "ptp_spline": (("PTP_SPLINE", "  SPTP {A1 20}", "  SPTP {A1 40, A2 -80}", "ENDSPLINE"), ""),
+    "spline_blend": (
+        (
+            *("SPLINE", "  SPL {X 500, Y 20, Z 810}", "  SLIN {X 545, Y 0, Z 810}"),
+            *("ENDSPLINE C_SPL", "SLIN {Y 100}"),
+        ),
+        "",
+    ),
 }
 _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
     "run": ("$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-01]",),
@@ -111,6 +150,10 @@ _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
         "ERR_CLEAR($ERR)",
         "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [TYP-13]",
     ),
+    "brake_moves": ("BRAKE", "PTP_REL {A6 10}", "$OUT[3] = TRUE"),
+    "anout": ("$ANOUT[1] = 0.25", "$OUT[3] = TRUE"),
+    "switch": ("INTERRUPT OFF 5", "INTERRUPT ON 5", "$OUT[3] = TRUE"),
+    "timer": ("$TIMER[1] = -100", "$TIMER_STOP[1] = FALSE", "WAIT SEC 0.05", "$OUT[3] = TRUE"),
     "resume": ("BRAKE", "RESUME ;> resume after in 1 [INT-10]"),
     "resume_deep": (
         "INTERRUPT ON 4",
@@ -118,6 +161,19 @@ _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
         "WAIT SEC 1",
         "$OUT[3] = TRUE ;> out 3 never [INT-10]",
     ),
+}
+_BESIDE: Final = (
+    "DEF BESIDE()\n  LOOP\n    IF $OUT[1] THEN\n"
+    "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-01]\n    ENDIF\n"
+    "    WAIT SEC 0.024\n  ENDLOOP\nEND\n"
+)
+_FIRST: Final = "INT-01"
+_SPEED: Final = "  $VEL.CP = 0.25"
+#: Triggers whose moment is given by no rule alone.
+_WORDS: Final = {
+    "delay": "DISTANCE=1 DELAY=-60 DO $OUT[2]=TRUE",
+    "pulse": "DISTANCE=1 DELAY=20 DO PULSE($OUT[2], TRUE, 0.2)",
+    "onstart": "PATH=10 ONSTART DELAY=5 DO $OUT[2]=TRUE",
 }
 #: What stands behind the motions; ``LAST`` is the number of the last of them.
 _BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
@@ -130,6 +186,10 @@ _BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
     ),
     "wait_for": ("WAIT FOR $OUT[1]", "R = 1 ;> line at end LAST [ADV-04]"),
     "wait_sec": ("WAIT SEC 0.2", "R = 1 ;> line at end LAST + 0.2 [ADV-04]"),
+    "out_c": ("$OUT_C[11] = TRUE",),
+    "anin": ("R = $ANIN[1]",),
+    "act_read": ("WAIT FOR $POS_ACT.X > 0", "R = $VEL_ACT"),
+    "tool": ("$TOOL = {X 0, Y 0, Z 20, A 0, B 0, C 0}", "$TOOL = $NULLFRAME"),
     "pulse": ("PULSE($OUT[8], TRUE, 0.5) ;> out 8 TRUE at end LAST [ADV-04] ;> out 8 FALSE",),
 }
 
@@ -142,7 +202,7 @@ def covering(features: Mapping[str, tuple[str, ...]]) -> list[dict[str, str]]:
         for one, other in combinations(names, 2)
         for left, right in product(features[one], features[other])
     }
-    rows = []
+    rows: list[dict[str, str]] = []
     while missing:
         row = dict(min(missing, key=sorted))  # a pair that is missing, and what adds most to it
         for name in names:
@@ -163,18 +223,40 @@ def cases() -> Iterator[tuple[str, str]]:
     for number, row in enumerate(covering(FEATURES), 1):
         name = f"pair_{number:03}"
         yield f"{name}.src", "\n".join([*_front(row), *_main(name, row), ""])
-    yield (
-        "beside.sub",
-        "DEF BESIDE()\n  LOOP\n    IF $OUT[1] THEN\n"
-        "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-01]\n    ENDIF\n"
-        "    WAIT SEC 0.024\n  ENDLOOP\nEND\n",
-    )
+    yield "beside.sub", _BESIDE
+
+
+def drawn(seed: int) -> list[Case]:
+    """Cases in which each pair of all values stands together; which others do follows from seed."""
+    chance = Random(f"interactions {seed}")
+    every = {name: (*values, *_MORE.get(name, ())) for name, values in FEATURES.items()}
+    features = {
+        name: tuple(chance.sample(every[name], len(every[name])))
+        for name in chance.sample(list(every), len(every))
+    }
+    rows = covering(features)
+    for row in rows:
+        if row["act"] == "resume" and row["when"] == "0.7":
+            row["when"] = "0.05"  # a way may be at its end by then, and RESUME a fault
+    with TemporaryDirectory() as place:
+        folder = Path(place, "pairs")
+        folder.mkdir()
+        (folder / "beside.sub").write_text(_BESIDE, encoding="utf-8")
+        for number, row in enumerate(rows, 1):
+            name = f"drawn_{number:03}"
+            head = [one for one in _front(row) if not one.startswith((";@ rule", ";@ title"))]
+            body = [one.partition(";>")[0].rstrip() for one in _main(name, row)]
+            body[body.index(_SPEED)] += f" ;> runs 1 [{_FIRST}]"
+            title = ", ".join(f"{name} {row[name]}" for name in sorted(row))
+            lines = [f";@ rule: {_FIRST}", f";@ title: {title}", *head, *filter(None, body), ""]
+            (folder / f"{name}.src").write_text("\n".join(lines), encoding="utf-8", newline="\n")
+        return find_cases(Path(place))
 
 
 def _front(row: Row) -> Iterator[str]:
     lines = [*_main("", row), *(["[SUB-01]"] if row["beside"] == "submit" else [])]
     cited = sorted({text[at + 1 : at + 7] for text in lines for at in _places(text)})
-    first = "INT-01" if row["act"] != "operator" else cited[0]
+    first = _FIRST if row["act"] != "operator" else cited[0]
     others = [one for one in cited if one != first]
     yield f";@ rule: {', '.join([first, *others])}"
     parts = (row["trigger"], "trigger"), (row["behind"], "behind"), (row["beside"], "too")
@@ -208,8 +290,9 @@ def _main(name: str, row: Row) -> Iterator[str]:
     yield "  $TOOL = $NULLFRAME"
     yield "  $BASE = $NULLFRAME"
     yield "  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}"
-    for text in ("$VEL.CP = 0.25", "$APO.CDIS = 20", "$VEL_AXIS[1] = 20"):
-        yield f"  {text}"
+    yield _SPEED
+    yield "  $APO.CDIS = 20"
+    yield "  $VEL_AXIS[1] = 20"
     yield f"  $ADVANCE = {row['advance']}"
     yield f"  $OV_PRO = {row['override']}"
     if row["act"] != "operator":
@@ -270,7 +353,12 @@ def _way(row: Row, *, is_left: bool) -> Iterator[str]:
 
 
 def _trigger(row: Row, *, is_left: bool, moment: str) -> Iterator[str]:
-    if row["trigger"] == "none" or (row["trigger"] == "path" and row["path"] not in _CP):
+    if row["trigger"] == "none" or (
+        row["trigger"] in ("path", "onstart") and row["path"] not in _CP
+    ):
+        return
+    if row["trigger"] in _WORDS:
+        yield f"  TRIGGER WHEN {_WORDS[row['trigger']]}"
         return
     if row["trigger"] == "call":
         seen = ";> trigger never [INT-10]" if is_left else ";> trigger times 1 [TRG-06]"

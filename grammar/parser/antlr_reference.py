@@ -6,6 +6,7 @@ Slow (0.1 MB/s) and therefore not what the survey runs on; a disagreement betwee
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ from antlr4.error.ErrorListener import ErrorListener
 from antlr4.error.Errors import ParseCancellationException
 from antlr4.error.ErrorStrategy import BailErrorStrategy
 
-__all__ = ["Refusal", "accepts", "refusal"]
+__all__ = ["Refusal", "accepts", "refusal", "refusal_by"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +48,27 @@ def refusal(text: str) -> Refusal | None:
     from grammar._generated.KRLLexer import KRLLexer
     from grammar._generated.KRLParser import KRLParser
 
+    return refusal_by(KRLLexer, KRLParser, "module", text)
+
+
+def refusal_by(
+    lexer_of: Callable[[InputStream], Any],
+    parser_of: Callable[[CommonTokenStream], Any],
+    rule: str,
+    text: str,
+) -> Refusal | None:
+    """Why a parser that ANTLR made refuses a text by one of its rules, or ``None``."""
     errors = _FirstError()
-    lexer = KRLLexer(InputStream(text))
+    lexer = lexer_of(InputStream(text))
     lexer.removeErrorListeners()
     lexer.addErrorListener(errors)
     tokens = CommonTokenStream(lexer)
-    parser = KRLParser(tokens)
+    parser = parser_of(tokens)
     parser.removeErrorListeners()
     parser.buildParseTrees = False
     parser._errHandler = BailErrorStrategy()
     try:
-        parser.module()
+        getattr(parser, rule)()
     except ParseCancellationException as cancelled:
         token: Any = getattr(cancelled.args[0], "offendingToken", None) or tokens.LT(1)
         return errors.found or Refusal(token.line, token.column, f"unexpected {token.text!r}")

@@ -88,6 +88,7 @@ class TreeExecutor:
         self._open: Request | None = None
         self._is_asked = False
         self._resumed: Resumed | Selected | None = None
+        self._resumed_at_end: Request | None = None
         self._final: Request | None = Fail(self._at(), too_large(start)) if is_large else None
 
     # ----------------------------------------------------------------------- the port
@@ -99,6 +100,10 @@ class TreeExecutor:
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
         """Compute until the world is needed."""
+        if self._resumed_at_end is not None:
+            if self._run.returns is not None:
+                self._run.returns.leave(self._at(), self._stack[-1].frame.name)
+            self._final, self._resumed_at_end = self._resumed_at_end, None
         if self._final is not None:
             return self._final
         if self._open is not None and not self._is_asked:
@@ -166,11 +171,15 @@ class TreeExecutor:
         return TreeExecutor(run.program, routine, run.limits, sink, run.random, beside=self)
 
     def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``, and what was entered there."""
+        """Leave all routines deeper than ``depth``, and what was entered there.
+
+        A program that had come to its end before comes there again.
+        """
         while self._run.depth > depth or self._stack[-1].interrupted is not None:
             active = self._stack.pop()
             active.steps.close()
             self._left(active)
+            self._resumed_at_end = active.interrupted.final if active.interrupted else None
         self._run.guard = Guard.OFF
         self._open, self._is_asked, self._resumed = None, False, Resumed()
 

@@ -89,33 +89,29 @@ class FaultKind:
     rules: tuple[str, ...]
 
 
-def _kinds() -> Mapping[str, FaultKind]:
-    """The catalogue. New entries come last: images and C code know the codes."""
-    rows: tuple[tuple[str, str, int | None, str], ...] = (
-        ("division_by_zero", "division by zero", None, "ARI-02"),
-        ("overflow", "the result is too large for its type", None, "TYP-01 TYP-02 ARI-12"),
-        ("domain", "the function has no value there", None, "FCT-01 FCT-02"),
-        ("index", "an array index lies outside the array", 1444, "TYP-09 MSG-15"),
-        ("uninitialised", "a value is used that was never set", 1422, "TYP-13 MSG-11"),
-        ("stack", "the program stack overflows", 1424, "SCO-11 MSG-12"),
-        ("nesting", "variables are nested too deeply", 1426, "SCO-11 MSG-12"),
-        ("invalid", "the value is not valid for a system variable", 1422, "ARI-11 MSG-11"),
-        ("inadmissible", "a value cannot be assigned", 1446, "ARI-11 MSG-11"),
-        ("read_only", "a variable is write-protected", 1388, "SCO-11 MSG-07"),
-        ("operand", "an operand has the wrong type", 2256, "ARI-07 ARI-10 ARI-11"),
-        ("argument", "an argument has the wrong type", 2274, "ARI-04 MSG-23"),
-        ("no_result", "a function ended without RETURN", None, "CTL-09"),
-    )
-    return MappingProxyType(
-        {
-            slug: FaultKind(code, slug, text, number, tuple(rules.split()))
-            for code, (slug, text, number, rules) in enumerate(rows)
-        }
-    )
-
-
-#: All faults that executors raise, by slug.
-FAULTS: Mapping[str, FaultKind] = _kinds()
+#: All faults that executors raise, by slug. New entries come last: images and C know the codes.
+FAULTS: Mapping[str, FaultKind] = MappingProxyType(
+    {
+        slug: FaultKind(code, slug, text, number, tuple(rules.split()))
+        for code, (slug, text, number, rules) in enumerate(
+            (
+                ("division_by_zero", "division by zero", None, "ARI-02"),
+                ("overflow", "the result is too large for its type", None, "TYP-01 TYP-02 ARI-12"),
+                ("domain", "the function has no value there", None, "FCT-01 FCT-02"),
+                ("index", "an array index lies outside the array", 1444, "TYP-09 MSG-15"),
+                ("uninitialised", "a value is used that was never set", 1422, "TYP-13 MSG-11"),
+                ("stack", "the program stack overflows", 1424, "SCO-11 MSG-12"),
+                ("nesting", "variables are nested too deeply", 1426, "SCO-11 MSG-12"),
+                ("invalid", "the value is not valid for a system variable", 1422, "ARI-11 MSG-11"),
+                ("inadmissible", "a value cannot be assigned", 1446, "ARI-11 MSG-11"),
+                ("read_only", "a variable is write-protected", 1388, "SCO-11 MSG-07"),
+                ("operand", "an operand has the wrong type", 2256, "ARI-07 ARI-10 ARI-11"),
+                ("argument", "an argument has the wrong type", 2274, "ARI-04 MSG-23"),
+                ("no_result", "a function ended without RETURN", None, "CTL-09"),
+            )
+        )
+    }
+)
 
 
 def fault(slug: str) -> Fault:

@@ -9,7 +9,15 @@ import pytest
 from conformance.evaluation.execution import Setup
 from conformance.sensitivity import bench, mutant_trial
 from conformance.sensitivity.line_reach import reach_of
-from conformance.sensitivity.mutant_trial import Fate, Trial, equivalent, is_possible, try_mutants
+from conformance.sensitivity.mutant_trial import (
+    Fate,
+    Trial,
+    equivalent,
+    is_possible,
+    kept_trials,
+    reaches_of,
+    try_mutants,
+)
 from conformance.sensitivity.mutants import (
     Mutant,
     all_mutants,
@@ -70,6 +78,7 @@ def _case(name: str) -> Case:
         ("c = b", set()),
         ("raise a", {("statement", "pass")}),
         ("raise ProfileError(a)", set()),
+        ("raise LinkError(a)", set()),
         ("assert a < 7", set()),
         ("return isinstance(a, int | str)", set()),
         ("return f'{a + 1}'", set()),
@@ -211,6 +220,22 @@ def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) 
 
 
 @needs_fork
+def test_what_is_kept_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that goes on takes over lines and trials, and has the same result."""
+    mutants = [named("interp.controller.clock:0"), named("interp.controller.clock:1")]
+    cases = [_case("control/if_else")]
+
+    def tried() -> list[Trial]:
+        with kept_trials(tmp_path) as store:
+            return try_mutants(mutants, reaches_of(cases, store=store), store=store)
+
+    first = tried()
+    for name in ("conformance.sensitivity.line_reach._reach", f"{mutant_trial.__name__}._tried"):
+        monkeypatch.setattr(name, None)
+    assert first == tried()
+
+
+@needs_fork
 def test_a_mutant_whose_lines_no_case_runs_survives() -> None:
     """It is not tried on a case that cannot notice it."""
     mutant = _mutant("interp.values.operators", "_divided", "right == 0", "right != 0")
@@ -236,4 +261,6 @@ def test_shares_are_of_what_could_be_noticed() -> None:
     record = bench.mutants_record({7: [Trial(mutant, fate) for fate in fates]})
     assert (6, 2, 0.5) == (record["mutants"], record["red"], record["share"])
     assert [("values", 0.5)] == [(one["package"], one["share"]) for one in record["packages"]]
-    assert [7] == [one["seed"] for one in record["seeds"]]
+    assert [(7, 0.5)] == [
+        (one["seed"], each["share"]) for one in record["seeds"] for each in one["packages"]
+    ]

@@ -119,12 +119,41 @@ def _goal(code: Code, kind: str) -> str:
     return f"({found})" if choices.chance(10) else found
 
 
+_SWITCHED: Final = line("<$FLAG|$OUT>[<1-16>]:=<BOOL>")
+
+
+def _course(code: Code) -> bool:
+    """Motions behind one another, begun as programs of real robots begin: tool, base, a full PTP.
+
+    Most rules of motions are about what only such a course has together.
+    """
+    choices, eq = code.choices, code.spelling.eq
+    code.spend(4)
+    for name in ("TOOL", "BASE"):
+        code.line(f"${name}{eq}$NULLFRAME")
+    code.line(f"PTP {{{_AXES_OF_ROBOT.format(90.0)}}}")
+    for name in choices.pick((("VEL.CP",), ("APO.CDIS",), ("APO.CPTP", "VEL.CP"), ())):
+        code.line(f"${name}{eq}{constant(code, REAL)}")
+    parts = (motions.motion, motions.motion, motions.trigger, motions.spline_motion)
+    for _ in range(choices.between(2, 4)):
+        choices.pick((*parts, motions.spline_block))(code)
+        if choices.chance(30):
+            _SWITCHED(code)
+    return True
+
+
+#: Variables that the controller computes, in conditions.
+_ASKED: Final = (
+    *("<$VEL_ACT|$DISTANCE|$DIST_NEXT|$AXIS_ACT.A1|$POS_INT.X>>=0.0", "$ACT_ADVANCE<$NUM_AX"),
+    *("$ROB_STOPPED", "$MODE_OP==#T1", "$PRO_MODE1==#GO", "$VEL_MA.CP>=$ACC_MA.CP"),
+)
 #: Variables of the controller: of INT small values, as they are numbers, times and percentages.
 _SETTINGS: Final = (
     (7, line("<$OUT|$OUT|$FLAG|$TIMER_STOP>[<1-16>]:=<BOOL>", "$STOPNOAPROX:=<BOOL>")),
     (3, line("<$VEL.CP|$VEL.ORI1|$ACC.CP|$APO.CDIS|$APO.CORI|$ANOUT[1]>:=<REAL>")),
     (3, line("<$TIMER[1]|$TIMER[2]|$OV_PRO|$APO.CPTP>:=(<INT>) B_AND 63")),
     (2, line("$ORI_TYPE:=<#VAR|#CONSTANT>", "$CIRC_TYPE:=#BASE", "$IPO_MODE:=#TCP")),
+    (1, line("$OUT_C[<1-16>]:=<BOOL>", "$CP_VEL_TYPE:=#CONSTANT", "$TARGET_STATUS:=#SOURCE")),
     (3, statements.set_base),
     (2, statements.set_advance),
 )
@@ -199,6 +228,7 @@ CLOSED: Final = Style(
             line(
                 *("WAIT FOR $IN[<1-16>]", "WAIT FOR $IN[<1-16>] AND $IN[3]", "WAIT FOR TRUE"),
                 *("WAIT FOR ($IN[<1-16>]) OR (<BOOL>)", "WAIT FOR $IN[<1-16>]==TRUE"),
+                *(f"WAIT FOR TRUE OR ({one})" for one in _ASKED),
             ),
         ),
         (2, line("HALT", cost=2)),
@@ -218,6 +248,7 @@ CLOSED: Final = Style(
         (12, format_text),
         (8, scan_text),
         (20, motions.motion),
+        (14, _course),
         (8, motions.spline_motion),
         (4, line('MOVE_EMI "<EMI1|A>" "START"', 'MOVE_EMI "<EMI1|A>" "START" FLT <REAL>')),
         (8, motions.spline_block),

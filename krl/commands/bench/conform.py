@@ -62,6 +62,10 @@ def conform(
         ),
     ] = False,
     jobs: JobsOption = None,
+    cache: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Keep trials here; a run that was broken off goes on."),
+    ] = None,
 ) -> int:
     """Change what decides semantics, one place at a time, and see whether a case fails.
 
@@ -87,7 +91,8 @@ def conform(
     faults = [one for one in all_faults() if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
-    drawn = _mutants(cases, seed or [_SEED], mutants, most, all_cores(jobs)) if mutants else {}
+    seeds = seed or [_SEED]
+    drawn = _mutants(cases, seeds, mutants, most, all_cores(jobs), cache) if mutants else {}
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
@@ -103,10 +108,15 @@ def conform(
 
 
 def _mutants(
-    cases: "list[Case]", seeds: list[int], count: int, most: int, jobs: int
+    cases: "list[Case]", seeds: list[int], count: int, most: int, jobs: int, cache: Path | None
 ) -> dict[str, Any]:
     from conformance.sensitivity.bench import mutants_record
-    from conformance.sensitivity.mutant_trial import is_possible, reaches_of, try_mutants
+    from conformance.sensitivity.mutant_trial import (
+        is_possible,
+        kept_trials,
+        reaches_of,
+        try_mutants,
+    )
     from conformance.sensitivity.mutants import drawn
 
     if not is_possible():
@@ -114,10 +124,11 @@ def _mutants(
     wanted = {one: drawn(one, count) for one in dict.fromkeys(seeds)}
     every = tuple(dict.fromkeys(mutant for found in wanted.values() for mutant in found))
     running = sum(case.phase == "run" for case in cases)
-    with progress_bar("which lines cases run", running) as bar:
-        reaches = reaches_of(cases, jobs, bar)
-    with progress_bar("trying mutants", len(every)) as bar:
-        trials = try_mutants(every, reaches, jobs, most, bar)
+    with kept_trials(cache) as store:
+        with progress_bar("which lines cases run", running) as bar:
+            reaches = reaches_of(cases, jobs, bar, store)
+        with progress_bar("trying mutants", len(every)) as bar:
+            trials = try_mutants(every, reaches, jobs, most, bar, store)
     by_mutant = dict(zip(every, trials, strict=True))
     return mutants_record(
         {one: [by_mutant[mutant] for mutant in found] for one, found in wanted.items()}
@@ -156,8 +167,12 @@ def _print_mutants(drawn: Mapping[str, Any]) -> None:
     console = Console(highlight=False)
     fates = ("red", "soft", "survived", "equivalent", "invalid")
     table = figures(("mutants of", "drawn", *fates, "red"))
-    rows = [(one["package"], one) for one in drawn["packages"]]
-    rows += [(f"seed {one['seed']}", one) for one in drawn["seeds"]]
+    rows = []
+    for one in drawn["seeds"]:
+        rows.append((f"seed {one['seed']}", one))
+        rows += [(f"  {row['package']}", row) for row in one["packages"]]
+    if len(drawn["seeds"]) > 1:
+        rows += [(row["package"], row) for row in drawn["packages"]]
     for name, row in (*rows, ("all", drawn)):
         counts = (row["mutants"], *(row[fate] for fate in fates))
         table.add_row(name, *(f"{one:,}" for one in counts), f"{row['share']:.1%}")

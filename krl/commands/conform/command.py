@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
 from krl.extras import ARM, expected_extras, need
 from krl.options import JobsOption, JsonOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
+from krl.text_table import figures
 
 if TYPE_CHECKING:
     from conformance.runner import CaseResult
@@ -30,7 +32,8 @@ def conform(
         typer.Argument(
             metavar="[SELECT...]",
             help="Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths; "
-            "default: all. Or: import FILE, export FILE.zip [SELECT...].",
+            "default: all. Or: import FILE, export FILE.zip [SELECT...], compare [SELECT...], "
+            "pairs.",
         ),
     ] = None,
     executor: Annotated[
@@ -70,6 +73,15 @@ def conform(
             "(interp/values/texts.py:108), and see which cases notice it.",
         ),
     ] = None,
+    parser: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=WHAT",
+            help="compare: a parser of others, an ANTLR grammar (FILE.g4) or a command that reads "
+            "a file and ends with status 0; may be repeated.",
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="pairs: draws the programs.")] = 1,
     list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
     jobs: JobsOption = None,
     scheduler: Annotated[
@@ -82,6 +94,10 @@ def conform(
     Exit status 1 where a case failed. 'krl conform import FILE' evaluates a recording that was made
     on a controller; conformance/CASES.md says how to make one. 'krl conform export FILE.zip' writes
     the cases with what they expect as JSON, and a reference result, for executors of others.
+    'krl conform compare --parser NAME=WHAT' tells how many cases parsers of others read or refuse
+    as they should. 'krl conform pairs --seed N' runs programs in which features of motions,
+    interrupts, triggers and outputs meet in pairs; they expect only that executors do the same and
+    that no law is broken.
     """
     words = select or []
     check_files(json_file, junit)
@@ -90,13 +106,18 @@ def conform(
     with _expected_errors():
         if lint:
             return _lint(words)
+        if words[:1] == ["compare"]:
+            return _compare(words[1:], parser or [], json_file, junit, html)
         if metamorphic is not None:
             from krl.commands.conform.laws import check_laws
 
             return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
         if fault is None or list_ or words[:1] in (["import"], ["export"]):
             return _conform(
-                words, executor, robot, json_file, junit, html, jobs, scheduler, list_=list_
+                words,
+                *(executor, robot, json_file, junit, html, jobs, scheduler),
+                list_=list_,
+                seed=seed,
             )
         from krl.commands.conform.planted_fault import planted
 
@@ -131,13 +152,14 @@ def _conform(
     scheduler: str | None,
     *,
     list_: bool,
+    seed: int = 1,
     fault: str = "",
 ) -> int:
     if words[:1] == ["import"]:
         return _import(words[1:], json_file, junit, html)
     if words[:1] == ["export"]:
         return _export(words[1:], jobs, scheduler)
-    cases = _cases(words)
+    cases = _drawn(seed) if words == ["pairs"] else _cases(words)
     if list_:
         return _list(cases, json_file)
     executors = _chosen(executor, "executor")
@@ -182,6 +204,12 @@ def _cases(words: Sequence[str]) -> "list[Case]":
             if CASES.resolve() not in (path.resolve(), *path.resolve().parents):
                 cases += find_cases(path) if path.is_dir() else _one_case(path)
         return selected(cases, words)
+
+
+def _drawn(seed: int) -> "list[Case]":
+    from conformance.suite.interactions import drawn
+
+    return drawn(seed)
 
 
 def _one_case(path: Path) -> "list[Case]":
@@ -319,6 +347,45 @@ def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> in
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
     typer.echo(one_line(f"{path}: {len(results)} cases, their expectations, a reference result"))
     return FINDINGS if any(one.verdict == "fail" for one in results) else FINE
+
+
+def _compare(
+    words: Sequence[str],
+    wanted: Sequence[str],
+    json_file: Path | None,
+    junit: Path | None,
+    html: Path | None,
+) -> int:
+    """Tell by suite how many cases each parser reads, or refuses, as it should."""
+    from conformance.parser_comparison import OWN, ParserError, compared, parsers
+
+    if not wanted:
+        raise InputError("krl conform compare takes --parser NAME=WHAT, once or several times")
+    cases = _cases(words)
+    begun = time.perf_counter()
+    with as_input_errors(ParserError), parsers(wanted) as found:
+        with progress_bar("reading cases", len(cases)) as bar:
+            results = compared(cases, found, bar)
+        names = list(found)
+    seconds = time.perf_counter() - begun
+    _write(results, names, ["none"], seconds, json_file, junit, html, "")
+    _print_comparison(results, names)
+    own = any(one.executor == OWN and one.verdict == "fail" for r in results for one in r.results)
+    return FINDINGS if own else FINE
+
+
+def _print_comparison(results: "Sequence[CaseResult]", names: Sequence[str]) -> None:
+    table = figures(("cases", "number", *names))
+    suites = dict.fromkeys(one.case.suite for one in results)
+    rows = [(suite, [one for one in results if one.case.suite == suite]) for suite in suites]
+    kinds = (("to be read", False), ("to be refused", True), ("all", None))
+    for kind, wanted in kinds:
+        chosen = [one for one in results if wanted in (None, one.case.expects_syntax_error)]
+        rows.append((kind, chosen))
+    for name, own in rows:
+        passed = (sum(one.results[at].verdict == "pass" for one in own) for at in range(len(names)))
+        table.add_row(name, f"{len(own):,}", *(f"{one:,}" for one in passed))
+    Console(highlight=False).print(table)
 
 
 def _import(

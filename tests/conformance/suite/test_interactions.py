@@ -2,7 +2,7 @@
 
 from itertools import combinations, product
 
-from conformance.suite.interactions import FEATURES, FOLDER, cases, covering
+from conformance.suite.interactions import FEATURES, FOLDER, cases, covering, drawn
 
 
 def test_cases_are_up_to_date() -> None:
@@ -18,3 +18,19 @@ def test_each_pair_of_values_stands_together() -> None:
         wanted = set(product(FEATURES[one], FEATURES[other]))
         assert wanted == {(row[one], row[other]) for row in rows}
     assert len(rows) < 100
+
+
+def test_drawn_programs_follow_from_the_seed() -> None:
+    """The same seed gives the same programs, another one others; each is a case that runs."""
+    first, again, other = drawn(3), drawn(3), drawn(4)
+    assert [one.digest for one in first] == [one.digest for one in again]
+    assert {one.title for one in first} != {one.title for one in other}
+    assert {("run", "kinematic")} == {(one.phase, one.robot) for one in first}
+
+
+def test_drawn_programs_have_all_features() -> None:
+    """Values of which no rule tells all are among them too, and only one line expects anything."""
+    titles = " ".join(one.title for one in drawn(3))
+    assert all(f"path {word}" in titles for word in ("lin_blend", "spline_blend", "circ_long"))
+    expected = {each.kind for one in drawn(3) for each in one.expectations if each.file == one.main}
+    assert {"runs"} == expected

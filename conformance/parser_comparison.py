@@ -1,0 +1,164 @@
+"""Parsers of others beside ours: which read what KRL allows, and refuse what it does not.
+
+Of a case only its text is looked at, without the front matter, since many parsers expect a file to
+begin with its first routine. One that expects ``syntax`` has to be refused, wherever; every
+other has to be read, in all its files. Nothing of a third party lies here: its grammar is compiled
+by ANTLR when it is asked for, or its program is run as a command.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib import import_module, invalidate_caches
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from conformance.runner import CaseResult, Result
+from conformance.suite.case import Case
+from grammar.parser.antlr_reference import refusal_by
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+
+__all__ = ["OWN", "Parser", "ParserError", "compared", "parsers"]
+
+#: The name of this project's parser.
+OWN: Final = "krl"
+#: Seconds that a command may take for a file, and ANTLR for a grammar.
+_LONGEST: Final = 600
+_NAME: Final = re.compile(r"^\s*(?:parser\s+)?grammar\s+(\w+)\s*;", re.MULTILINE)
+_FRONT: Final = re.compile(r"(?:;@.*\n)+")
+_COMMENT: Final = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+
+#: Why a text is refused; empty where it is read.
+Parser = Callable[[Source], str]
+
+
+class ParserError(ValueError):
+    """A parser that cannot be used; the text says why, in one line."""
+
+
+@contextmanager
+def parsers(wanted: Sequence[str]) -> Iterator[Mapping[str, Parser]]:
+    """Parsers by name, ours first, as long as the context lasts. Raises `ParserError`.
+
+    Each is ``NAME=WHAT``: an ANTLR grammar (``….g4``, its first rule reads a file), or a command.
+    The name of a file is put in place of ``{}`` in a command, or behind it; status 0 tells that
+    the file was read.
+    """
+    found: dict[str, Parser] = {OWN: _own}
+    with TemporaryDirectory() as folder:
+        for number, one in enumerate(wanted):
+            name, equals, what = one.partition("=")
+            if not name or not equals or not what or name in found:
+                raise ParserError(f"{one}: a parser is NAME=GRAMMAR.g4 or NAME=COMMAND")
+            place = Path(folder, str(number))
+            place.mkdir()
+            is_grammar = what.endswith(".g4")
+            found[name] = _compiled(Path(what), place) if is_grammar else _command(what, place)
+        yield found
+
+
+def _own(source: Source) -> str:
+    read = read_module(source.text, source.path)
+    return f"line {read[0].line}: {read[0].reason or ''}" if isinstance(read, list) else ""
+
+
+def _compiled(path: Path, folder: Path) -> Parser:
+    """The parser that ANTLR makes of a grammar; its first rule reads a file."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ParserError(f"{path}: cannot be read: {error}") from error
+    named = _NAME.search(_COMMENT.sub("", text))
+    if named is None:
+        raise ParserError(f"{path}: it is no ANTLR grammar of a parser and its lexer")
+    command = ["antlr4", "-Dlanguage=Python3", "-o", str(folder), str(path.resolve())]
+    try:
+        made = subprocess.run(
+            command, capture_output=True, text=True, timeout=_LONGEST, cwd=folder, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise ParserError(f"{path}: ANTLR cannot be run: {error}") from error
+    if made.returncode:
+        told = (made.stderr or made.stdout).strip().splitlines() or ["it gives no reason"]
+        raise ParserError(f"{path}: ANTLR refuses it: {told[0]}")
+    sys.path.insert(0, str(folder))
+    try:
+        lexer, parser = (_imported(f"{named[1]}{part}") for part in ("Lexer", "Parser"))
+    except (ImportError, AttributeError) as error:
+        raise ParserError(f"{path}: what ANTLR made of it cannot be used: {error}") from error
+    finally:
+        sys.path.remove(str(folder))
+    rule = str(parser.ruleNames[0])
+    start = rule if hasattr(parser, rule) else f"{rule}_"  # Python has the name for something else
+
+    def reads(source: Source) -> str:
+        why = refusal_by(lexer, parser, start, source.text)
+        return f"line {why.line}: {why.message}" if why else ""
+
+    return reads
+
+
+def _imported(name: str) -> Any:
+    """The class of a module that has its name; another grammar may have had this name before."""
+    sys.modules.pop(name, None)
+    invalidate_caches()
+    return getattr(import_module(name), name)
+
+
+def _command(what: str, folder: Path) -> Parser:
+    try:
+        words = shlex.split(what)
+    except ValueError as error:
+        raise ParserError(f"{what}: {error}") from error
+
+    def reads(source: Source) -> str:
+        file = folder / source.path.lstrip("$")
+        file.write_text(source.text, encoding="utf-8", newline="\n")
+        told = [str(file) if word == "{}" else word for word in words]
+        command = told if "{}" in words else [*told, str(file)]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, timeout=_LONGEST, cwd=folder, check=False
+            )
+        except subprocess.TimeoutExpired:
+            return f"it takes more than {_LONGEST} seconds"
+        except OSError as error:
+            raise ParserError(f"{what}: cannot be run: {error.strerror}") from error
+        lines = (done.stdout + done.stderr).decode("utf-8", "replace").split("\n", 1)
+        return (lines[0].strip() or f"status {done.returncode}") if done.returncode else ""
+
+    return reads
+
+
+def compared(
+    cases: Sequence[Case],
+    by_name: Mapping[str, Parser],
+    on_done: Callable[[int], None] = lambda _count: None,
+) -> list[CaseResult]:
+    """What became of each case with each parser; ``on_done`` is called for each case."""
+    found = []
+    for case in cases:
+        results = tuple(_result(case, name, parser) for name, parser in by_name.items())
+        found.append(CaseResult(case, results))
+        on_done(1)
+    return found
+
+
+def _result(case: Case, name: str, parser: Parser) -> Result:
+    begun = time.perf_counter()
+    sources = [Source(_FRONT.sub("", one.text, count=1), one.path) for one in case.sources]
+    refusals = [f"{one.path}: {why}" for one in sources if (why := parser(one))]
+    if case.expects_syntax_error:
+        reason = "" if refusals else "it is read, and is no KRL"
+    else:
+        reason = refusals[0] if refusals else ""
+    took = time.perf_counter() - begun
+    return Result(name, "none", "fail" if reason else "pass", reason, (), took)
