@@ -85,6 +85,7 @@ _SOURCES = """\
 | S4 | the message base of KSS: 511 texts with their numbers, published by Intrinsic |
 | S5 | machine data of several robots |
 | S6 | a public list of 445 system variables with descriptions |
+| S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
 | T1 to T20 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | F1 to F3 | robot-forum.com on blending (14422), triggers (34556), synchronous axes (24428) |
 | D1 | 2,920 taught points of ten public repositories, 443 of them with machine data |
