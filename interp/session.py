@@ -7,7 +7,7 @@ trace, to the bit, on every executor and with every robot.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from grammar.check.context import placed
@@ -43,6 +43,7 @@ from interp.robot.simulation.scene import Scene
 from interp.standins.uses import FOLDER
 from interp.values.faults import Fault, LinkError
 from interp.values.values import StructureValue
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from interp.debugging.debugger import Debugger

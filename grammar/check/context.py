@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
@@ -21,6 +21,7 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
 from grammar.syntax.source import Source
 from grammar.syntax.walk import BODIES, bodies
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Context", "PlacedStatement", "RoutineBody", "placed"]
 

@@ -9,10 +9,11 @@ meets no limit.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from grammar.syntax import ast
 from grammar.syntax.walk import bodies, without_parentheses
+from support.lazy_dataclass import dataclass
 
 __all__ = ["FlowGraph", "FlowNode", "flow_graph"]
 

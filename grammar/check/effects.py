@@ -10,7 +10,7 @@ from __future__ import annotations
 import operator
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from grammar.check.accesses import Use, accesses, parts_of
 from grammar.check.constant_folding import constant, integer_of
@@ -20,6 +20,7 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import without_parentheses
+from support.lazy_dataclass import dataclass
 
 __all__ = ["NO_EFFECTS", "Effects", "LeftOut", "Place", "effects", "of_project"]
 

@@ -7,7 +7,6 @@ statements. `Findings` of a file can be pickled and kept; those of its project a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from grammar.check import (
     control_flow,
@@ -38,6 +37,7 @@ from grammar.semantics.types import Enumeration, Type
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "CHECKS",

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Literal as OneOf
+
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "MAX_CODE_POINT",

@@ -18,7 +18,6 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, islice
 
@@ -28,6 +27,7 @@ from grammar.parser.lexer import SKIPPED, Lexer
 from grammar.parser.line_reader import LineReader, Spot
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.sentences import Sentences
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Failure", "FailureContext", "FailureFinder", "Form"]
 

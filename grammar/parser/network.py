@@ -9,10 +9,11 @@ that a candidate edit costs one rule.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 from grammar.parser.lexer import Lexer, lexer_of
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "Network",

@@ -9,11 +9,11 @@ before its end. Of all ways to read something, ANTLR takes the first one in that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from grammar.notation.addresses import Address
 from grammar.notation.model import Alternative, CharSet, Element, Grammar, Group, Repeat, Rule
+from support.lazy_dataclass import dataclass
 
 __all__ = ["FIRST", "LAST", "OrderedAutomaton", "Sign", "Step", "ordered_automaton"]
 

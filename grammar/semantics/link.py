@@ -20,7 +20,6 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
@@ -47,6 +46,7 @@ from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, R
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from support.files.discovery import DRIVE_FOLDERS, is_drive
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Clash", "File", "Project", "Workspace", "extended", "link", "words_of"]
 

@@ -12,9 +12,10 @@ its parameters are not told.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "PackageParameter",

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Literal, TypeVar
@@ -25,6 +24,7 @@ from grammar.semantics.types import (
     Structure,
     Type,
 )
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "Message",

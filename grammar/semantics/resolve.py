@@ -12,7 +12,6 @@ Linear in the size of the file, and without recursion: depth of nesting meets no
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from grammar.semantics.link import Project
@@ -20,6 +19,7 @@ from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotF
 from grammar.semantics.symbols import Kind, TypeSymbol
 from grammar.syntax import ast
 from grammar.syntax.references import PLANS, Space
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Resolution", "Use", "resolve"]
 

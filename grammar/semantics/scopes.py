@@ -13,7 +13,7 @@ silent about the rest; `Reason` says why.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Protocol
 
@@ -32,6 +32,7 @@ from grammar.semantics.symbols import (
 from grammar.semantics.types import SCALARS, Array, Enumeration, Scalar, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.references import Space
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "Answer",

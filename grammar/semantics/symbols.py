@@ -16,13 +16,14 @@ declared twice is data here: the first declaration counts.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from grammar.semantics.types import Type
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "Access",

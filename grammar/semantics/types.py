@@ -13,9 +13,10 @@ assigned to what is decided by `grammar.semantics.assignability`, what operators
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from grammar.semantics.rules import is_confirmed
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "AXES",

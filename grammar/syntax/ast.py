@@ -16,8 +16,9 @@ walks over statements must not recurse; within a line nodes lie at most
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TypeVar
+
+from support.lazy_dataclass import dataclass
 
 Span = tuple[int, int]
 

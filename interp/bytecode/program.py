@@ -12,13 +12,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
 from grammar.semantics.types import SCALARS, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw, kind_at, raw_of_word, size
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "BASIC_TYPES",

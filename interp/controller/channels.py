@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from grammar.semantics.types import CHAR, REAL, Array
@@ -31,6 +31,7 @@ from interp.values.values import (
     set_text,
     text_of,
 )
+from support.lazy_dataclass import dataclass
 
 __all__ = ["COMMANDS", "Channels", "Waiting", "state_value"]
 

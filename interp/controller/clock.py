@@ -5,8 +5,10 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import count
+
+from support.lazy_dataclass import dataclass
 
 __all__ = ["ActionQueue", "Clock", "TimedAction", "microseconds"]
 

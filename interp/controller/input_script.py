@@ -16,12 +16,12 @@ language stands behind ``;@ io:`` in conformance cases.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import Final, NoReturn
 
 from interp.controller.clock import microseconds
 from interp.port.requests import Path
 from interp.values.faults import RuntimeFailure
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "Action",

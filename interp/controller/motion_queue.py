@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 from interp.controller.arm_control import ArmControl
@@ -43,6 +42,7 @@ from interp.values.faults import Fault
 from interp.values.json_form import to_json
 from interp.values.poses import Pose
 from interp.values.values import EnumValue
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from functools import cache
 from importlib import resources
@@ -17,6 +16,7 @@ from typing import Any, TypeVar
 
 from interp.values.faults import RuntimeFailure
 from support.files.untrusted import DocumentError, read_text, toml_of
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Profile", "ProfileError", "profile_names"]
 

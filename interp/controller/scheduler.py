@@ -9,7 +9,7 @@ which anything can happen. Nothing depends on wall-clock time, so a program has 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, Literal
 
 from interp.controller.advance_run import AdvanceRun
@@ -29,6 +29,7 @@ from interp.controller.waits import Waits
 from interp.port.requests import At, Crash, End, Fail, Request, Slice
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking

@@ -7,7 +7,7 @@ trigger, or a cyclic signal that is computed.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, Literal
 
 from interp.controller.interrupts import Interrupt, Interrupts
@@ -16,6 +16,7 @@ from interp.port.executor import Executor, Reader
 from interp.port.requests import At, CodeHandle, Request, SetTrigger, SwitchSignal, Value
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
+from support.lazy_dataclass import dataclass
 
 __all__ = ["ALWAYS", "PROGRAM", "Answer", "Blocked", "Level", "LevelKind", "Task"]
 

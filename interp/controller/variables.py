@@ -12,7 +12,6 @@ A motion takes a `Snapshot` of the advance values along. When it starts, that be
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from math import prod
 from typing import Any, Final, Protocol
 
@@ -31,6 +30,7 @@ from interp.values.values import (
     fill,
     zero,
 )
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Computed", "Live", "Snapshot", "Variables", "part"]
 

@@ -11,10 +11,11 @@ What a FOR gives its counter, and what a function changes in its arguments, is a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, Literal, Protocol
 
 from interp.port.requests import At, Path, Value
+from support.lazy_dataclass import dataclass
 
 __all__ = ["EVERY_KIND", "ExecutorEvent", "Kind", "Recorder", "Sink", "wanting"]
 

@@ -6,13 +6,13 @@ an executor that has ended.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 from grammar.semantics.types import Type
 from interp.port.executor import Executor
 from interp.port.requests import At
 from interp.values.values import Value
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Inspectable", "Seen", "StackFrame"]
 

@@ -10,8 +10,9 @@ is handed over as a `CodeHandle`, which only the executor understands.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
+
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "Asking",

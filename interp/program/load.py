@@ -9,7 +9,7 @@ called [SCO-10].
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 
@@ -26,6 +26,7 @@ from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
 from interp.standins.unreadable_lines import readable
 from interp.values.faults import LinkError
+from support.lazy_dataclass import dataclass
 
 __all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
 

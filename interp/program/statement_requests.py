@@ -7,12 +7,12 @@ field of the request behind ``at``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from grammar.semantics.types import INT, REAL, Type
 from grammar.syntax import ast
 from interp.port import requests
+from support.lazy_dataclass import dataclass
 
 __all__ = ["STATEMENT_REQUESTS", "Part", "StatementRequest"]
 

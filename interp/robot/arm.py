@@ -11,12 +11,13 @@ is asked anew each time.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from interp.port.requests import At, SplineRange
 from interp.robot.kinematics.placement import Placement
 from interp.values.poses import IDENTITY, Pose
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,7 +8,7 @@ names are used. Stand-ins are files like others, so executors and checks know no
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
 
@@ -30,6 +30,7 @@ from interp.standins.signatures import Signatures
 from interp.standins.unreadable_lines import UNREADABLE
 from interp.standins.unset_data import unset_data, with_values
 from interp.standins.uses import FOLDER, DataUse, Uses
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Completed", "StandIn", "complete", "summary"]
 

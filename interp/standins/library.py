@@ -9,7 +9,7 @@ Types and variables of option packages are those of `grammar.semantics.packages`
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -17,6 +17,7 @@ from importlib.resources.abc import Traversable
 from grammar.semantics.packages import load_packages
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Datum", "Library", "load_library"]
 

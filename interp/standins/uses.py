@@ -8,7 +8,7 @@ structures. `Uses` gathers this over the files of a project; nothing is guessed 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from grammar.check.framework import Checked
@@ -33,6 +33,7 @@ from grammar.semantics.types import (
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import walk
+from support.lazy_dataclass import dataclass
 
 __all__ = ["FOLDER", "DataUse", "RoutineUse", "Uses"]
 

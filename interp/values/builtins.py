@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -45,6 +44,7 @@ from interp.values.values import (
     single,
     text_of,
 )
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "BUILTINS",

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import operator as python
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 from typing import Any, Literal, cast
@@ -36,6 +35,7 @@ from grammar.semantics.types import (
 from interp.values.faults import fault
 from interp.values.geometric_operator import composed
 from interp.values.values import EnumValue, StructureValue, Value, integer, rounded, single
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "BINARY",

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from typing import Any, Final
 
@@ -47,6 +47,7 @@ from grammar.semantics.types import (
     is_same,
 )
 from interp.values.faults import LinkError, fault
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "REAL_MAX",

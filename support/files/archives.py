@@ -19,11 +19,12 @@ import zlib
 from collections import Counter, OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import IO
 
 from support.files.untrusted import open_file
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "ArchiveError",

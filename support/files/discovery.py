@@ -11,12 +11,13 @@ import os
 import stat
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 from support.files import archives
 from support.files.archives import ArchiveError, is_archive
 from support.files.untrusted import open_file
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "DRIVE_FOLDERS",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from grammar.semantics.types import Array, Type
@@ -23,6 +23,7 @@ from interp.bytecode.program import (
     stack_cells,
 )
 from interp.bytecode.verifier.successors import ENDS
+from support.lazy_dataclass import dataclass
 
 __all__ = ["CopyBuffer", "Label", "Writer"]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Protocol
 
 from grammar.semantics.scopes import Scope
@@ -15,6 +15,7 @@ from interp.bytecode.compiler.locations import Location
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.program import CodeKind
 from interp.program.load import CheckedProgram, Routine, Unit
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Binding", "CodeObjects", "Context", "Deferred", "Refusal", "Shared"]
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from grammar.semantics.types import Type
 from interp.bytecode.compiler.array_bounds import Bound
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "DataCells",

@@ -19,7 +19,6 @@ sentence   what it does, and the faults it raises
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Final
@@ -27,6 +26,7 @@ from typing import Final
 from interp.bytecode.instruction_set.effects import EffectStep, steps_of
 from interp.program.variables import MOST_CELLS
 from interp.values.faults import FAULTS
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "FORMAT",

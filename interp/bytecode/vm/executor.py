@@ -11,7 +11,6 @@ behind the one that RESUME comes back to.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
@@ -42,6 +41,7 @@ from interp.port.requests import (
 from interp.program.load import Limits
 from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Machine"]
 

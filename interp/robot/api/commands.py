@@ -17,13 +17,14 @@ on, and then ``ended``, ``cancelled`` or ``failed``. Times are whole microsecond
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Literal
 
 from interp.port.requests import Path, Value
 from interp.robot.arm import ArmEvent, Motion, Place
 from interp.values.faults import Fault
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "CallCommand",

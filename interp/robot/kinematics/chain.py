@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from interp.values.poses import IDENTITY, Pose
+from support.lazy_dataclass import dataclass
 
 __all__ = ["Chain", "Joint", "Point"]
 

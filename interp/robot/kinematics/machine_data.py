@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from functools import reduce
 from operator import matmul
@@ -27,6 +27,7 @@ from interp.robot.kinematics.carrier import Carrier
 from interp.robot.kinematics.chain import Chain, Joint
 from interp.robot.kinematics.data_list import DataListError, Key, Value, read_data_list
 from interp.values.poses import IDENTITY, Pose
+from support.lazy_dataclass import dataclass
 
 __all__ = [
     "ROBOT_AXES",

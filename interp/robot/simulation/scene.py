@@ -26,13 +26,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from interp.robot.kinematics.chain import Point
 from interp.values.poses import IDENTITY, Pose
 from support.files.untrusted import DocumentError, read_text, toml_of
+from support.lazy_dataclass import dataclass
 
 __all__ = ["SHAPES", "Scene", "SceneError", "SceneObject", "read_scene"]
 

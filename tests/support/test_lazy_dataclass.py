@@ -1,0 +1,96 @@
+"""Dataclasses whose generated code is compiled late behave like those of the standard library."""
+
+import copy
+import dataclasses
+import pickle
+from dataclasses import field
+from typing import Any
+
+import pytest
+
+from support import lazy_dataclass
+
+
+@lazy_dataclass.dataclass(frozen=True, slots=True)
+class _Lazy:
+    first: int
+    second: list[int] = field(default_factory=list)
+    third: str = field(default="x", repr=False, compare=False)
+    fourth: float = field(default=0.5, kw_only=True)
+    made: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "made", self.first + 1)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Eager:
+    first: int
+    second: list[int] = field(default_factory=list)
+    third: str = field(default="x", repr=False, compare=False)
+    fourth: float = field(default=0.5, kw_only=True)
+    made: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "made", self.first + 1)
+
+
+@lazy_dataclass.dataclass(slots=True)
+class _Open:
+    value: float
+
+
+_GIVEN: tuple[tuple[tuple[Any, ...], dict[str, Any]], ...] = (
+    ((1,), {}),
+    ((1, [2]), {"fourth": 2.5}),
+    ((1,), {"third": "y"}),
+    ((), {}),
+    ((1, [2], "z", 3.5), {}),
+    ((1,), {"first": 2}),
+    ((1,), {"made": 2}),
+)
+
+
+@pytest.mark.parametrize(("values", "named"), _GIVEN)
+def test_arguments_are_taken_alike(values: tuple[Any, ...], named: dict[str, Any]) -> None:
+    """The same arguments make the same values, or are refused."""
+
+    def made(kind: Any) -> object:
+        try:
+            one = kind(*values, **named)
+        except TypeError:
+            return TypeError
+        return dataclasses.asdict(one), repr(one).partition("(")[2]
+
+    assert made(_Eager) == made(_Lazy)
+
+
+def test_each_instance_has_a_list_of_its_own() -> None:
+    """A factory is called for each instance."""
+    one, other = _Lazy(1), _Lazy(1)
+    one.second.append(5)
+    assert ([5], []) == (one.second, other.second)
+
+
+def test_what_is_compared_is_compared_alike() -> None:
+    """Equality and hash go by the fields that count; another class is never equal."""
+    assert [True, False, False] == [
+        _Lazy(1) == _Lazy(1, third="y"),
+        _Lazy(1) == _Lazy(2),
+        _Lazy(1).__eq__(_Eager(1)) is True,
+    ]
+    nan = float("nan")
+    assert _Open(nan) == _Open(nan)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(_Open(1.0))
+
+
+def test_frozen_means_frozen() -> None:
+    """A field can neither be set nor deleted; copies and pickles are made all the same."""
+    one = _Lazy(1, [2])
+    with pytest.raises(dataclasses.FrozenInstanceError, match="first"):
+        one.first = 2  # type: ignore[misc]
+    with pytest.raises(dataclasses.FrozenInstanceError, match="first"):
+        del one.first
+    assert one == copy.copy(one) == pickle.loads(pickle.dumps(one))
+    assert 3 == dataclasses.replace(one, first=2).made
