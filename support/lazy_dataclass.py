@@ -1,15 +1,13 @@
 """Dataclasses whose generated code is compiled when the first instance is made.
 
 `dataclasses.dataclass` compiles up to seven functions for each class, which was a third of the
-start of a command: most of the classes that it loads it never makes. Here ``__init__`` is compiled
-at its first call, and the other methods are closures that need no compiling. Nothing else differs,
-but that ``__init__`` has no signature of its own before.
+start of a command: most of the classes that it loads it never makes. Here methods are compiled at
+their first call. Nothing else differs, but that ``__init__`` has no signature of its own before.
 """
 
 import dataclasses
 from collections.abc import Callable
 from functools import partial
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 __all__ = ["dataclass"]
@@ -24,66 +22,75 @@ else:
             return partial(dataclass, frozen=frozen, eq=eq, slots=slots)
         own = frozenset(vars(cls))
         made = dataclasses.dataclass(init=False, repr=False, eq=False, slots=slots)(cls)
-        added = {"__init__": _init_of(made, frozen), "__repr__": _repr}
+        init = _frozen_init if frozen else _init
+        added = {"__init__": _late(made, "__init__", init), "__repr__": _repr}
+        if eq:
+            added["__eq__"] = _late(made, "__eq__", _eq)
+            added["__hash__"] = _late(made, "__hash__", _hash) if frozen else None
         if frozen:
             added |= {"__setattr__": _set, "__delattr__": _delete}
         if frozen and slots:
-            added |= {"__getstate__": _state, "__setstate__": _restore}
-        if eq:
-            added |= _comparison(made, frozen)
+            added |= _state(made)
         for name, method in added.items():
             if name not in own:
                 setattr(made, name, method)
         return made
 
 
-def _init_of(cls: Any, frozen: bool) -> Callable[..., None]:
-    def initialise(self: Any, *values: Any, **named: Any) -> None:
-        cls.__init__ = _compiled_init(cls, frozen)
-        cls.__init__(self, *values, **named)
+def _late(cls: Any, name: str, text_of: Callable[[Any], tuple[str, dict[str, Any]]]) -> Any:
+    """A method that at its first call puts in its place what is compiled of a text."""
 
-    return initialise
+    def method(self: Any, *values: Any, **named: Any) -> Any:
+        text, known = text_of(cls)
+        exec(text, known)
+        setattr(cls, name, known[name])
+        return known[name](self, *values, **named)
+
+    return method
 
 
-def _compiled_init(cls: Any, frozen: bool) -> Callable[..., None]:
+def _frozen_init(cls: Any) -> tuple[str, dict[str, Any]]:
+    return _init(cls, "set_(self_, {0!r}, {1})")
+
+
+def _init(cls: Any, assignment: str = "self_.{0} = {1}") -> tuple[str, dict[str, Any]]:
     known: dict[str, Any] = {"set_": object.__setattr__, "MISSING": dataclasses.MISSING}
-    fields = [one for one in dataclasses.fields(cls) if one.init]
     heads, lines = ["self_"], []
-    for one in sorted(fields, key=lambda one: bool(one.kw_only)):
+    for one in sorted(dataclasses.fields(cls), key=lambda one: bool(one.kw_only)):
         name = value = head = one.name
+        default = f"{name}_default"
         if one.default is not dataclasses.MISSING:
-            known[f"{name}_default"] = one.default
-            head = f"{name}={name}_default"
+            known[default] = one.default
+            head = f"{name}={default}"
         elif one.default_factory is not dataclasses.MISSING:
-            known[f"{name}_factory"] = one.default_factory
-            head = f"{name}=MISSING"
-            value = f"{name}_factory() if {name} is MISSING else {name}"
-        heads += ["*", head] if one.kw_only and "*" not in heads else [head]
-        lines.append(f"set_(self_, {name!r}, {value})" if frozen else f"self_.{name} = {value}")
+            known[default] = one.default_factory
+            default += "()"
+            head, value = f"{name}=MISSING", f"{default} if {name} is MISSING else {name}"
+        elif not one.init:
+            continue
+        if one.init:
+            heads += ["*", head] if one.kw_only and "*" not in heads else [head]
+        else:
+            value = default
+        lines.append(assignment.format(name, value))
     if hasattr(cls, "__post_init__"):
         lines.append("self_.__post_init__()")
-    exec(f"def __init__({', '.join(heads)}):\n " + "\n ".join(lines or ["pass"]), known)
-    init: Callable[..., None] = known["__init__"]
-    return init
+    return f"def __init__({', '.join(heads)}):\n " + "\n ".join(lines or ["pass"]), known
 
 
-def _comparison(cls: Any, frozen: bool) -> dict[str, Callable[..., Any] | None]:
-    names = [one.name for one in dataclasses.fields(cls) if one.compare]
-    values: Callable[[Any], tuple[Any, ...]] = (
-        attrgetter(*names)
-        if len(names) > 1
-        else lambda one: tuple(getattr(one, name) for name in names)
-    )
+def _compared(cls: Any, name: str) -> str:
+    return "".join(f"{name}.{one.name}, " for one in dataclasses.fields(cls) if one.compare)
 
-    def equals(self: Any, other: object) -> object:
-        if other.__class__ is not self.__class__:
-            return NotImplemented
-        return values(self) == values(other)
 
-    def hashed(self: Any) -> int:
-        return hash(values(self))
+def _eq(cls: Any) -> tuple[str, dict[str, Any]]:
+    mine, others = _compared(cls, "self"), _compared(cls, "other")
+    is_same = "other.__class__ is self.__class__"
+    value = f"({mine}) == ({others}) if {is_same} else NotImplemented"
+    return f"def __eq__(self, other):\n return {value}", {}
 
-    return {"__eq__": equals, "__hash__": hashed if frozen else None}
+
+def _hash(cls: Any) -> tuple[str, dict[str, Any]]:
+    return f"def __hash__(self):\n return hash(({_compared(cls, 'self')}))", {}
 
 
 def _repr(self: Any) -> str:
@@ -93,13 +100,17 @@ def _repr(self: Any) -> str:
     return f"{type(self).__qualname__}({', '.join(shown)})"
 
 
-def _state(self: Any) -> list[Any]:
-    return [getattr(self, one.name) for one in dataclasses.fields(self)]
+def _state(cls: Any) -> dict[str, Callable[..., Any]]:
+    names = [one.name for one in dataclasses.fields(cls)]
 
+    def state(self: Any) -> list[Any]:
+        return [getattr(self, name) for name in names]
 
-def _restore(self: Any, state: list[Any]) -> None:
-    for one, value in zip(dataclasses.fields(self), state, strict=True):
-        object.__setattr__(self, one.name, value)
+    def restore(self: Any, values: list[Any]) -> None:
+        for name, value in zip(names, values, strict=True):
+            object.__setattr__(self, name, value)
+
+    return {"__getstate__": state, "__setstate__": restore}
 
 
 def _set(_self: object, name: str, _value: object) -> NoReturn:

@@ -18,6 +18,8 @@ class _Lazy:
     third: str = field(default="x", repr=False, compare=False)
     fourth: float = field(default=0.5, kw_only=True)
     made: int = field(init=False)
+    told: list[int] = field(init=False, default_factory=list)
+    state: str = field(init=False, default="new")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "made", self.first + 1)
@@ -30,6 +32,8 @@ class _Eager:
     third: str = field(default="x", repr=False, compare=False)
     fourth: float = field(default=0.5, kw_only=True)
     made: int = field(init=False)
+    told: list[int] = field(init=False, default_factory=list)
+    state: str = field(init=False, default="new")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "made", self.first + 1)
