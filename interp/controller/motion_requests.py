@@ -59,8 +59,13 @@ class MotionRequests:
         return self._skip(task, request.at, own_fault("motion_kind"))
 
     def _skip(self, task: Task, at: At, error: Fault) -> Answer:
-        """Go on without a motion if the profile is tolerant; else raises its `Fault`."""
+        """Go on without a motion if the profile is tolerant; else raises its `Fault`.
+
+        One that is skipped again ends the slice: a loop in which all fails lets time pass.
+        """
         if not self._state.profile.is_tolerant:
             raise error
+        if (at.file, at.line) in self._state.skipped:
+            task.spent = self._state.profile.requests
         self._state.skip(task.name, at, error)
         return None

@@ -232,6 +232,17 @@ def test_skipped_motion() -> None:
     assert (("end", ""), [(4, 1366)]) == (_outcome(run), skipped)
 
 
+def test_a_loop_of_skipped_motions_lets_time_pass() -> None:
+    """A motion that is skipped again takes a cycle, so that a loop of nothing else has its end."""
+    program = _main(
+        f"OPT ( )\n{HOME}WAIT SEC 0\nFOR I=1 TO 5\nLIN {{X 9000.0}}\nENDFOR\n", declared="INT I\n"
+    )
+    run = _run(program)
+    moved = max(event.time for event in run.events if event.kind == "motion_end")
+    assert ("end", "") == _outcome(run)
+    assert 3 == run.outcome.time // 12_000 - moved // 12_000
+
+
 #: Each fails in line 4 of the program.
 _FAILING = (
     "IF N==1 THEN\nPTP {A1 1}\nELSE\nPTP {A1 2}\nENDIF\n",
