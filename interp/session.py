@@ -80,7 +80,8 @@ class RunSetup:
     ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
     assignment told; without ``is_told`` executors tell nothing that the run does not need, which
-    leaves calls and branches out of the trace. ``motion`` is how motions are planned: as they
+    leaves calls and branches out of the trace, without ``is_submit_told`` those of the submit
+    program. ``motion`` is how motions are planned: as they
     become known, or in batches. ``until`` is the most virtual time in µs, ``patience`` how long the
     arm may stand before it counts as over; ``limits`` are the most statements and calls.
     ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
@@ -101,6 +102,7 @@ class RunSetup:
     start: tuple[float, ...] | None = None
     is_full: bool = False
     is_told: bool = True
+    is_submit_told: bool = True
     motion: Literal["lookahead", "batch"] = "lookahead"
     until: int = HOUR
     patience: int = HOUR
@@ -183,7 +185,8 @@ def run_program(
         robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
     tracking = _tracking(arm, robot, machine, start, setup)
     trace = Trace(take, kinds=_kinds(program, setup))
-    sink, submit_sink = trace.sink(), trace.sink("submit")
+    silent = None if setup.is_submit_told else _needed_kinds(program)
+    sink, submit_sink = trace.sink(), trace.sink("submit", silent)
     limits = replace(
         setup.limits or Limits(per_slice=profile.statements),
         skips_failures=setup.skips_failures and profile.is_tolerant and debugger is None,
@@ -274,8 +277,10 @@ def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
     """What executors tell; at least the calls that interrupts and $ERR go by."""
     if setup.is_full:
         return EVERY_KIND
-    if setup.is_told:
-        return WORLD_KINDS
+    return WORLD_KINDS if setup.is_told else _needed_kinds(program)
+
+
+def _needed_kinds(program: CheckedProgram) -> frozenset[Kind]:
     routines = (routine.node for routine in program.routines.values())
     statements = (one.statement for routine in routines for one in placed(routine.body))
     needs_calls = any(isinstance(one, _NEED_CALLS) for one in statements)

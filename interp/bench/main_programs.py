@@ -55,11 +55,21 @@ _ROUNDS: Final = 100
 PATIENCE: Final = 20_000_000
 
 #: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
-#: ``goes on`` where it still moved, or went round in a loop, when its time was over, ``unlinked``
-#: at what no file has, ``refused`` where it could not begin, ``cpu`` where it has taken too long
-#: for whoever waits.
+#: ``goes on`` where it went round in a loop when its time was over, ``moves`` where it still moved
+#: then and nothing tells whether it would have ended, ``unlinked`` at what no file has, ``refused``
+#: where it could not begin, ``cpu`` where it has taken too long for whoever waits.
 Result = Literal[
-    "end", "halt", "fault", "unlinked", "waits", "goes on", "budget", "cpu", "refused", "crash"
+    "end",
+    "halt",
+    "waits",
+    "goes on",
+    "moves",
+    "fault",
+    "unlinked",
+    "refused",
+    "budget",
+    "cpu",
+    "crash",
 ]
 
 
@@ -206,7 +216,9 @@ def run_main(
     seen = _Seen()
     text = script + "\n" + OPERATOR
     script_read = Script.read(text, f"{main.routine}.io")
-    setup = replace(setup, submit=main.submit, script=script_read, patience=PATIENCE)
+    setup = replace(
+        setup, submit=main.submit, script=script_read, patience=PATIENCE, is_submit_told=False
+    )
 
     def on_time(now: int) -> None:
         seen.now = now
@@ -218,7 +230,7 @@ def run_main(
     except LinkError as error:
         return Ran("refused", 0.0, 0, reason=str(error))
     except _Over:
-        over: Result = "goes on" if seen.visits[seen.at] >= _ROUNDS else "cpu"
+        over: Result = "goes on" if seen.is_in_loop else "cpu"
         reason = "no CPU time is left"
         return Ran(over, seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
     except ScriptError:
@@ -235,7 +247,9 @@ def run_main(
     place = "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}"
     result: Result
     if outcome.ending == "time":
-        result = "goes on" if outcome.time >= setup.until else "waits"
+        result = "waits"
+        if outcome.time >= setup.until:
+            result = "goes on" if seen.is_in_loop else "moves"
     elif outcome.ending == "fault" and not isinstance(outcome.error, Fault):
         result = "unlinked"
     else:
@@ -287,6 +301,11 @@ class _Seen:
     now: int = 0
     at: str = ""
     visits: Counter[str] = field(default_factory=Counter)
+
+    @property
+    def is_in_loop(self) -> bool:
+        """Whether the last line has been told of often."""
+        return self.visits[self.at] >= _ROUNDS
 
     def take(self, event: TraceEvent) -> None:
         self.motions += event.kind == "motion_end"

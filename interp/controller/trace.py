@@ -115,28 +115,24 @@ class Trace:
         finally:
             self.origin = before
 
-    def sink(self, task: TaskName = "robot") -> TaskSink:
-        """The sink of an executor whose events belong into this trace."""
-        return TaskSink(self, task)
+    def sink(self, task: TaskName = "robot", kinds: frozenset[Kind] | None = None) -> TaskSink:
+        """The sink of an executor whose events belong into this trace; ``kinds`` as for that."""
+        return TaskSink(self, task, self.kinds if kinds is None else kinds)
 
 
 class TaskSink:
     """Records the events of one executor.
 
     ``left`` is called with the depth of each routine that has ended: interrupts that it declared
-    end with it [INT-04].
+    end with it [INT-04]. ``kinds`` are those that it wants.
     """
 
-    def __init__(self, trace: Trace, task: TaskName) -> None:
+    def __init__(self, trace: Trace, task: TaskName, kinds: frozenset[Kind]) -> None:
         self.task: TaskName = task
+        self.kinds = kinds
         self.left: Callable[[int], None] | None = None
         self._trace = trace
         self._names: dict[int, str] = {}
-
-    @property
-    def kinds(self) -> frozenset[Kind]:
-        """Those of the trace."""
-        return self._trace.kinds
 
     def routine(self, depth: int) -> str:
         """The name of the routine called last to this depth."""

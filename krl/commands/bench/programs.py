@@ -35,6 +35,7 @@ _RESULTS = {
     "halt": "to a HALT",
     "waits": "waits for ever",
     "goes on": "never ends",
+    "moves": "still moves",
     "fault": "a fault",
     "unlinked": "needs what no file has",
     "refused": "cannot begin",
