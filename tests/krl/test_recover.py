@@ -19,11 +19,14 @@ from grammar.notation.generate import GRAMMAR
 from krl.cli import main
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import text_of
+from support.parallel import dask_cluster
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
 FINE = b"DEF A()\nHALT\nEND\n"
 STEP = b"DEF A()\r\nFOR I=1 TO 9 STEP %s\r\nENDFOR\r\nEND\r\n"
 RETURN = b"DEF B()\nRETURN 1\nEND\n"
+#: What the small grammar of the tests does not read; it is surveyed in no time.
+TWO = b"DEF B()\nWAIT X Y\nEND\n"
 posix_only = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
 pytestmark = pytest.mark.usefixtures("elsewhere")
 
@@ -50,6 +53,14 @@ def corpus(tmp_path: Path) -> Path:
 def recover(*arguments: str | Path, grammar: Path = PRELIMINARY) -> int:
     """Run `krl recover` in this process."""
     return main(["recover", "--grammar", str(grammar), "--jobs", "1", *map(str, arguments)])
+
+
+@pytest.fixture
+def small(tmp_path: Path, small_grammar: str) -> Path:
+    """The small grammar of the tests as a file."""
+    file = tmp_path / "small.g4"
+    file.write_text(small_grammar, encoding="utf-8", newline="\n")
+    return file
 
 
 def record(folder: Path) -> dict[str, Any]:
@@ -100,11 +111,11 @@ def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Surveyed:
 # -------------------------------------------------------------------------------- statuses
 
 
-def test_failures_are_what_a_survey_is_for(surveyed: Surveyed, tmp_path: Path) -> None:
+def test_failures_are_what_a_survey_is_for(surveyed: Surveyed, small: Path, tmp_path: Path) -> None:
     """A completed survey is fine, whatever it found; `--strict` makes failures findings."""
     assert 0 == surveyed.status
-    root = lay(tmp_path / "corpus", back=RETURN)
-    assert 1 == recover(root, "--out", tmp_path / "out", "--strict")
+    root = lay(tmp_path / "corpus", two=TWO)
+    assert 1 == recover(root, "--out", tmp_path / "out", "--strict", grammar=small)
 
 
 def test_strict_is_content_where_every_file_parses(tmp_path: Path) -> None:
@@ -138,9 +149,14 @@ WRONG = {
 
 @pytest.mark.parametrize("what", WRONG)
 def test_wrong_input_is_one_clear_line(
-    what: str, tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str]
+    what: str,
+    tmp_path: Path,
+    elsewhere: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """One line on stderr, status 2, nothing on stdout, and nothing written."""
+    monkeypatch.setattr(dask_cluster, "_GREETING", 0.1)  # no scheduler comes that late
     lay(tmp_path / "corpus", fine=FINE)
     (tmp_path / "empty").mkdir()
     (tmp_path / "notes.txt").write_text("no KRL", encoding="utf-8")
@@ -224,13 +240,13 @@ def test_a_second_survey_of_the_same_is_the_same(
     assert settled(record(surveyed.out)) == settled(record(tmp_path))
 
 
-def test_a_second_survey_sees_what_has_changed(tmp_path: Path) -> None:
+def test_a_second_survey_sees_what_has_changed(small: Path, tmp_path: Path) -> None:
     """A file mended since the last survey parses in the next one."""
-    corpus = lay(tmp_path / "corpus", back=RETURN, fine=FINE)
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    (corpus / "back" / "back.src").write_bytes(FINE)
-    (corpus / "fine" / "fine.src").write_bytes(RETURN)
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
+    corpus = lay(tmp_path / "corpus", two=TWO, fine=FINE)
+    assert 0 == recover(corpus, "--out", tmp_path / "out", grammar=small)
+    (corpus / "two" / "two.src").write_bytes(FINE)
+    (corpus / "fine" / "fine.src").write_bytes(TWO)
+    assert 0 == recover(corpus, "--out", tmp_path / "out", grammar=small)
     failures = record(tmp_path / "out")["failures"]
     assert ["fine.src"] == [failure["path"].split("/")[-1] for failure in failures]
 
@@ -244,15 +260,15 @@ def test_jobs_make_no_difference(surveyed: Surveyed, tmp_path: Path) -> None:
     assert settled(record(surveyed.out)) == settled(record(tmp_path))
 
 
-def test_files_folders_and_archives_can_be_named_together(tmp_path: Path) -> None:
+def test_files_folders_and_archives_can_be_named_together(small: Path, tmp_path: Path) -> None:
     """Each thing named is surveyed, once, in any order."""
-    corpus = lay(tmp_path / "corpus", fine=FINE, back=RETURN, other=FINE)
+    corpus = lay(tmp_path / "corpus", fine=FINE, two=TWO, other=FINE)
     archive = tmp_path / "cell.zip"
     with zipfile.ZipFile(archive, "w") as stream:
-        stream.writestr("KRC/R1/Program/a.src", RETURN + b"\n")
-    places = [corpus / "fine", archive, corpus / "back" / "back.src"]
-    assert 0 == recover(*places, "--out", tmp_path / "1")
-    assert 0 == recover(*places[::-1], places[0], "--out", tmp_path / "2")
+        stream.writestr("KRC/R1/Program/a.src", TWO + b"\n")
+    places = [corpus / "fine", archive, corpus / "two" / "two.src"]
+    assert 0 == recover(*places, "--out", tmp_path / "1", grammar=small)
+    assert 0 == recover(*places[::-1], places[0], "--out", tmp_path / "2", grammar=small)
     assert settled(record(tmp_path / "1")) == settled(record(tmp_path / "2"))
     assert 3 == record(tmp_path / "1")["files"]
 
@@ -282,11 +298,11 @@ def test_negatives_judge_the_proposals(tmp_path: Path) -> None:
     assert [{0}, {1}] == accepted
 
 
-def test_the_working_directory_makes_no_difference(tmp_path: Path) -> None:
+def test_the_working_directory_makes_no_difference(small: Path, tmp_path: Path) -> None:
     """As a process of its own, from another folder, absolute paths are all it needs."""
-    corpus = lay(tmp_path / "corpus", back=RETURN)
-    assert 0 == recover(corpus, "--out", tmp_path / "here")
-    options = ["--out", str(tmp_path / "there"), "--jobs", "1", "--grammar", str(PRELIMINARY)]
+    corpus = lay(tmp_path / "corpus", two=TWO)
+    assert 0 == recover(corpus, "--out", tmp_path / "here", grammar=small)
+    options = ["--out", str(tmp_path / "there"), "--jobs", "1", "--grammar", str(small)]
     done = subprocess.run(
         [sys.executable, "-m", "krl", "recover", str(corpus), *options],
         cwd=corpus,
@@ -343,12 +359,12 @@ HOSTILE = (
 
 
 def test_source_cannot_steer_the_terminal(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Escape sequences, bidirectional marks and markup of a program are shown, never obeyed."""
     texts = {f"p{n}": f"DEF A()\n{line}\nEND\n".encode() for n, line in enumerate(HOSTILE)}
     lay(tmp_path / "corpus", **texts)
-    assert 0 == recover(tmp_path / "corpus", "--out", tmp_path / "out")
+    assert 0 == recover(tmp_path / "corpus", "--out", tmp_path / "out", grammar=small)
     said, complaint = capsys.readouterr()
     assert "" == complaint
     assert [] == [line for line in said.splitlines() if not line.isprintable()]
@@ -357,15 +373,15 @@ def test_source_cannot_steer_the_terminal(
 
 @posix_only
 def test_names_cannot_steer_the_terminal(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A file may be called anything; what is said of it stays on its line."""
     root = tmp_path / "corpus"
     root.mkdir()
     for name in ("a\x1b[31m.src", "b\nc.src", "d\u202e.src", "[-e].src"):
-        (root / name).write_bytes(RETURN)
+        (root / name).write_bytes(TWO)
     (root / "f\x1b]0;x\x07.src").write_bytes(b"\0" * 99)
-    assert 0 == recover(root, "--out", tmp_path / "out")
+    assert 0 == recover(root, "--out", tmp_path / "out", grammar=small)
     said, complaint = capsys.readouterr()
     assert [] == [line for line in (said + complaint).splitlines() if not line.isprintable()]
     data = record(tmp_path / "out")
