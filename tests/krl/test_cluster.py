@@ -126,9 +126,9 @@ def cluster(standing: _Cluster) -> _Cluster:
 
 
 @pytest.fixture
-def of_two(tmp_path: Path) -> Iterator[_Cluster]:
-    """Two workers, and a scheduler that tells of the first death."""
-    started = _Cluster(tmp_path, workers=2, failures=0)
+def of_one(tmp_path: Path) -> Iterator[_Cluster]:
+    """One worker, and a scheduler that tells of the first death."""
+    started = _Cluster(tmp_path, workers=1, failures=0)
     started.wait()
     yield started
     started.stop()
@@ -214,12 +214,13 @@ def _deadly(number: int) -> int:
     return 2 * number
 
 
-def test_what_kills_workers_is_told_from_what_was_beside_it(of_two: _Cluster) -> None:
+def test_what_kills_workers_is_told_from_what_was_beside_it(of_one: _Cluster) -> None:
     """Only the result of the task that kills is lost, and another worker goes on."""
-    of_two.hire()
-    of_two.wait()
+    for _ in range(2):
+        of_one.hire()
+    of_one.wait()
     tasks = ((number,) for number in range(7))
-    done = ordered_map(_deadly, tasks, scheduler=of_two.address, lost=lambda n: -n)
+    done = ordered_map(_deadly, tasks, scheduler=of_one.address, lost=lambda n: -n)
     assert [0, 2, 4, 6, -4, 10, 12] == list(done)
 
 
@@ -240,24 +241,23 @@ def test_result_that_comes_as_the_wait_ends_is_taken() -> None:
     assert 8 == dask_cluster._Awaited(_EndsLate(), None, "tcp://nobody").result()
 
 
-def test_scheduler_that_goes_away_is_one_clear_line(of_two: _Cluster) -> None:
+def test_scheduler_that_goes_away_is_one_clear_line(of_one: _Cluster) -> None:
     """Work does not wait for a scheduler that was killed."""
-    results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
+    results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_one.address)
     assert 18 == next(results)
-    of_two.scheduler.kill()
+    of_one.scheduler.kill()
     with pytest.raises(WorkersError, match=r"the scheduler at .* has gone"):
         list(results)
 
 
 def test_workers_that_all_go_are_one_clear_line(
-    of_two: _Cluster, monkeypatch: pytest.MonkeyPatch
+    of_one: _Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Work does not wait for ever where nobody is left to do it."""
     monkeypatch.setattr(dask_cluster, "_PATIENCE", 1.0)
-    results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_two.address)
+    results = ordered_map(_deadly, ((9,) for _ in range(50)), scheduler=of_one.address)
     assert 18 == next(results)
-    of_two.kill_a_worker()
-    of_two.kill_a_worker()
+    of_one.kill_a_worker()
     with pytest.raises(WorkersError, match=r"has no workers left|again and again"):
         list(results)
 
