@@ -190,7 +190,6 @@ class Debuggee:
                 self._connection.event("terminated")
 
     def _ran(self, prepare: Callable[[Debugger], None]) -> RunResult | None:
-        self.debugger = Debugger(self._program, self._client, self._log)
         prepare(self.debugger)
         with expected_errors():
             return debugged_run(
