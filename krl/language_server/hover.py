@@ -100,12 +100,9 @@ def _word_at(source: Source, offset: int) -> tuple[str, Region] | None:
 
 def found_at(looked: Looked, offset: int) -> Found | None:
     """What the name at an offset means, its end included: that is where a cursor often stands."""
-    if looked.checked is None:
-        return None
-    for name, answer in looked.checked.resolution.answers.items():
-        if name.span[0] <= offset <= name.span[1] and isinstance(answer, Found):
-            return answer
-    return None
+    return next(
+        (found for name, found in looked.names() if name.span[0] <= offset <= name.span[1]), None
+    )
 
 
 def _declared(project: OpenProject, looked: Looked, found: Found) -> str:

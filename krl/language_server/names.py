@@ -65,12 +65,10 @@ def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str,
 
 def highlights(looked: Looked, found: Found) -> set[Region]:
     """The places in one file of what a name means."""
-    if looked.checked is None:
-        return set()
     return {
         Region.of(looked.source, name.span)
-        for name, answer in looked.checked.resolution.answers.items()
-        if isinstance(answer, Found) and answer.symbol is found.symbol
+        for name, other in looked.names()
+        if other.symbol is found.symbol
     }
 
 
@@ -90,9 +88,15 @@ def renaming(
         raise RenameError("names with a dollar sign belong to the controller")
     listed = places(project, looked, offset)
     for path in {path for path, _ in listed}:
-        there = project.look(path)
-        if there is not None and name.upper() != symbol.key and _is_taken(there, name.upper()):
-            raise RenameError(f"{path.rpartition('/')[2]} has a {name} already")
+        there, file = project.look(path), path.rpartition("/")[2]
+        if there is None or there.checked is None:
+            continue
+        if name.upper() != symbol.key and _is_taken(there, name.upper()):
+            raise RenameError(f"{file} has a {name} already")
+        for answer in there.checked.resolution.answers.values():
+            meant = certain(answer)
+            if answer is not meant and isinstance(meant, Found) and meant.symbol is symbol:
+                raise RenameError(f"a line of {file} that cannot be read may mean it, too")
     return listed
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind
 from krl.language_server.workspace import Looked
 
@@ -34,15 +33,12 @@ def semantic_tokens(looked: Looked) -> Iterator[tuple[int, int, int, int]]:
 
     In the order of the file. Labels have no colour.
     """
-    if looked.checked is None:
-        return
-    answers = looked.checked.resolution.answers.items()
-    for name, answer in sorted(answers, key=lambda one: one[0].span):
-        if not isinstance(answer, Found) or answer.symbol.kind is Kind.LABEL:
+    for name, found in sorted(looked.names(), key=lambda one: one[0].span):
+        symbol = found.symbol
+        if symbol.kind is Kind.LABEL:
             continue
-        symbol = answer.symbol
-        is_declared_here = answer.module is looked.module and symbol.span == name.span
-        flags = (is_declared_here, symbol.kind is Kind.CONSTANT, answer.module is None)
+        is_declared_here = found.module is looked.module and symbol.span == name.span
+        flags = (is_declared_here, symbol.kind is Kind.CONSTANT, found.module is None)
         start, end = name.span
         if end > start:
             type_ = TYPES.index(_TYPE_OF.get(symbol.kind, "variable"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import inspect
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol, lsp_method
 from pygls.uris import from_fs_path, to_fs_path
 
 from grammar.diagnostics.diagnostic import Region
@@ -45,9 +46,27 @@ _AtPlace = (
 
 def server() -> LanguageServer:
     """A server that has not begun yet: `start_io` runs it."""
-    made = LanguageServer("krl", metadata.version("krl-workbench"), lsp.TextDocumentSyncKind.Full)
+    made = LanguageServer(
+        "krl",
+        metadata.version("krl-workbench"),
+        lsp.TextDocumentSyncKind.Full,
+        protocol_cls=_InUtf16,
+    )
     _Desk(made)
     return made
+
+
+class _InUtf16(LanguageServerProtocol):
+    """Counts characters as every client can, also for one that would rather have bytes."""
+
+    @lsp_method(lsp.INITIALIZE)
+    def lsp_initialize(
+        self, params: lsp.InitializeParams
+    ) -> Generator[Any, Any, lsp.InitializeResult]:
+        """What this server can do."""
+        if params.capabilities.general is not None:
+            params.capabilities.general.position_encodings = None
+        return (yield from super().lsp_initialize(params))
 
 
 class _Desk:

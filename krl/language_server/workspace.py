@@ -19,9 +19,10 @@ from grammar.check.suppression_comments import apply_suppressions, suppression_c
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.suppression import Selection
 from grammar.semantics.link import File, Project, link
-from grammar.semantics.scopes import Answer, MaybeElsewhere, Module, Scope
+from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, Scope
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
+from grammar.syntax.ast import Name
 from grammar.syntax.source import Source
 from krl.errors import InputError
 from krl.project_settings import Settings, baseline_place, read_baseline, settings_of
@@ -69,6 +70,14 @@ class Looked:
             if self.source.place(routine.routine.span[0])[0] <= line:
                 return self.project.scope(self.module, routine)
         return self.project.scope(self.module)
+
+    def names(self) -> Iterator[tuple[Name, Found]]:
+        """Each name with what it means, also where a line that cannot be read may declare it."""
+        if self.checked is not None:
+            for name, answer in self.checked.resolution.answers.items():
+                found = certain(answer)
+                if isinstance(found, Found):
+                    yield name, found
 
 
 def certain(answer: Answer) -> Answer:

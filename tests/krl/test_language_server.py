@@ -80,6 +80,15 @@ def test_places_of_a_name_are_those_of_its_declaration(project: OpenProject) -> 
     assert ["OTHER.src:2", "OTHER.src:3", "OTHER.src:4"] == listed(project, "OTHER.src", "PARTS")
 
 
+def test_a_line_that_cannot_be_read_hides_no_place(project: OpenProject) -> None:
+    """Its name keeps its other places, and is not renamed, as that line would keep the old one."""
+    path = next(one for one in project.paths() if one.endswith("CELL.src"))
+    project.change(path, PROGRAM.replace("  INT N\n", "  INT N\n  IF PARTS == == N THEN\n"))
+    assert {"CELL.dat:5", "CELL.src:4"} <= {*listed(project, "CELL.src", "PARTS\n")}
+    with pytest.raises(RenameError, match="cannot be read"):
+        listed(project, "CELL.src", "PARTS\n", "PIECES")
+
+
 def test_a_routine_is_renamed_in_all_files(project: OpenProject) -> None:
     """Its head and its calls are written anew."""
     assert ["CELL.src:6", "CELL.src:9", "OTHER.src:4"] == listed(

@@ -75,7 +75,10 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
     await editor.start_io(sys.executable, "-m", "krl", "lsp")
     await editor.initialize_async(
         lsp.InitializeParams(
-            capabilities=lsp.ClientCapabilities(),
+            # as Neovim says it, which would rather count bytes
+            capabilities=lsp.ClientCapabilities(
+                general=lsp.GeneralClientCapabilities(position_encodings=["utf-8", "utf-16"])
+            ),
             workspace_folders=[lsp.WorkspaceFolder(uri=folder.as_uri(), name="cell")],
             root_uri=folder.as_uri(),
         )
