@@ -34,15 +34,17 @@ NOTHING_KEPT: Final = ResultStore(None, "")
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What a case runs: lines by module, and ``cost``, how many in all, one by one.
+    """What a case runs: lines by module, negative in lambdas, and how many in all, one by one.
 
-    ``seen`` tells what was seen of it from anything else (`seen_digest`).
+    ``cost`` is that number. ``seen`` tells what was seen of it from anything else (`seen_digest`).
+    ``shared`` is how many cases run that of its lines which fewest do.
     """
 
     case: Case
     lines: Mapping[str, frozenset[int]]
     cost: int
     seen: str = ""
+    shared: int = 0
 
     def has(self, module: str, lines: frozenset[int]) -> bool:
         """Whether the case runs one of these lines of a module."""
@@ -127,7 +129,8 @@ def _counted() -> Iterator[Counter[tuple[str, int]]]:
 
     def on_line(frame: FrameType, event: str, _argument: Any) -> Any:
         if event == "line":
-            counts[frame.f_code.co_filename, frame.f_lineno] += 1
+            sign = -1 if frame.f_code.co_name == "<lambda>" else 1
+            counts[frame.f_code.co_filename, sign * frame.f_lineno] += 1
         return on_line
 
     def on_call(frame: FrameType, _event: str, _argument: Any) -> Any:

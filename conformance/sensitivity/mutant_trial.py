@@ -119,7 +119,17 @@ def reaches_of(
         kind = not one.case.may_fail, one.case.suite
         places[kind] += 1
         keyed.append(((kind[0], places[kind], *_price(one)), one))
-    return [one for _, one in sorted(keyed, key=itemgetter(0))]
+    running_it = Counter(
+        (module, line) for one in found for module, lines in one.lines.items() for line in lines
+    )
+    return [
+        replace(one, shared=_shared(one, running_it)) for _, one in sorted(keyed, key=itemgetter(0))
+    ]
+
+
+def _shared(reach: Reach, running_it: Mapping[tuple[str, int], int]) -> int:
+    every = ((module, line) for module, lines in reach.lines.items() for line in lines)
+    return min(map(running_it.__getitem__, every), default=0)
 
 
 def _price(reach: Reach) -> tuple[float, str]:
@@ -266,9 +276,11 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
 
 
 def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """The first so many that may fail, and of the others a tenth as many."""
+    """So many that may fail, half of them those that run what few others do; and a tenth others."""
     hard = [one for one in cases if one.case.may_fail]
-    yield from hard[:most]
+    first = hard[: most - most // 2]
+    yield from first
+    yield from sorted(hard[len(first) :], key=lambda one: one.shared)[: most // 2]
     yield from [one for one in cases if not one.case.may_fail][: max(1, most // 10)]
 
 

@@ -68,6 +68,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         ("interp.controller.*",),
         (
             "interp.controller.automatic_inputs",
+            "interp.controller.controller._listed",
             *(
                 f"interp.controller.controller.Controller.{name}"
                 for name in ("arm", "levels", "look", "unfulfilled")

@@ -80,7 +80,9 @@ class Change:
 
     ``function`` is the qualified name of the function it lies in, or the name that a module-level
     assignment gives a value to. ``lines``, first and last, are those of the statement or of its
-    condition. ``assignment`` is the module-level statement, ``None`` within functions.
+    condition; within a lambda those of the lambda, negative, as it is run at another time than the
+    statement that it stands in. ``assignment`` is the module-level statement, ``None`` within
+    functions.
     """
 
     operator: Operator
@@ -221,7 +223,8 @@ def _of_place(
     for operator, new in _others(parent, name, node, scope.reals):
         yield _change(operator, parent, name, index, node, new, scope)
     if isinstance(node, ast.Lambda):  # a function, of which the code can be exchanged
-        scope = replace(scope, assignment=None)
+        lines = -(node.end_lineno or node.lineno), -node.lineno
+        scope = replace(scope, assignment=None, lines=lines)
     yield from _of_parts(node, scope)
 
 

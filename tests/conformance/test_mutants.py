@@ -108,6 +108,21 @@ def test_module_level_values_are_changed() -> None:
     assert ("_LIMIT", "5") == (more.function, more.now)
 
 
+def test_a_lambda_is_run_at_another_time() -> None:
+    """Its lines are negative, for changes as for what a case runs."""
+    (change,) = changes(ast.parse("T = (\n    lambda a: not a,\n)\n"))
+    assert (-2, -2) == change.lines
+    mutant = _mutant(
+        "interp.controller.computed_variables",
+        "connect_computed",
+        "state.mode == 'T1'",
+        "state.mode != 'T1'",
+    )
+    found = reach_of([_case("io/mode_signals"), _case("control/if_else")], _SETUP)
+    lines = uses_of(mutant)[mutant.module]
+    assert [True, False] == [one.has(mutant.module, lines) for one in found]
+
+
 def test_the_same_seed_draws_the_same() -> None:
     """Seeds tell draws apart, and each mutant is found again by its name."""
     first = drawn(3, 2)
