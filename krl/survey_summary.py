@@ -97,9 +97,10 @@ def _advice(record: "SurveyRecord") -> str:
 def _story(start: "StartRecord") -> str:
     """What the ledger made of the restrictive start."""
     clusters, constructs = start["clusters"], start["constructs"]
+    each = f", {len(clusters) / len(constructs):.1f} clusters each" if constructs else ""
     answered = sum(cluster["answered_by"] is not None for cluster in clusters)
     return (
         f"Under the restrictive start {start['parsed']:,} of {start['files']:,} files parse; "
         f"of its {len(clusters):,} clusters {answered:,} are answered by constructs "
-        f"({len(constructs):,})."
+        f"({len(constructs):,}{each})."
     )

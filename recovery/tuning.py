@@ -251,6 +251,8 @@ MOST_MERGED_EDITS = 3
 MOST_EXPECTED = 2
 #: Words and signs of a line that a title tells, where another cluster has the same. Not measured.
 MOST_TOLD = 8
+#: Reserved words that a title lists, where several stand for names. Not measured.
+MOST_LISTED = 3
 
 # ---------------------------------------------------------------------------------- reproducers
 # `recovery.reproducer`.

@@ -173,7 +173,7 @@ class Deriver(Automaton):
     _kernel = tuple
 
     def __init__(self, grammar: Grammar, lexer: Lexer) -> None:
-        super().__init__(lexer.kind_of.get("NEWLINE", -99))
+        super().__init__(lexer.line_kind)
         self._rules = _Rules(grammar, lexer)
         self.actions: list[Action] = []  # by their numbers
         self._numbers: dict[Action, int] = {}

@@ -8,8 +8,10 @@ speed, and each distinct lexeme is classified once and remembered.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
+from functools import cached_property
 from itertools import takewhile
 
 from grammar.notation.model import (
@@ -32,11 +34,13 @@ from grammar.parser.dfa import (
     pattern_of,
 )
 
-__all__ = ["EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of", "regex_of"]
+__all__ = ["ABSENT", "EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of", "regex_of"]
 
 #: Kinds below zero are not tokens of the grammar.
 SKIPPED = -1
 ERROR = -2
+#: What a lexer has instead of the kind of a token that it lacks; no lexeme is of it.
+ABSENT = -99
 #: The end of the file, in every lexer.
 EOF = 0
 
@@ -75,11 +79,15 @@ class _Kinds(dict[str, int]):
             self[lexeme] = kind
         return kind
 
+    def unreserved(self, lexeme: str) -> list[_Ranked]:
+        """What a lexeme is as no literal: one way, or none."""
+        found = self.others.fullmatch(lexeme)
+        return [self.other_ranks[found.lastindex - 1]] if found and found.lastindex else []
+
     def _classify(self, lexeme: str) -> int:
         if not lexeme:
             return SKIPPED
-        found = self.others.fullmatch(lexeme)
-        ways = [self.other_ranks[found.lastindex - 1]] if found and found.lastindex else []
+        ways = self.unreserved(lexeme)
         # literals are ASCII or exact: str.upper would also fold letters that ANTLR keeps apart
         literal = self.literals.get(self.fold(lexeme) if lexeme.isascii() else lexeme)
         if literal is not None:
@@ -173,6 +181,29 @@ class Lexer:
     def is_keyword(self, kind: int) -> bool:
         """Whether the token is one word that the grammar reserves."""
         return kind in self._keywords
+
+    @cached_property
+    def line_kind(self) -> int:
+        """The kind of a line end; `ABSENT` where line ends are skipped or are no token."""
+        kind = self.kinds["\n"]
+        return kind if kind > 0 else ABSENT
+
+    @cached_property
+    def name_kind(self) -> int:
+        """The kind of names: what most reserved words would be, were they not; or `ABSENT`."""
+        words = [*(self.display[kind] for kind in sorted(self._keywords)), "A", "a"]
+        kinds = Counter(kind for word in words for _, kind in self.kinds.unreserved(word))
+        return max((kind for kind in kinds if kind > 0), key=kinds.__getitem__, default=ABSENT)
+
+    @cached_property
+    def line_end(self) -> str:
+        """The token of line ends; empty without any."""
+        return "" if self.line_kind == ABSENT else self.names[self.line_kind]
+
+    @cached_property
+    def name(self) -> str:
+        """The token of names; empty without any."""
+        return "" if self.name_kind == ABSENT else self.names[self.name_kind]
 
     @property
     def leaves_out_skipped(self) -> bool:

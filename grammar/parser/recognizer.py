@@ -45,7 +45,7 @@ class Recognizer(Automaton):
         self.grammar = grammar
         self.network = network or network_of(grammar)
         self.lexer = self.network.lexer
-        super().__init__(self.lexer.kind_of.get("NEWLINE", -99), self.network.passing())
+        super().__init__(self.lexer.line_kind, self.network.passing())
         self._ways: dict[Core, list[tuple[Reach, Stack]]] = {}
         self.start = State(
             self._core(frozenset([(self.network.start, self._bottom)])), self._no_tail

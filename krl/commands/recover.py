@@ -90,6 +90,13 @@ def recover(
             metavar="FILE", help="With --auto: compare what has grown with this .g4 at the end."
         ),
     ] = None,
+    suffix: Annotated[
+        str,
+        typer.Option(
+            metavar=".EXT",
+            help="With --auto --grammar FILE: files of another language than KRL, by how they end.",
+        ),
+    ] = "",
     resume: Annotated[
         bool, typer.Option("--resume", help="With --auto: go on from what DIR holds.")
     ] = False,
@@ -108,6 +115,8 @@ def recover(
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
     if auto:
+        if suffix and not grammar:
+            raise InputError(f"--suffix {suffix}: a language other than KRL needs --grammar FILE")
         if without and (grammar or resume or strike):
             raise InputError("--without starts from the grammar in force: give it alone")
         first = grammar or GRAMMAR.with_name("preliminary.g4")
@@ -139,9 +148,12 @@ def recover(
             seed=seed,
             strike=strike or (),
             resume=resume,
+            suffix=suffix,
         )
-    if hold_out or without or resume or strike or target:
-        raise InputError("--hold-out, --without, --target, --resume and --strike belong to --auto")
+    if hold_out or without or resume or strike or target or suffix:
+        raise InputError(
+            "--hold-out, --without, --target, --suffix, --resume and --strike belong to --auto"
+        )
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     with expected_errors():
         chosen = read_file(grammar) if grammar else krl_grammar()

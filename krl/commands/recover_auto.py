@@ -44,18 +44,22 @@ def recover_auto(
     seed: int,
     strike: Sequence[str],
     resume: bool,
+    suffix: str = "",
 ) -> int:
     """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
 
-    ``taken_out`` are the constructs that the start lacks, for the record.
+    ``taken_out`` are the constructs that the start lacks, for the record; ``suffix`` is how names
+    of files of another language than KRL end.
     Everything is written after each round, so that what was done stays when it is interrupted. At
     the end what has grown is compared with ``target``.
     """
     from grammar.notation.g4 import read_file
+    from grammar.parser.lexer import ABSENT, lexer_of
     from recovery.induction.comparison import compared
-    from recovery.induction.corpus_lines import held_out, read_files
+    from recovery.induction.corpus_lines import held_out
     from recovery.induction.rounds import Induction
-    from recovery.negatives.generate import evenly, generate
+    from recovery.language import KRL, language_of
+    from recovery.negatives.generate import evenly
     from recovery.negatives.negatives import NegativeSet
 
     if not 0 <= fraction < 1:
@@ -63,16 +67,21 @@ def recover_auto(
     began = time.monotonic()
     with expected_errors():
         goal = read_file(target) if target else None
-        files = read_files(roots)
+        language = language_of(suffix) if suffix else KRL
+        files = language.files(roots)
         growth, struck = _begun(start, out, strike, resume=resume)
+    lexer = lexer_of(start)
+    for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
+        if kind == ABSENT:
+            raise InputError(f"{name}: no token is that of {what}, which growing needs")
     shown, held, origins = held_out(files, fraction, seed)
     if not files:
-        raise InputError("nothing that was named is KRL source")
+        raise InputError("nothing that was named is source that can be read")
     if not shown:
         raise InputError("no file is left to learn from: hold out less")
-    generated = evenly(generate(count=4 * _NEGATIVES, seed=_SEED), _NEGATIVES)
+    generated = evenly(language.negatives(4 * _NEGATIVES, _SEED), _NEGATIVES)
     every = NegativeSet((*negatives, *generated))
-    induction = Induction(growth.grammar, shown, held, every, struck=struck)
+    induction = Induction(growth.grammar, shown, held, every, language=language, struck=struck)
     record: dict[str, Any] = {
         "start": name,
         "start_sha256": growth.start.sha256,
@@ -97,7 +106,7 @@ def recover_auto(
     if target and goal:
         record["target"] = {
             "name": target.name,
-            **compared(growth.grammar, goal, shown, held),
+            **compared(growth.grammar, goal, shown, held, language),
         }
         _say_target(record)
     page = _write(growth, record, out, json_file, struck, began)

@@ -6,12 +6,13 @@ every line it mends, whatever its signature; lines of the group that it does not
 again.
 
 At the end causes are merged that one edit answers: one that is searched anew for causes whose lines
-begin with the same word, or made of the edits of two (`recovery.clustering.edit_merging`).
+begin with the same word, or made of the edits of two (`recovery.clustering.edit_merging`); and
+those whose lines fail for the same reason (`recovery.clustering.reason`).
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from functools import partial
 
@@ -26,12 +27,14 @@ from recovery.clustering.edit_merging import (
 )
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.file_trial import FileTrial
+from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import (
+    BREADTH_FACTOR,
     CAUSES_PER_GROUP,
     FORM_SYMBOLS,
     HEAVY_GROUPS,
@@ -42,7 +45,7 @@ from recovery.tuning import (
 from support.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["find_causes", "merged_by_edits", "merged_by_first_word"]
+__all__ = ["find_causes", "merged_by_edits", "merged_by_first_word", "merged_by_reason"]
 
 
 def find_causes(
@@ -54,12 +57,13 @@ def find_causes(
     on_done: Progress = no_progress,
     file_trial: FileTrial | None = None,
     parsed_files: ParsedFiles = no_parsed_files,
+    reasons: Sequence[Reason] = (),
 ) -> list[Cause]:
     """Group ``lines`` by cause.
 
-    ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines, the
-    heaviest first. ``on_done`` gets each group dealt with. ``file_trial`` has the files in which
-    the lines fail, ``parsed_files`` those that can be read.
+    ``weights[i]`` is what line ``i`` holds back, ``reasons[i]`` why it fails; ``groups`` partition
+    the indices of the lines, the heaviest first. ``on_done`` gets each group dealt with.
+    ``file_trial`` has the files in which the lines fail, ``parsed_files`` those that can be read.
     """
     search = CauseSearch(recognizer, lines, weights, count_negatives, file_trial, parsed_files)
     causes: list[Cause] = []
@@ -71,7 +75,7 @@ def find_causes(
         on_done(1)
     with gc_paused(TRIAL_GARBAGE):
         causes = merged_by_first_word(search, causes)
-    return merged_by_edits(search, causes)
+    return merged_by_reason(search, merged_by_edits(search, causes), reasons)
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:
@@ -135,6 +139,36 @@ def _found_for_all(
     best = search.proposal(best.edits, best.breadth)
     members = tuple(sorted(n for cause in parts for n in cause.lines))
     return Cause(members, (best, *found.proposals[1:])), parts
+
+
+def merged_by_reason(
+    search: CauseSearch, causes: Sequence[Cause], reasons: Sequence[Reason]
+) -> list[Cause]:
+    """The causes, those merged most of whose lines fail for the same reason.
+
+    The proposals of one are in the order of what they mend of all of its lines.
+    """
+    alike: dict[Reason | int, list[Cause]] = defaultdict(list)
+    for place, cause in enumerate(causes):
+        count: Counter[Reason] = Counter()
+        for n in cause.lines if reasons else ():
+            count[reasons[n]] += search.weights[n]
+        alike[max(count, key=lambda r: (count[r], r), default=place)].append(cause)
+    return [_united(search, several) for several in alike.values()]
+
+
+def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
+    if len(causes) == 1:
+        return causes[0]
+    lines = frozenset(n for cause in causes for n in cause.lines)
+
+    def worth(proposal: Proposal) -> float:
+        mended = sum(search.weights[n] for n in proposal.mended & lines)
+        return mended * BREADTH_FACTOR**proposal.breadth
+
+    found = dict.fromkeys(p for cause in causes for p in cause.proposals)
+    best = sorted(found, key=lambda p: (p.accepts_negatives, -worth(p)))
+    return Cause(tuple(sorted(lines)), tuple(best[:MOST_PROPOSALS]))
 
 
 def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:

@@ -13,6 +13,7 @@ from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
 from recovery.clustering.causes import find_causes
 from recovery.clustering.file_trial import FailingFile, FileTrial
+from recovery.clustering.reason import AS_NAME, ReasonFinder
 from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.title import TitleWriter
 from recovery.proposals.edit_site import LinePattern
@@ -110,6 +111,7 @@ def cluster(
                 ((f.size, partial(text_of, f)) for f in found.files if not f.failures),
                 {word for line in groups.lines for _, word in line.keywords},
             ),
+            groups.reasons,
         )
     cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
     return _assembled(found, groups, causes, cause_of)
@@ -151,6 +153,11 @@ class _FailingLines:
             files[number][file.digest] = len(file.places)
         self.lines = tuple(numbers)
         self.signatures = signatures
+        reasons = ReasonFinder(self.recognizer)
+        self.reasons = [
+            reasons.reason(line, signature, self.contexts[found_in.failed.form])
+            for line, signature, found_in in zip(numbers, signatures, self.specimens, strict=True)
+        ]
         self.weights = [sum(files[n].values()) for n in range(len(signatures))]
         by_signature: dict[Signature, list[int]] = defaultdict(list)
         for number, signature in enumerate(signatures):
@@ -245,6 +252,10 @@ def _heaviest(cause: Cause, groups: _FailingLines) -> int:
 
 def _title(cause: Cause, number: int, groups: _FailingLines, writer: TitleWriter) -> str:
     """What is wrong with the line of that number, which represents a cause."""
+    if groups.reasons[number] == AS_NAME:
+        return writer.title_of_names(
+            [groups.lines[n] for n in cause.lines if groups.reasons[n] == AS_NAME]
+        )
     best = cause.proposals[0] if cause.proposals else None
     return writer.title(
         groups.lines[number],

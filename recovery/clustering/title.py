@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
 
 from grammar.notation.addresses import element_at
 from grammar.notation.edits import MakeOptional
 from grammar.parser.failures import FailureContext
-from grammar.parser.lexer import ERROR
+from grammar.parser.lexer import EOF, ERROR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Proposal
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import MOST_EXPECTED, MOST_TOLD
+from recovery.tuning import MOST_EXPECTED, MOST_LISTED, MOST_TOLD
 
 __all__ = ["TitleWriter"]
 
@@ -26,6 +26,8 @@ class TitleWriter:
     def __init__(self, recognizer: Recognizer) -> None:
         self._recognizer = recognizer
         self._lexer = recognizer.lexer
+        self._ends = (EOF, self._lexer.line_kind)
+        self._line_end = recognizer.lexer.line_end and self._lexer.display[recognizer.line_kind]
         self._kind_of = {text: kind for kind, text in enumerate(self._lexer.display)}
 
     def title(
@@ -46,7 +48,7 @@ class TitleWriter:
         lead = self._keyword(line, 0)
         came = meant.get(index) or self._phrase(kinds[index])
         missing = self._left_out(best) or self._omitted_keyword(line, context)
-        at_end = kinds[index] >= 0 and self._lexer.names[kinds[index]] in ("NEWLINE", "EOF")
+        at_end = kinds[index] in self._ends
         if missing:
             subject = context.rule if index or at_end else came
             said = f"{lead or _spoken(subject)} without {missing}"
@@ -61,8 +63,17 @@ class TitleWriter:
             said = f"{came} begins a line{self._instead(context)}"
         else:
             said = self._behind(line, context, bracket, lead, came)
-            said += "" if context.expected == ("NEWLINE",) else self._instead(context)
+            said += "" if context.expected == (self._line_end,) else self._instead(context)
         return said[:1].upper() + said[1:]
+
+    def title_of_names(self, lines: Iterable[LinePattern]) -> str:
+        """The title of lines that all fail at a reserved word: ``DELAY and SEC as names``."""
+        words = sorted({self._phrase(line.form.kinds[line.form.index]) for line in lines})
+        if len(words) == 1:
+            return f"{words[0]} as a name"
+        some = [*words[:MOST_LISTED], f"{len(words) - MOST_LISTED} more"]
+        *ahead, last = some if len(words) > MOST_LISTED + 1 else words
+        return f"{', '.join(ahead)} and {last} as names"
 
     def told_apart(
         self, titles: Sequence[str], lines: Sequence[LinePattern], rules: Sequence[str]
@@ -72,19 +83,19 @@ class TitleWriter:
         What stands in the same place and goes on alike, as far as a title says, gets a number.
         """
         out = list(titles)
-        for number, place in enumerate(rules):
-            alike = [n for n, title in enumerate(titles) if title == titles[number]]
-            shapes = {n: self._shape(lines[n]) for n in alike}
-            shape = shapes[number]
-            longest = max(map(len, shapes.values()))
-            for length in range(2, min(MOST_TOLD, longest) + 1 if len(alike) > 1 else 0):
-                if sum(other[:length] == shape[:length] for other in shapes.values()) == 1:
-                    dots = " …" if len(shape) > length else ""
-                    out[number] += f": {' '.join(shape[:length])}{dots}"
-                    break
-            else:
-                if len(alike) > 1:
-                    out[number] += f" in {_spoken(place)}"
+        alike: dict[str, list[int]] = defaultdict(list)
+        for number, title in enumerate(titles):
+            alike[title].append(number)
+        for same in (numbers for numbers in alike.values() if len(numbers) > 1):
+            shapes = [(*self._shape(lines[n]), "") for n in same]  # the end tells apart too
+            begun = Counter(s[:n] for s in shapes for n in range(2, min(MOST_TOLD, len(s)) + 1))
+            for number, shape in zip(same, shapes, strict=True):
+                told = next((n for n in range(2, MOST_TOLD + 1) if begun[shape[:n]] == 1), None)
+                if told is None:
+                    out[number] += f" in {_spoken(rules[number])}"
+                else:
+                    dots = " …" if len(shape) - 1 > told else ""
+                    out[number] += f": {' '.join(filter(None, shape[:told]))}{dots}"
         again: Counter[str] = Counter()
         for number, title in enumerate(out):
             again[title] += 1
@@ -104,7 +115,7 @@ class TitleWriter:
                 else display[kind]
             )
             for kind, meant in line.words()
-            if kind < 0 or names[kind] not in ("NEWLINE", "EOF")
+            if kind not in self._ends
         )
 
     def _behind(
@@ -120,13 +131,13 @@ class TitleWriter:
             return f"{lead or self._phrase(before)} followed by {came}"
         if lead:
             return f"{lead} with {came}"
-        if "NEWLINE" in context.expected:
+        if self._line_end in context.expected:
             return f"line goes on with {came}"
         return f"{came} in {_spoken(context.rule)}"
 
     def _instead(self, context: FailureContext) -> str:
         """What was wanted, where that is short enough to say."""
-        wanted = [text for text in context.expected if text != "NEWLINE"] or ["NEWLINE"]
+        wanted = [t for t in context.expected if t != self._line_end] or [self._line_end]
         if len(wanted) > MOST_EXPECTED:
             return ""
         phrases = [self._phrase(self._kind_of[text]) for text in wanted]
@@ -166,8 +177,8 @@ class TitleWriter:
         if kind == ERROR:
             return "an unknown character"
         name, text = self._lexer.names[kind], self._lexer.display[kind]
-        if name in ("NEWLINE", "EOF"):
-            return "the end of the line" if name == "NEWLINE" else "the end of the file"
+        if kind in self._ends:
+            return f"the end of the {'file' if kind == EOF else 'line'}"
         if self._lexer.is_keyword(kind):
             return text
         if text != name:

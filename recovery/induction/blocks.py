@@ -11,10 +11,14 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.symbols import Token
+from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.proposals.block_inference import is_balanced
+from recovery.proposals.keywords import Vocabulary
 
-__all__ = ["BlockLines", "SourceFile", "find_blocks"]
+__all__ = ["BlockLines", "SourceFile", "blocks_of", "find_blocks"]
 
 #: A line as its leading word, empty where it has none, and its tokens.
 _Line = tuple[str, tuple[Token, ...]]
@@ -23,6 +27,8 @@ _Having = dict[tuple[Token, ...], set[str]]
 # The least share of files in which a pair of words is in balance; damaged files are the others.
 _BALANCED_SHARE = 0.95
 _LEAST_FILES = 3
+# Among so many files one may be damaged.
+_FILES_WITH_ONE_DAMAGED = 6
 _LEAST_ORIGINS = 2
 _MOST_MIDDLES = 3
 
@@ -55,6 +61,36 @@ class BlockLines:
     def words(self) -> frozenset[str]:
         """The words that lead lines which only such a block has."""
         return frozenset({self.opener, self.closer, *self.middles})
+
+
+def blocks_of(
+    corpus: CorpusLines,
+    keywords: WouldBeKeywords,
+    recognizer: Recognizer,
+    prefixes: frozenset[str],
+) -> list[BlockLines]:
+    """The blocks of a corpus that the grammar of the recogniser does not have."""
+    lexer = recognizer.lexer
+    name = lexer.name_kind
+    tokens = []
+    leads = []
+    for line in corpus.lines:
+        meant = dict(keywords.in_line(line))
+        lead = line[1] if len(line) > 1 and line[0] in prefixes else line[0]
+        at = 1 if lead is not line[0] else 0
+        leads.append(
+            lead if lexer.kinds[lead] != name or at in meant or lead in keywords.words else ""
+        )
+        if lead in keywords.words and at not in meant and lexer.kinds[lead] == name:
+            meant[at] = lead
+        tokens.append(tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line)))
+    files = [
+        SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
+        for file, numbers in zip(corpus.files, corpus.of_file, strict=True)
+    ]
+    vocabulary = Vocabulary(recognizer)
+    free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
+    return find_blocks(files, free)
 
 
 def find_blocks(files: Sequence[SourceFile], free: Iterable[str]) -> list[BlockLines]:
@@ -97,7 +133,8 @@ def _is_pair(
 ) -> bool:
     places = sorted({*having[opener], *having[closer]})
     equal = [n for n in places if counts[n][opener] == counts[n][closer]]
-    needed = max(_LEAST_FILES, min(_BALANCED_SHARE * len(places), len(places) - 1))
+    damaged = len(places) >= _FILES_WITH_ONE_DAMAGED
+    needed = max(_LEAST_FILES, min(_BALANCED_SHARE * len(places), len(places) - damaged))
     if len(equal) < needed:
         return False
     good = [n for n in equal if is_balanced(opener, closer, files[n].lines)]

@@ -10,8 +10,7 @@ from typing import TypedDict
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from recovery.induction.corpus_lines import CorpusFile
-from recovery.negatives.generate import generate
+from recovery.language import KRL, CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 
 __all__ = ["Comparison", "Share", "compared", "within_reach"]
@@ -49,13 +48,17 @@ class Comparison(TypedDict):
 
 
 def compared(
-    grown: Grammar, target: Grammar, shown: Sequence[CorpusFile], held: Sequence[CorpusFile]
+    grown: Grammar,
+    target: Grammar,
+    shown: Sequence[CorpusFile],
+    held: Sequence[CorpusFile],
+    language: Language = KRL,
 ) -> Comparison:
     """The grown grammar compared with the target, with sentences and negatives of a fixed seed."""
     reader, judge = Recognizer(grown), Recognizer(target)
     sentences, speller, chance = Sentences(grown), Speller(grown), Random(_SEED)
     drawn = [speller.text(sentences.random(chance)) for _ in range(_SENTENCES)]
-    negatives = NegativeSet(generate(count=_NEGATIVES, seed=_SEED))
+    negatives = NegativeSet(language.negatives(_NEGATIVES, _SEED))
     wanted = [file for file in held if judge.accepts(file.text)]
     near, unknown = within_reach(judge, shown, wanted)
     return {

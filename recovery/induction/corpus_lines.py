@@ -4,42 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from random import Random
 
-from grammar.parser.lexer import EOF, SKIPPED, Lexer
-from support.files.decode import decode, digest
-from support.files.discovery import Skipped, discover, read
+from grammar.parser.lexer import SKIPPED, Lexer
+from recovery.language import CorpusFile
 
-__all__ = ["CorpusFile", "CorpusLines", "held_out", "read_files"]
-
-
-@dataclass(frozen=True, slots=True)
-class CorpusFile:
-    """A distinct content: the first of its places, its text, and the origins it comes from."""
-
-    path: str
-    text: str
-    origins: frozenset[str]
-
-
-def read_files(roots: Sequence[Path]) -> tuple[CorpusFile, ...]:
-    """All KRL source below ``roots``, each content once, in the order of discovery.
-
-    What cannot be read or is no KRL is left out. Raises
-    `support.files.discovery.IngestError` where there is nothing.
-    """
-    places: dict[str, tuple[str, str, set[str]]] = {}
-    for found in discover(roots):
-        data = found if isinstance(found, Skipped) else read(found)
-        if isinstance(data, Skipped):
-            continue
-        source = decode(data)
-        if not isinstance(source, str):
-            place = places.setdefault(digest(data), (found.path, source.text, set()))
-            place[2].add(found.origin)
-    return tuple(CorpusFile(path, text, frozenset(o)) for path, text, o in places.values())
+__all__ = ["CorpusLines", "held_out"]
 
 
 def held_out(
@@ -86,7 +56,7 @@ class CorpusLines:
 
 
 def _lines(text: str, lexer: Lexer) -> Iterable[tuple[str, ...]]:
-    end = lexer.kind_of.get("NEWLINE", EOF)
+    end = lexer.line_kind
     line: list[str] = []
     for lexeme in lexer.lexemes(text):
         kind = lexer.kinds[lexeme]

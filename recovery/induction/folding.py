@@ -28,6 +28,7 @@ from grammar.notation.model import (
     Literal,
     Reference,
     Repeat,
+    Rule,
     walk,
 )
 from grammar.parser.recognizer import Recognizer
@@ -66,11 +67,12 @@ class Folding:
         """
         self.prefixes = prefixes
         self.grammar = recognizer.grammar
+        self.lexer = recognizer.lexer
         self.rules = OperandRules(recognizer)
         self.profile = GrammarProfile(recognizer)
         self.writer = FormWriter(SymbolReader(self.rules), operands)
         #: Words of a kind: those of which a rule gives a choice beside names, and those it names.
-        self.types = (self.rules.type_words | self.rules.named_words) - {"NAME"}
+        self.types = (self.rules.type_words | self.rules.named_words) - {self.lexer.name}
         #: The rule of all words of the kind.
         self._kind = f"{next(iter(self.rules.word_choices), '')}Word"
 
@@ -134,23 +136,21 @@ class Folding:
 
     def _leading(self) -> Iterator[Inferred]:
         """Lines without a word that may be missing at their head, where the next one is a word."""
-        for rule in self.grammar.rules:
-            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
-                elements = self._line(rule.name, number)
-                first = self._words(elements[0]) if len(elements) > 1 else frozenset()
-                if not first & self.prefixes:
-                    continue
-                second = elements[1]
-                word = second.item if isinstance(second, Repeat) else second
-                words = self._words(word)
-                led = {w for a in rule.alternatives for e in a.elements[:1] for w in self._words(e)}
-                if words and not words & (led | self.rules.named_words):
-                    # what says which line it is has to be there
-                    every = self._alternative(rule.name, number).elements[2:]
-                    text = f"{rule.source_of(word)} {self._source(rule.name, every)}"
-                    title = f"{min(words)} without {min(first)} in {rule.name}"
-                    edits = (AddAlternative(rule.name, text),)
-                    yield Inferred(title, edits, (), breadth=len(every) + _LONGER)
+        for rule, number, elements in self._lines():
+            first = self._words(elements[0])
+            if not first & self.prefixes:
+                continue
+            second = elements[1]
+            word = second.item if isinstance(second, Repeat) else second
+            words = self._words(word)
+            led = {w for a in rule.alternatives for e in a.elements[:1] for w in self._words(e)}
+            if words and not words & (led | self.rules.named_words):
+                # what says which line it is has to be there
+                every = self._alternative(rule.name, number).elements[2:]
+                text = f"{rule.source_of(word)} {self._source(rule.name, every)}"
+                title = f"{min(words)} without {min(first)} in {rule.name}"
+                edits = (AddAlternative(rule.name, text),)
+                yield Inferred(title, edits, (), breadth=len(every) + _LONGER)
 
     def _signs(self) -> Iterator[Inferred]:
         """Signs ahead of an operand, where another sign of the same level between operands is."""
@@ -198,13 +198,11 @@ class Folding:
     def _trailing(self) -> Iterator[Inferred]:
         """One choice for words that may end lines, where two such choices have a word in common."""
         found: list[tuple[str, tuple[int, int], frozenset[str], bool]] = []
-        for rule in self.grammar.rules:
-            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
-                elements = self._line(rule.name, number)
-                match elements[-1] if len(elements) > 1 else None:
-                    case Repeat(item=item, operator="?" | "*" as often) if self._words(item):
-                        place = (number, len(elements))
-                        found.append((rule.name, place, self._words(item), often == "*"))
+        for rule, number, elements in self._lines():
+            match elements[-1]:
+                case Repeat(item=item, operator="?" | "*" as often) if self._words(item):
+                    place = (number, len(elements))
+                    found.append((rule.name, place, self._words(item), often == "*"))
         done: set[frozenset[str]] = set()
         for _, _, words, _ in found:
             alike = [f for f in found if f[2] & words]
@@ -240,6 +238,14 @@ class Folding:
                     found[head].append(number)
             yield from ((rule.name, head, numbers) for head, numbers in found.items())
 
+    def _lines(self) -> Iterator[tuple[Rule, int, Sequence[Element]]]:
+        """Alternatives that are one line of several elements: rule, number, elements."""
+        for rule in self.grammar.rules:
+            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+                elements = self._line(rule.name, number)
+                if len(elements) > 1:
+                    yield rule, number, elements
+
     def _line(self, rule: str, number: int) -> Sequence[Element]:
         """The elements of an alternative without its line end; none for more than one line."""
         elements = self._alternative(rule, number).elements
@@ -247,7 +253,7 @@ class Folding:
         if elements and source(elements[-1]) == self.profile.line_end:
             elements = elements[:-1]
         called = {e.name for e in elements if isinstance(e, Reference)}
-        return () if called & {self.profile.line_end, "NEWLINE"} else elements
+        return () if called & {self.profile.line_end, self.lexer.line_end} else elements
 
     def _head(self, elements: Sequence[Element]) -> str:
         """The first word of a line, or its kind where it is one of a kind; empty without any."""
@@ -262,7 +268,7 @@ class Folding:
 
     def _is_name(self, element: Element | None) -> bool:
         """Whether an element is a name: what is declared stands behind its type."""
-        names = {"NAME", self.rules.names}
+        names = {self.lexer.name, self.rules.names}
         return isinstance(element, Reference) and element.name in names
 
     def _words(self, element: Element) -> frozenset[str]:

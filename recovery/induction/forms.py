@@ -18,7 +18,7 @@ from grammar.notation.model import Element, Group, Literal, Reference, Repeat, w
 from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
 
-__all__ = ["LONG_LIST", "FormWriter", "samples_of"]
+__all__ = ["LONG_LIST", "FormWriter", "samples_of", "split_at_commas"]
 
 # The part of what one rule reads that two may read together to be preferred.
 _MUCH_LESS = 0.8
@@ -118,7 +118,7 @@ class FormWriter:
         self, lines: Sequence[tuple[Symbol, ...]]
     ) -> tuple[list[tuple[Symbol, ...]], str | None] | None:
         """The lines with lists as one symbol, and the text of a list; ``None`` without any."""
-        cut = [_split(line) for line in lines]
+        cut = [split_at_commas(line) for line in lines]
         behind = [piece for pieces in cut for piece in pieces[1:]]
         if not behind:
             return None
@@ -289,10 +289,11 @@ class FormWriter:
 
     def _name(self) -> str:
         """What is written for a name."""
-        return self.rules.names or "NAME"
+        return self.rules.names or self.rules.lexer.name
 
 
-def _split(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
+def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
+    """The pieces of a line between its commas, at least one."""
     pieces: list[list[Symbol]] = [[]]
     for symbol in line:
         if symbol.text == _COMMA:

@@ -14,7 +14,7 @@ from typing import Any
 from grammar.notation.edits import AddAlternative, AddToken, Edit, apply, describe, to_data
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.wellformed import problem
-from recovery.induction.rounds import Reading, Refused, Round, Taken
+from recovery.induction.steps import Reading, Refused, Round, Taken
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force

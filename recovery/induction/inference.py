@@ -17,9 +17,9 @@ from grammar.notation.addresses import Address, sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Insert, Replace, Widen
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
 from grammar.parser.failures import FailureContext
-from grammar.parser.recognizer import Recognizer
+from grammar.parser.recognizer import Recognizer, State
 from recovery.induction.blocks import BlockLines
-from recovery.induction.forms import FormWriter, samples_of
+from recovery.induction.forms import FormWriter, samples_of, split_at_commas
 from recovery.induction.symbols import (
     BRACKETS,
     Operand,
@@ -30,7 +30,7 @@ from recovery.induction.symbols import (
     bracket_pairs,
     operands_of,
 )
-from recovery.proposals.edit_site import LinePattern
+from recovery.proposals.edit_site import LinePattern, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
 
 __all__ = ["Inference", "Inferred"]
@@ -40,6 +40,10 @@ _WORD = re.compile(r"\b[A-Z_][A-Z0-9_]*\b")
 _LONG_LIST = 8
 # The part of the kinds of line of one word that another has too, for one form to read both.
 _ALIKE = 0.5
+# What a rule counts that an edit no longer calls, in symbols.
+_LOST = 12
+# Elements in a row that may be missing together.
+_LONGEST_RUN = 3
 # What a level counts by which operators bind weaker than they need, in symbols.
 _LEVEL = 12
 #: Signs that may stand ahead of an operand.
@@ -108,7 +112,7 @@ class Inference:
 
     def _listed(self, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
         """The symbols with reserved words as operands where they are items of a list of names."""
-        name = Symbol("", Operand((self.rules.name_kind,)))
+        name = Symbol("", Operand((self.lexer.name_kind,)))
         ends = [i for i, symbol in enumerate(symbols) if symbol.text == "','"] + [len(symbols)]
         items = {right - 1 for left, right in pairwise(ends) if right == left + 2}
         if len(items) < len(ends) - 1 or not any(symbols[i] == name for i in items):
@@ -118,7 +122,7 @@ class Inference:
         items |= {first} if first > 0 and symbols[first - 1] == name else set()
         # a word that the grammar does not reserve yet is one of the names
         kinds = {
-            i: self.lexer.kind_of.get(symbols[i].text, self.rules.name_kind)
+            i: self.lexer.kind_of.get(symbols[i].text, self.lexer.name_kind)
             for i in items
             if _WORD.fullmatch(symbols[i].text)
         }
@@ -195,7 +199,7 @@ class Inference:
         if self._begins_operand(tokens, index + 1):
             if self._ends_operand(tokens, index):
                 infix[text].append(number)
-            elif self.lexer.kind_of.get("NAME", -1) in self._expected(number):
+            elif self.lexer.name_kind in self._expected(number):
                 prefix[text].append(number)
 
     def _as_infix(self, text: str) -> Iterator[tuple[tuple[Edit, ...], int]]:
@@ -237,7 +241,7 @@ class Inference:
     def words_as_names(self) -> Iterator[Inferred]:
         """Reserved words where a name is expected."""
         found: dict[str, list[int]] = defaultdict(list)
-        name = self.lexer.kind_of.get("NAME", -1)
+        name = self.lexer.name_kind
         for number, line in enumerate(self.lines):
             kind = line.form.kinds[line.form.index] if not line.is_enormous else 0
             if kind > 0 and self.lexer.is_keyword(kind) and name in self._expected(number):
@@ -256,7 +260,7 @@ class Inference:
     def operand_forms(self) -> Iterator[Inferred]:
         """What stands in brackets of its own where an operand can be."""
         found: dict[str, list[int]] = defaultdict(list)
-        name = self.lexer.kind_of.get("NAME", -1)
+        name = self.lexer.name_kind
         for number, line in enumerate(self.lines):
             tokens, index = self.tokens[number], line.form.index
             if line.is_enormous or index >= len(tokens):
@@ -302,22 +306,56 @@ class Inference:
                     found[rule, sign][inside].append(number)
         for (rule, sign), contents in found.items():
             members = tuple(dict.fromkeys(n for numbers in contents.values() for n in numbers))
-            for edit in self._between(rule, sign, contents):
-                yield Inferred(f"between {sign} and {BRACKETS[sign]} of {rule}", edit, members)
+            title = f"between {sign} and {BRACKETS[sign]} of {rule}"
+            for edits, lost in self._between(rule, sign, contents):
+                yield Inferred(title, edits, members, breadth=lost)
 
     def _between(
         self, rule: str, sign: str, contents: dict[tuple[Symbol, ...], list[int]]
-    ) -> Iterator[tuple[Edit, ...]]:
+    ) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """Edits for contents of brackets, with their breadth: parts left out, then new forms."""
+        source_of = self.grammar.by_name[rule].source_of
         for number, alternative in enumerate(self.grammar.by_name[rule].alternatives, 1):
             for opening, start, end in bracket_pairs(alternative):
                 if opening != sign:
                     continue
-                old = samples_of(self.rules, alternative.elements[start + 1 : end])
-                for text in self._forms(contents, old):
-                    at = (number, start + 2)
-                    count = end - start - 1
+                old = alternative.elements[start + 1 : end]
+                for first, count in _runs(len(old)):
+                    text = _optional(" ".join(map(source_of, old[first : first + count])))
+                    yield (Replace(rule, (number, start + 2 + first), text, count),), 0
+                yield from self._of_items(old, contents)
+                for text in self._forms(contents, samples_of(self.rules, old)):
+                    at, count = (number, start + 2), len(old)
                     edit = Replace(rule, at, text, count) if count else Insert(rule, at, text)
-                    yield (*self.reserving(text), edit)
+                    yield (*self.reserving(text), edit), self._lost(old, text)
+
+    def _of_items(
+        self, old: Sequence[Element], contents: dict[tuple[Symbol, ...], list[int]]
+    ) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """Edits of the rule that reads the items of a list and nothing else."""
+        called = {e.name for o in old for e in walk(o) if isinstance(e, Reference)}
+        for name in sorted(called & self.rules.reaches.keys()):
+            first, *others = self.grammar.by_name[name].alternatives
+            if others or not self.rules.is_part(name):
+                continue
+            items: dict[tuple[Symbol, ...], list[int]] = defaultdict(list)
+            for inside, numbers in contents.items():
+                for item in split_at_commas(inside)[1:]:  # ahead of the first one there may be more
+                    items[item] += numbers
+            for text in self._forms(items, samples_of(self.rules, first.elements)) if items else ():
+                edit = Replace(name, (1, 1), text, len(first.elements))
+                yield (*self.reserving(text), edit), self._lost(first.elements, text)
+
+    def _lost(self, old: Sequence[Element], text: str) -> int:
+        """What a text costs for the rules that the old elements call and it does not."""
+        written = set(re.findall(r"\w+", text))
+        called = {
+            e.name for o in old for e in walk(o) if isinstance(e, Reference) and not e.is_token
+        }
+        return _LOST * sum(
+            not any(self.rules.includes(other, name) for other in written)
+            for name in called & self.rules.reaches.keys()
+        )
 
     def _known_groups(self, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
         """The symbols with groups, where a rule is such a group, as operands of that rule."""
@@ -442,8 +480,8 @@ class Inference:
             if line.is_enormous or not symbols or self._opened_in_group(number):
                 continue
             beside = [a.is_operand and b.is_operand for a, b in pairwise(symbols)]
-            if symbols[0].is_operand and any(beside):
-                continue  # no line has two operands and no word that says what they are
+            if symbols[0].is_operand and (any(beside) or len(symbols) == 1):
+                continue  # no line is a value, or two without a word that says what they are
             head = self._head(symbols)
             if self.kept_for_blocks.isdisjoint(s.text for s in symbols[:2]):
                 groups[self._hosts(number), head].append(number)
@@ -532,6 +570,12 @@ class Inference:
                 if len(first) > 1 or (first and len(rule.alternatives) == 1):
                     yield rule.name, number, first
 
+    @cached_property
+    def _all_lines(self) -> list[tuple[str, Address, tuple[Element, ...]]]:
+        """Alternatives that may be a line, then the lines within blocks, with their places."""
+        outer = ((rule, (number, 1), first) for rule, number, first in self._alternatives())
+        return [*outer, *self._inner_lines()]
+
     def _inner_lines(self) -> Iterator[tuple[str, Address, tuple[Element, ...]]]:
         """The lines within blocks and at their end: rule, place of the first element, elements."""
         end = self.profile.line_end
@@ -594,7 +638,7 @@ class Inference:
         if symbol.operand is None or symbol.operand.rule:
             return symbol.text or (symbol.operand.rule if symbol.operand else "")
         first = symbol.operand.kinds[0]
-        is_name = first == self.rules.name_kind or self.rules.matcher.may_be_a_name(first)
+        is_name = first == self.lexer.name_kind or self.rules.matcher.may_be_a_name(first)
         return "name" if is_name else self._sort(symbol)
 
     def _statement(
@@ -620,19 +664,50 @@ class Inference:
     ) -> Iterator[Inferred]:
         """An alternative that begins with the same words, so that it reads these lines too."""
         words = head.split()
-        outer = ((rule, (number, 1), first) for rule, number, first in self._alternatives())
-        for rule, place, first in (*outer, *self._inner_lines()):
+        for rule, place, first in self._all_lines:
             inside = [e for e in first if not (isinstance(e, Repeat) and e.operator == "?")]
             leads = [_words(e) for e in inside[:2]]
             if not inside or words[0] not in leads[0]:
                 continue
             if len(words) > 1 and (len(leads) < 2 or words[1] not in leads[1]):
                 continue
-            old = samples_of(self.rules, first)
-            for text in self._forms(shapes, old):
-                edit = Replace(rule, place, text, len(first))
-                edits = (*self.reserving(text), edit)
-                yield Inferred(f"{head} … in {rule}", edits, tuple(members))
+            title = f"{head} … in {rule}"
+            for at, tails in self._tails(rule, place, len(first), members).items():
+                # what a comma begins would be taken for a list; some only do so go on with one
+                begun = {tail[0].text for tail in tails}
+                comma = "','" if "','" in begun else ""
+                rests = {tail[1:]: ns for tail, ns in tails.items()} if comma else tails
+                for text in self._forms(rests) if not comma or len(begun) == 1 else ():
+                    edits = (
+                        *self.reserving(text),
+                        Insert(rule, at, _optional(f"{comma} {text}".strip())),
+                    )
+                    yield Inferred(title, edits, tuple(members))
+            for text in self._forms(shapes, samples_of(self.rules, first)):
+                edits = (*self.reserving(text), Replace(rule, place, text, len(first)))
+                yield Inferred(title, edits, tuple(members), breadth=self._lost(first, text))
+
+    def _tails(
+        self, rule: str, place: Address, count: int, members: Sequence[int]
+    ) -> dict[Address, dict[tuple[Symbol, ...], list[int]]]:
+        """What lines go on with where elements of a rule may be all of a line, by the place."""
+        *outer, first = place
+        places = {(*outer, first + n) for n in range(1, count + 1)}
+        found: dict[Address, dict[tuple[Symbol, ...], list[int]]] = {}
+        for number in members:
+            if self.lexer.line_kind in self._expected(number):
+                tokens = self.tokens[number][self.lines[number].form.index :]
+                tail = self._known_groups(self.reader.symbols(tokens))
+                for at in sorted(places & self._places(number, rule)) if tail else ():
+                    found.setdefault(at, defaultdict(list))[tail].append(number)
+        return found
+
+    def _places(self, number: int, rule: str) -> set[Address]:
+        """Where in a rule the grammar stands when a line fails."""
+        recognizer = self.recognizer
+        sites = recognizer.sites(self._state(number))
+        within = (site for site in sites if recognizer.network.rule[site[0]] == rule)
+        return {place for site in within for place in places_of(recognizer, site)}
 
     def _forms(
         self, shapes: dict[tuple[Symbol, ...], list[int]], old: Sequence[tuple[Symbol, ...]] = ()
@@ -694,7 +769,7 @@ class Inference:
         kind, word = token
         if word:
             return word
-        if kind <= 0 or self.lexer.names[kind] in ("NEWLINE", "EOF"):
+        if kind <= 0 or kind == self.lexer.line_kind:
             return None
         shown = self.lexer.display[kind]
         if self.lexer.is_keyword(kind):
@@ -714,18 +789,20 @@ class Inference:
             return False
         shown = self._shown(tokens[at])
         return (
-            (self.rules.matcher.is_operand(kind) and shown != "NEWLINE")
+            (self.rules.matcher.is_operand(kind) and kind != self.lexer.line_kind)
             or shown in BRACKETS
             or self.rules.widest in self.rules.matcher.rules_for((kind,))
             or shown in _PREFIXES
         )
 
-    def _expected(self, number: int) -> frozenset[int]:
+    def _state(self, number: int) -> State:
+        """Where the grammar stands when a line fails."""
         form = self.lines[number].form
-        state, _ = self.recognizer.run(
-            self.recognizer.restore(form.before), form.kinds[: form.index]
-        )
-        return self.recognizer.expected(state)
+        before = self.recognizer.restore(form.before)
+        return self.recognizer.run(before, form.kinds[: form.index])[0]
+
+    def _expected(self, number: int) -> frozenset[int]:
+        return self.recognizer.expected(self._state(number))
 
     def _fresh(self, wanted: str) -> str:
         name, count = wanted, 2
@@ -761,6 +838,19 @@ def _families(
 
 def _of(heads: Sequence[tuple[str, list[int], set[tuple[str, ...]]]]) -> list[str]:
     return [head for head, _, _ in heads]
+
+
+def _optional(text: str) -> str:
+    """A text that may be missing; what may be already stays as it is."""
+    if re.fullmatch(r"\S+", text):
+        return text if text[-1] in "?*" else f"{text}?"
+    return f"({text})?"
+
+
+def _runs(count: int) -> Iterator[tuple[int, int]]:
+    """Runs of so many elements, but not all of them: the first one and how many."""
+    for length in range(1, min(_LONGEST_RUN, count - 1) + 1):
+        yield from ((start, length) for start in range(count - length + 1))
 
 
 def _calls(element: object, rule: str) -> bool:

@@ -47,7 +47,7 @@ def _touching(line: str, lexer: Lexer) -> Iterable[tuple[str, str]]:
     """Literals that are cut apart, with the token that their beginning was taken for."""
     lexemes = lexer.lexemes(line)
     kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
-    name = lexer.kind_of.get("NAME")
+    name = lexer.name_kind
     ends = []
     at = 0
     for lexeme in lexemes:  # where tokens are left out by the lexer they are missing here

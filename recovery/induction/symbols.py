@@ -6,7 +6,7 @@ says. What no rule reads yet stays words, signs and groups in brackets.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -67,6 +67,9 @@ class OperandRules:
     def __init__(self, recognizer: Recognizer) -> None:
         self.grammar = recognizer.grammar
         self.recognizer = recognizer
+        self.lexer = recognizer.lexer
+        #: The kind of token of names.
+        self.name_kind = self.lexer.name_kind
         self.matcher = RuleMatcher(recognizer)
         parser = [rule for rule in self.grammar.rules if not rule.is_lexer]
         self._called = {
@@ -85,7 +88,7 @@ class OperandRules:
             for rule in self.grammar.rules
             if not rule.is_lexer
             and any(
-                isinstance(e, Reference) and e.name == "NAME"
+                isinstance(e, Reference) and e.name == self.lexer.name
                 for a in rule.alternatives
                 for e in walk(a)
             )
@@ -98,20 +101,20 @@ class OperandRules:
         vocabulary = Vocabulary(self.recognizer)
         within = [n for n in self._called if n in self.within_lines and n != self.names]
         found = {name: vocabulary.words_of(name) for name in within}
-        lexer = self.recognizer.lexer
+        lexer = self.lexer
         words = frozenset(w for w, kind in lexer.kind_of.items() if lexer.is_keyword(kind))
         return {
             name: words & some - self.named_words
             for name, some in found.items()
             # a list of most words says nothing of their kind
-            if "NAME" in some and 2 * len(words & some) <= len(words)
+            if lexer.name in some and 2 * len(words & some) <= len(words)
         }
 
     @cached_property
     def named_words(self) -> frozenset[str]:
         """The tokens that are names: that of names, and words that the rule of names has."""
         words = Vocabulary(self.recognizer).words_of(self.names) if self.names else frozenset()
-        return words | {"NAME"}
+        return words | {self.lexer.name}
 
     @cached_property
     def type_words(self) -> frozenset[str]:
@@ -121,7 +124,7 @@ class OperandRules:
     @cached_property
     def within_lines(self) -> frozenset[str]:
         """Rules that read nothing with a line end in it."""
-        end = self.recognizer.lexer.names[self.recognizer.line_kind]
+        end = self.lexer.line_end
         return frozenset(n for n, called in self.reaches.items() if end not in called)
 
     @cached_property
@@ -163,6 +166,16 @@ class OperandRules:
             needed = [e for e in alternative.elements if not _is_optional(e)]
             if len(needed) == 1 and isinstance(needed[0], Reference) and not needed[0].is_token:
                 yield needed[0].name
+
+    def gathers(self, name: str, some: Collection[str]) -> bool:
+        """Whether the levels of operands that a rule calls are some, each an alternative."""
+        for alternative in self.grammar.by_name[name].alternatives:
+            called = {e.name for e in walk(alternative) if isinstance(e, Reference)}
+            levels = called.intersection(self.ladder)
+            is_alone = [type(e) for e in alternative.elements] == [Reference]
+            if levels and not (is_alone and levels.issubset(some)):
+                return False
+        return True
 
     def includes(self, wide: str, narrow: str) -> bool:
         """Whether a rule may consist of another one."""
@@ -209,11 +222,6 @@ class OperandRules:
                 if is_whole and len(self.grammar.by_name[name].alternatives) == 1:
                     found[pair[0][0]] = name
         return found
-
-    @cached_property
-    def name_kind(self) -> int:
-        """The kind of token of names, -1 where there is none."""
-        return self.recognizer.lexer.kind_of.get("NAME", -1)
 
     @cached_property
     def following(self) -> Mapping[int, str]:
@@ -297,8 +305,10 @@ class SymbolReader:
         # what only follows an operand, as an index does, is none by itself
         names += [n for n in rules.bracketed.values() if n not in rules.recursive]
         self._starts = [recognizer.at_rule(name) for name in names]
-        # operands without operators: the lowest levels, and what is in brackets of its own
+        # operands without operators: the lowest levels, what gathers nothing but these and tokens,
+        # and what is in brackets of its own
         lowest = [n for n in rules.ladder if not {*rules.alone(n)} - {rules.names}]
+        lowest += [n for n in rules.ladder if n not in lowest and rules.gathers(n, lowest)]
         self._atoms = [recognizer.at_rule(n) for n in (*lowest, *names[1:])]
         self._longest: dict[tuple[bool, tuple[int, ...]], int] = {}
         self._type_words = frozenset(map(self.lexer.kind_of.__getitem__, rules.type_words))

@@ -13,10 +13,13 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from grammar.parser.lexer import Lexer
+from grammar.parser.failures import Failure
+from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.induction.corpus_lines import CorpusLines
+from recovery.language import CorpusFile
+from recovery.survey.failing_line import source_lines
 
-__all__ = ["LEAST_FILES_ALONE", "WouldBeKeywords"]
+__all__ = ["LEAST_FILES_ALONE", "WouldBeKeywords", "names_read"]
 
 # Different words up to which surroundings are those of keywords; where names may be too, fewer.
 _FEW = 8
@@ -28,6 +31,11 @@ _MANY_FILES = 5
 LEAST_FILES_ALONE = 2
 _LEAST_SHARE = 0.8
 _NAME_SHARE = 0.02
+# Lines that use a word as a name, from which on it stays one.
+_NAMED_LINES = 3
+# The least share of lines with a word ahead that others begin without it, by so many tokens.
+_PREFIX_SHARE = 0.6
+_PREFIX_TOKENS = 5
 
 # Signs behind a name that is called, indexed or has members.
 _BEHIND_NAMES = frozenset("([.")
@@ -56,6 +64,27 @@ class _Use:
     is_beside: bool
 
 
+def names_read(
+    files: Sequence[CorpusFile], failures: Sequence[Sequence[Failure]], lexer: Lexer
+) -> dict[str, set[str]]:
+    """Words that are names in lines that can be read, with the origins of these."""
+    read: dict[str, set[str]] = defaultdict(set)
+    for file, of_file in zip(files, failures, strict=True):
+        failing = {failure.line for failure in of_file}
+        for number, line in enumerate(source_lines(file.text), 1):
+            if number not in failing:
+                read[line] |= file.origins
+    found: Counter[str] = Counter()
+    origins: dict[str, set[str]] = defaultdict(set)
+    for line, having in read.items():
+        words = [word for word in lexer.lexemes(line) if lexer.kinds[word] != SKIPPED]
+        # what only ever begins a line may be a word that looks like a call there
+        for upper in {w.upper() for w in words[1:] if lexer.kinds[w] == lexer.name_kind}:
+            found[upper] += 1
+            origins[upper] |= having
+    return {word: origins[word] for word, count in found.items() if count >= _NAMED_LINES}
+
+
 class WouldBeKeywords:
     """The words that the lines of a corpus have as keywords, under one lexer."""
 
@@ -72,16 +101,17 @@ class WouldBeKeywords:
         ``types`` are reserved words that stand where the names of types may. ``least`` is
         how many origins a form needs; where it is 1, two files of one origin show a word too.
         """
+        self.corpus = corpus
         self.lexer = lexer
         self.least = least
         alone = _MANY_FILES if least > 1 else LEAST_FILES_ALONE
         self._types = frozenset(types)
-        self._name = lexer.kind_of.get("NAME", -9)
+        self._name = lexer.name_kind
         self._values = frozenset(
             kind
             for kind, shown in enumerate(lexer.display)
             if kind and shown == lexer.names[kind] and not lexer.is_keyword(kind)
-        ) - {lexer.kind_of.get("NEWLINE", -9)}
+        ) - {lexer.line_kind}
         fillers: dict[_Surroundings, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
         files: Counter[tuple[_Surroundings, str]] = Counter()
         uses: Counter[str] = Counter()
@@ -137,6 +167,25 @@ class WouldBeKeywords:
                 )
             )
         )
+
+    def prefixes(self) -> frozenset[str]:
+        """Words that may be missing at the head of a line: most lines go on as others begin."""
+        lines, kinds = self.corpus.lines, self.lexer.kinds
+
+        def begun(line: Sequence[str]) -> tuple[object, ...]:
+            words = line[:_PREFIX_TOKENS]
+            return tuple(
+                w if kinds[w] == self._name and w in self.words else kinds[w] for w in words
+            )
+
+        beginnings = {begun(line) for line in lines}
+        whole: Counter[str] = Counter()
+        rest: Counter[str] = Counter()
+        for line in lines:
+            if line[0] in self.words or self.lexer.is_keyword(kinds[line[0]]):
+                whole[line[0]] += 1
+                rest[line[0]] += len(line) > 2 and begun(line[1:]) in beginnings
+        return frozenset(w for w, count in whole.items() if rest[w] > _PREFIX_SHARE * count)
 
     def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
         """The places of a line where a keyword is meant, with the words."""

@@ -75,7 +75,7 @@ class BlockFinder:
 
     def _lines(self, text: str, meant: frozenset[str]) -> list[_Line]:
         lexer, end = self.recognizer.lexer, self.recognizer.line_kind
-        name = lexer.kind_of.get("NAME")
+        name = lexer.name_kind
         out: list[_Line] = []
         words: list[Word] = []
         lead = ""

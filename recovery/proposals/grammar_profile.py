@@ -220,7 +220,8 @@ class GrammarProfile:
             for rule in self.grammar.rules
             if not rule.is_lexer
             and any(
-                isinstance(e, Reference) and (e.name in self.line_ends or e.name == "NEWLINE")
+                isinstance(e, Reference)
+                and e.name in {*self.line_ends, self.recognizer.lexer.line_end}
                 for a in rule.alternatives
                 for e in a.elements[:-1]
             )
@@ -234,7 +235,7 @@ class GrammarProfile:
             for rule in self.grammar.rules
             if not rule.is_lexer
             and all(
-                isinstance(e, Reference) and e.name == "NEWLINE"
+                isinstance(e, Reference) and e.name == self.recognizer.lexer.line_end
                 for a in rule.alternatives
                 for e in walk(a)
                 if not isinstance(e, Repeat | Group)
@@ -244,7 +245,7 @@ class GrammarProfile:
     @cached_property
     def line_end(self) -> str:
         """What a rule writes where a line ends."""
-        return min(self.line_ends, default="NEWLINE")
+        return min(self.line_ends, default=self.recognizer.lexer.line_end)
 
     @cached_property
     def loops(self) -> frozenset[str]:

@@ -35,6 +35,18 @@ class Vocabulary:
             for a in self.grammar.by_name[rule].alternatives
         )
 
+    @cached_property
+    def kinds_of_words(self) -> dict[str, str]:
+        """Reserved words that are a choice with others, names too perhaps, with the rule of it."""
+        lexer = self.recognizer.lexer
+        found: dict[str, str] = {}
+        for rule in self.grammar.rules:
+            if not rule.is_lexer and len(rule.alternatives) > 1 and self.is_set_of_words(rule.name):
+                for word in self.words_of(rule.name):
+                    if lexer.is_keyword(lexer.kind_of[word]):
+                        found.setdefault(word, rule.name)
+        return found
+
     def words_of(self, rule: str) -> frozenset[str]:
         """The tokens of a rule whose alternatives are one token, or one such rule, each.
 

@@ -57,7 +57,7 @@ class LineSiteFinder:
                 if rule != self.grammar.start and profile.is_at_start(rule, place):
                     continue  # what comes before a rule belongs to the rule that calls it
                 if blank:
-                    yield rank, (Insert(rule, place, "NEWLINE*"),)
+                    yield rank, (Insert(rule, place, f"{recognizer.lexer.line_end}*"),)
                     continue
                 for line_rule in line_rules:
                     fits = line_rule in profile.loops or self.phraser.is_unused(line_rule)
@@ -112,7 +112,7 @@ class LineSiteFinder:
                 if rule != self.grammar.start and profile.is_at_start(rule, place):
                     continue
                 if goes_on:
-                    yield rank, (Insert(rule, place, "NEWLINE*"),)
+                    yield rank, (Insert(rule, place, f"{recognizer.lexer.line_end}*"),)
                 for line_rule in line_rules:
                     text = f"({profile.line_end} {line_rule})*"
                     yield (

@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
-from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer, State
 from recovery.tuning import LONGEST_BEGINNING_KEPT, MOST_ANSWERS_KEPT, WORD_LIST_PART
 
@@ -23,7 +22,7 @@ class RuleMatcher:
         self.recognizer = recognizer
         self._begun: dict[tuple[int, ...], Mapping[str, State]] = {}
         self._spans: dict[tuple[int, ...], frozenset[str]] = {}
-        self._a_name = (recognizer.lexer.kind_of.get("NAME", ERROR),)
+        self._a_name = (recognizer.lexer.name_kind,)
 
     @cached_property
     def _entries(self) -> dict[str, State]:

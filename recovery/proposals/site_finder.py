@@ -306,7 +306,7 @@ class EditSiteFinder:
                         yield worth, (AddAlternative(hub, " ".join(symbols)),)
             if rule != self.grammar.start and self.profile.is_at_start(rule, place):
                 continue
-            for text in (f"{block}*", f"({block} NEWLINE*)*"):
+            for text in (f"{block}*", f"({block} {self.recognizer.lexer.line_end}*)*"):
                 yield rank + UNLIKELY_COST, (Insert(rule, place, text),)
 
     def _replacements(

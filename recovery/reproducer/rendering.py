@@ -11,7 +11,7 @@ from itertools import product
 from typing import NamedTuple
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, PREFIXES
-from grammar.parser.lexer import EOF, ERROR, Lexer
+from grammar.parser.lexer import EOF, Lexer
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Speller
 from recovery.proposals.edit_site import LinePattern
@@ -51,7 +51,7 @@ class TokenRenderer:
         self.recognizer = recognizer
         self.lexer = recognizer.lexer
         self._speller = Speller(recognizer.grammar)
-        self._name = self.lexer.kind_of.get("NAME", ERROR)
+        self._name = self.lexer.name_kind
         number = self.lexer.kinds["1"]
         #: Tokens that may replace a longer expression.
         self.operands = tuple(

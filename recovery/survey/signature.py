@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from grammar.parser.failures import FailureContext, Form
-from grammar.parser.lexer import ERROR, Lexer
+from grammar.parser.lexer import EOF, ERROR, Lexer
 from recovery.survey.failing_line import FailingLine
 from recovery.tuning import (
     KEYWORD_ALONE,
@@ -68,7 +68,7 @@ class SignatureBuilder:
     def __init__(self, lexer: Lexer, failures: Iterable[tuple[str, FailingLine, Form]]) -> None:
         """``failures`` come with the digest of their file."""
         self.lexer = lexer
-        self._name = lexer.kind_of.get("NAME", ERROR)
+        self._name = lexer.name_kind
         self._signs = frozenset(
             kind
             for kind, text in enumerate(lexer.display)
@@ -155,7 +155,7 @@ class SignatureBuilder:
         return 0 <= place < len(kinds) and self._is_operand(kinds[place])
 
     def _is_operand(self, kind: int | None) -> bool:
-        if kind is None or kind <= 0 or self.lexer.names[kind] == "NEWLINE":
+        if kind is None or kind <= 0 or kind == self.lexer.line_kind:
             return False
         text = self.lexer.display[kind]
         return (kind not in self._signs and not self.lexer.is_keyword(kind)) or text in "])}"
@@ -188,9 +188,8 @@ class SignatureBuilder:
     def _display(self, kind: int) -> str:
         if kind == ERROR:
             return "unknown character"
-        return {"NEWLINE": "end of line", "EOF": "end of file", "NAME": "name"}.get(
-            self.lexer.names[kind], self.lexer.display[kind]
-        )
+        known = {self.lexer.line_kind: "end of line", EOF: "end of file", self._name: "name"}
+        return known.get(kind) or self.lexer.display[kind]
 
     def _open_bracket(self, kinds: tuple[int, ...]) -> str:
         """The innermost bracket that is open before the offending token."""

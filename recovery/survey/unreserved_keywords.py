@@ -30,7 +30,7 @@ def unreserved_keywords(
     programs: Iterable[tuple[str, str]], lexer: Lexer
 ) -> list[UnreservedKeyword]:
     """Suspected keywords in programs given as (origin, text), the most read first."""
-    name = lexer.kind_of.get("NAME")
+    name = lexer.name_kind
     files: dict[str, int] = defaultdict(int)
     origins: dict[str, set[str]] = defaultdict(set)
     bound: set[str] = set()

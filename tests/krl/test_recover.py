@@ -445,7 +445,10 @@ def test_the_start_is_surveyed_beside_the_grammar_in_force(
     answers = {c["title"].split()[0]: c["answered_by"] for c in start["clusters"]}
     assert {"FOR": "0001-for-step", "RETURN": None} == answers
     assert ["FOR … STEP"] == [c["title"] for c in start["constructs"]]
-    assert "of its 2 clusters 1 are answered by constructs (1)" in capsys.readouterr().out
+    assert (
+        "of its 2 clusters 1 are answered by constructs (1, 2.0 clusters each)"
+        in capsys.readouterr().out
+    )
     page = (tmp_path / "out" / "index.html").read_text("utf-8")
     assert page.index('id="rows"') < page.index('id="start-rows"')
 

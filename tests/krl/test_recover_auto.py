@@ -12,8 +12,8 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from krl.cli import main
 from recovery.induction.comparison import compared, within_reach
-from recovery.induction.corpus_lines import read_files
 from recovery.induction.growth_record import without_some
+from recovery.language import KRL
 from recovery.ledger.ledger import Ledger, in_force
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
@@ -89,7 +89,7 @@ def test_the_grown_grammar_is_compared_with_the_target(out: Path) -> None:
 
 def test_files_beyond_reach_are_told(corpus: Path) -> None:
     """A file with a reserved word that no file shown has is not within reach; the word is told."""
-    files = read_files([corpus])
+    files = KRL.files([corpus])
     shown = [file for file in files if "SWITCH" not in file.text]
     held = [file for file in files if "SWITCH" in file.text]
     words = ["CASE", "DEFAULT", "ENDSWITCH", "HALT", "SWITCH"]
@@ -109,7 +109,7 @@ def test_constructs_are_drawn_and_taken_out() -> None:
 
 def test_what_the_target_rejects_is_counted(corpus: Path) -> None:
     """Most sentences of a wider grammar are none of a narrow target, which reads no file here."""
-    found = compared(read_file(GRAMMAR), read_file(PRELIMINARY), read_files([corpus]), ())
+    found = compared(read_file(GRAMMAR), read_file(PRELIMINARY), KRL.files([corpus]), ())
     assert {"count": 0, "of": 0} == found["shown"]
     assert 500 < found["sentences_rejected"]["count"] < 1_000
 
@@ -183,6 +183,8 @@ def test_an_interrupted_run_keeps_what_was_done(
         (["--resume"], "belong to --auto"),
         (["--target", "KRL.g4"], "belong to --auto"),
         (["--without", "3"], "belong to --auto"),
+        (["--suffix", ".s"], "belong to --auto"),
+        (["--auto", "--suffix", ".s"], "needs --grammar"),
         (["--auto", "--without", "3000"], "--without 3000"),
         (["--auto", "--without", "3", "--resume"], "--without"),
         (["--auto", "--target", "nowhere.g4"], "nowhere.g4"),

@@ -18,7 +18,7 @@ from grammar.notation.edits import AddToken, apply
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, Rule
-from grammar.parser.lexer import EOF, ERROR, SKIPPED, Lexer, lexer_of
+from grammar.parser.lexer import ABSENT, EOF, ERROR, SKIPPED, Lexer, lexer_of
 
 LexerEnds = Callable[[Grammar, Rule, str, int], frozenset[int]]
 #: Name of the token, its text, its offset.
@@ -273,6 +273,23 @@ def test_which_tokens_are_keywords(preliminary: Grammar) -> None:
 
 
 # ------------------------------------------------------------------------------- sharing
+
+
+@pytest.mark.parametrize(
+    ("rules", "name", "line_end"),
+    [
+        ("IF : 'IF' ; ID : [A-Z]+ ; NL : '\\r'? '\\n' ;", "ID", "NL"),
+        ("EOL : [\\n]+ ; HEX : [A-F]+ ; DO : 'DO' ; TO : 'TO' ; W : [A-Z] [A-Z]* ;", "W", "EOL"),
+        ("IF : 'IF' ; BLANK : [ \\n]+ -> skip ;", "", ""),
+    ],
+)
+def test_names_and_line_ends_are_found(rules: str, name: str, line_end: str) -> None:
+    """Names are what reserved words would be, were they not; both are told, or that none is."""
+    lexer = lexer_of(read(f"grammar T; start : EOF ; {rules}"))
+    assert (name, line_end) == (lexer.name, lexer.line_end)
+    assert [not name, not line_end] == [
+        kind == ABSENT for kind in (lexer.name_kind, lexer.line_kind)
+    ]
 
 
 @pytest.mark.parametrize("own", GRAMMARS, ids=["KRL", "preliminary"])

@@ -44,6 +44,18 @@ def test_a_title_says_what_came_and_where(line: str, title: str) -> None:
     assert title == cluster_of(line).title
 
 
+def test_reserved_words_used_as_names_are_listed() -> None:
+    """They fail in many places for one reason; more than a few are counted."""
+    words = ("SEC", "DELAY", "DISTANCE", "BRAKE", "TO")
+    titles = [cluster_of(*(f"A={w}" for w in words[:n])).title for n in (1, 2, 4, 5)]
+    assert [
+        "SEC as a name",
+        "DELAY and SEC as names",
+        "BRAKE, DELAY, DISTANCE and SEC as names",
+        "BRAKE, DELAY, DISTANCE and 2 more as names",
+    ] == titles
+
+
 def test_a_file_cut_off_lacks_the_end_of_a_rule() -> None:
     """The end of the file is no line of its own."""
     assert "Procedure without END" == cluster_of("HALT", closer="").title

@@ -8,11 +8,14 @@ import sys
 import pytest
 
 from grammar.notation.edits import AddAlternative, AddToken, apply
+from grammar.notation.g4 import read_file
+from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.corpus_lines import CorpusFile, held_out
+from recovery.induction.corpus_lines import held_out
 from recovery.induction.growth_record import Growth, without
 from recovery.induction.rounds import Induction
+from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
 
@@ -100,6 +103,20 @@ def test_one_file_shows_what_it_has_often(
     assert accepted == Recognizer(_grown(toy, files).grammar).accepts(f"{word} D 7\n")
 
 
+def test_a_rule_that_a_form_calls_is_kept() -> None:
+    """Parts may go missing, items grow and tails are added where they are: nothing is rewritten."""
+    start = read_file(GRAMMAR.with_name("preliminary.g4"))
+    lines = ("X={P 1,Q 2}", "Y={S: P 1,Q -A}", "CIRC P,Q,CA 30", "CIRC P,Q,CA 9 C_DIS")
+    files = tuple(
+        CorpusFile(f"{o}/a.src", "\n".join(("DEF A()", *lines, "END", "")), frozenset({o}))
+        for o in ("A", "B", "C")
+    )
+    rules = _grown(start, files).grammar.by_name
+    written = " ".join(rules["aggregate"].text.split())
+    assert "aggregate : '{' (NAME ':')? component (',' component)* '}' ;" == written
+    assert "CIRC target ',' target (',' CA literal)? C_DIS?" in rules["motion"].text
+
+
 def test_the_ledger_replays(growth: Growth) -> None:
     """The constructs, replayed on the start, give the grammar byte for byte."""
     assert growth.grammar.text == in_force(growth.start, growth.constructs).text
@@ -181,7 +198,7 @@ def test_a_step_that_mends_nothing_is_refused(growth: Growth) -> None:
 _GROWN = """
 import json, sys
 from grammar.notation.g4 import read
-from recovery.induction.corpus_lines import CorpusFile
+from recovery.language import CorpusFile
 from recovery.induction.rounds import Induction
 from recovery.negatives.negatives import NegativeSet
 start, files = json.load(sys.stdin)

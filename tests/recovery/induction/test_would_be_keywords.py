@@ -4,8 +4,9 @@ import pytest
 
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.corpus_lines import CorpusFile, CorpusLines
+from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.would_be_keywords import WouldBeKeywords
+from recovery.language import CorpusFile
 
 
 def _keywords(toy: Grammar, files: dict[str, str], types: tuple[str, ...] = ()) -> WouldBeKeywords:

@@ -1,0 +1,85 @@
+"""The distinct failing lines of a corpus, with what speaks for an edit that mends them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+
+from grammar.notation.edits import AddToken, Edit
+from grammar.parser.failures import Failure
+from grammar.parser.recognizer import State
+from recovery.induction.steps import Evidence
+from recovery.induction.would_be_keywords import WouldBeKeywords
+from recovery.language import CorpusFile
+from recovery.proposals.edit_site import LinePattern
+
+__all__ = ["FailingLines", "Occurrences"]
+
+# Places that are remembered of a line, and given as evidence.
+_MOST_SEEN = 3
+_MOST_SHOWN = 10
+# Different lines of a single file that an edit with a new word needs, and places without one.
+_LINES_OF_ONE_FILE = 3
+_PLACES_IN_ONE_FILE = 2
+
+
+@dataclass(slots=True)
+class Occurrences:
+    """Where a distinct failing line occurs: files by their number, origins, texts, some places.
+
+    ``state`` is where the grammar stands when it fails.
+    """
+
+    files: set[int] = field(default_factory=set)
+    origins: set[str] = field(default_factory=set)
+    seen: list[str] = field(default_factory=list)
+    texts: set[tuple[str, ...]] = field(default_factory=set)
+    state: State | None = None
+
+
+class FailingLines:
+    """The distinct failing lines of files, ``patterns[n]`` with ``occurrences[n]``."""
+
+    def __init__(
+        self,
+        files: Sequence[CorpusFile],
+        failures: Sequence[Sequence[Failure]],
+        keywords: WouldBeKeywords,
+    ) -> None:
+        found: dict[LinePattern, Occurrences] = {}
+        for place, of_file in enumerate(failures):
+            for failure in of_file:
+                if failure.follows:
+                    continue
+                words = tuple(lexeme.upper() for lexeme in failure.lexemes if lexeme.strip("\r\n"))
+                pattern = LinePattern(failure.form, keywords.in_line(words) if words else ())
+                line = found.setdefault(pattern, Occurrences())
+                line.texts.add(words)
+                line.state = line.state or failure.state
+                line.files.add(place)
+                line.origins |= files[place].origins
+                if len(line.seen) < _MOST_SEEN:
+                    line.seen.append(f"{files[place].path}:{failure.line}")
+        self.patterns = list(found)
+        self.occurrences = list(found.values())
+
+    def weight(self, lines: Collection[int]) -> int:
+        """The files of lines, each once a line."""
+        return sum(len(self.occurrences[n].files) for n in lines)
+
+    def evidence(self, lines: Collection[int]) -> Evidence:
+        """What speaks for an edit that mends these lines."""
+        some = [self.occurrences[n] for n in sorted(lines)]
+        files = {place for line in some for place in line.files}
+        origins = {origin for line in some for origin in line.origins}
+        seen = dict.fromkeys(place for line in some for place in line.seen)
+        shown = tuple(islice(seen, _MOST_SHOWN))
+        return Evidence(len(files), len(origins), self.weight(lines), shown)
+
+    def is_repeated(self, lines: Collection[int], edits: Sequence[Edit]) -> bool:
+        """Whether lines of a single file show edits often enough to be no slip."""
+        some = [self.occurrences[n] for n in lines]
+        if any(isinstance(edit, AddToken) for edit in edits):
+            return len({text for line in some for text in line.texts}) >= _LINES_OF_ONE_FILE
+        return sum(len(line.seen) for line in some) >= _PLACES_IN_ONE_FILE

@@ -1,0 +1,97 @@
+"""The files that a growth is shown: how they read under a grammar, and what a step would lose."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from grammar.notation.edits import apply
+from grammar.notation.model import Grammar, GrammarError
+from grammar.parser.failures import Failure, FailureFinder
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.names_rule import names_kept
+from recovery.induction.steps import Evidence, Reading, Refused, Taken, joined
+from recovery.language import CorpusFile
+
+__all__ = ["Failures", "ShownFiles", "reading"]
+
+#: The failures of each file, in its order.
+Failures = Sequence[Sequence[Failure]]
+
+
+class ShownFiles:
+    """Reads the files; what was read under the last grammar is kept."""
+
+    def __init__(self, files: Sequence[CorpusFile]) -> None:
+        self.files = files
+        self._read: tuple[str, FailureFinder, Failures] | None = None
+
+    def failures(self, grammar: Grammar) -> tuple[FailureFinder, Failures]:
+        """What finds failures under a grammar, and those of all files."""
+        if self._read is None or self._read[0] != grammar.sha256:
+            finder = FailureFinder(Recognizer(grammar))
+            found = [finder.find(file.text) for file in self.files]
+            self._read = (grammar.sha256, finder, found)
+        return self._read[1:]
+
+    def kept(
+        self, grammar: Grammar, taken: Sequence[Taken], names: str | None
+    ) -> tuple[list[Taken], list[Refused]]:
+        """The steps without those under which a file fails earlier than it did, and these.
+
+        A word of a step that lines use as a name is left one in the rule of ``names`` before.
+        """
+        before = self.failures(grammar)[1]
+        after = self.failures(apply(grammar, joined(taken)))[1]
+        worse = [p for p, found in enumerate(after) if _first(found) < _first(before[p])]
+        if not worse:
+            return list(taken), []
+        kept: list[Taken] = []
+        lost: list[Refused] = []
+        for step in taken:
+            version, reason = step, ""
+            for _ in range(2):
+                try:
+                    wider = apply(grammar, joined([*kept, version]))
+                except GrammarError as error:
+                    reason = str(error)
+                    break
+                finder = FailureFinder(Recognizer(wider))
+                read = {p: finder.find(self.files[p].text) for p in worse}
+                lost_in = [p for p, f in read.items() if _first(f) < _first(before[p])]
+                if not lost_in or self._is_outvoted(lost_in, step.evidence):
+                    reason = ""
+                    break
+                reason = "loses lines that can be read"
+                used = {w.upper() for p in lost_in for w in read[p][0].lexemes}
+                version = names_kept(step, used, names)
+            if reason:
+                lost.append(Refused(step.title, step.edits, 0.0, reason))
+            else:
+                kept.append(version)
+        return kept, lost
+
+    def gains(self, grammar: Grammar, taken: Sequence[Taken]) -> bool:
+        """Whether with the steps more files parse, or as many and fewer lines fail."""
+        before, after = self.failures(grammar)[1], self.failures(apply(grammar, joined(taken)))[1]
+        return _standing(after) > _standing(before)
+
+    def _is_outvoted(self, places: Sequence[int], evidence: Evidence) -> bool:
+        """Whether files are of one origin, and an edit is shown by more origins and files."""
+        origins = frozenset[str]().union(*(self.files[p].origins for p in places))
+        return len(origins) == 1 < evidence.origins and 2 * len(places) < evidence.files
+
+
+def reading(failures: Failures) -> Reading:
+    """How many files parse and how many lines fail."""
+    return Reading(sum(not found for found in failures), len(failures), sum(map(len, failures)))
+
+
+def _first(failures: Sequence[Failure]) -> float:
+    """The first line that fails: those before it are read for certain, others in places guessed."""
+    return failures[0].line if failures else math.inf
+
+
+def _standing(failures: Failures) -> tuple[int, int]:
+    """How far files are read, more is better: those that parse, then lines that fail, negated."""
+    return sum(not found for found in failures), -sum(map(len, failures))
