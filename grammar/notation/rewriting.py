@@ -100,6 +100,8 @@ def without_alternative(rule: Rule, number: int) -> str:
     start, end = rule.alternatives[number - 1].span
     if start == end:
         raise GrammarError(f"rule {rule.name}: alternative {number} is empty")
+    if label := re.match(r"\s*#\s*\w+", rule.text[end:]):
+        end += label.end()
     if number > 1:
         start = rule.text.rindex("|", 0, start)
         start -= len(rule.text[:start]) - len(rule.text[:start].rstrip())
@@ -124,17 +126,21 @@ def with_rule(grammar: Grammar, after: Rule, text: str) -> Grammar:
 
 
 def with_token(grammar: Grammar, name: str) -> Grammar:
-    """A keyword more, in the alphabetical order of the others."""
+    """A keyword more, in the alphabetical order of those that are called as they are written.
+
+    Without any it comes first of all tokens, since of equals the first one wins.
+    """
     if name in grammar.by_name:
         raise GrammarError(f"token {name} exists already")
     keywords = [
         i for i, rule in enumerate(grammar.rules) if re.fullmatch(r"(\w+) : '\1' ;", rule.text)
     ]
-    if not keywords:
-        raise GrammarError("the grammar has no keywords yet")
     before = [i for i in keywords if _in_order(grammar.rules[i].name) < _in_order(name)]
+    tokens = keywords or [i for i, rule in enumerate(grammar.rules) if rule.is_lexer]
+    if not tokens:
+        raise GrammarError("the grammar has no tokens yet")
     rule = read_rule(f"{name} : '{name}' ;")
-    index = before[-1] + 1 if before else keywords[0]
+    index = before[-1] + 1 if before else tokens[0]
     rules = (*grammar.rules[:index], rule, *grammar.rules[index:])
     gap = index if before else index + 1
     gaps = (*grammar.gaps[:gap], "\n", *grammar.gaps[gap:])

@@ -96,7 +96,6 @@ class Inference:
         self._least = least
         self._blocks = blocks
         self._prefixes = prefixes
-        self.kept_for_blocks = frozenset[str]().union(*(block.words for block in blocks))
         self.rules = OperandRules(recognizer)
         self.reader = SymbolReader(self.rules)
         self.profile = GrammarProfile(recognizer)
@@ -396,13 +395,8 @@ class Inference:
     def blocks(self) -> Iterator[Inferred]:
         """Blocks of several lines where their first line may stand."""
         for block in self._blocks:
-            members = tuple(
-                n
-                for n, symbols in enumerate(self.symbols)
-                if symbols and block.opener in [s.text for s in symbols[:2]]
-            )
-            hosts = dict.fromkeys(host for n in members for host in self._block_hosts(n))
-            for host in hosts:
+            members = self._opening(block)
+            for host in self._hosts_of_block(block):
                 for body in self._bodies(host):
                     text = self._block_text(block, body)
                     if text:
@@ -410,6 +404,18 @@ class Inference:
                         edits = (*self.reserving(text), AddAlternative(host, text + ending))
                         title = f"{block.opener} to {block.closer} as {host}"
                         yield Inferred(title, edits, members, is_block=True)
+
+    def _opening(self, block: BlockLines) -> tuple[int, ...]:
+        """The lines that open a block."""
+        return tuple(
+            n
+            for n, symbols in enumerate(self.symbols)
+            if symbols and block.opener in [s.text for s in symbols[:2]]
+        )
+
+    def _hosts_of_block(self, block: BlockLines) -> dict[str, None]:
+        """The rules of which a block may be an alternative."""
+        return dict.fromkeys(host for n in self._opening(block) for host in self._block_hosts(n))
 
     def _block_hosts(self, number: int) -> list[str]:
         entered = self._entered(number)
@@ -474,6 +480,14 @@ class Inference:
     def statements(self) -> Iterator[Inferred]:
         """Forms of lines by their first word, or first sign where they begin with a name."""
         groups: dict[tuple[tuple[str, ...], str], list[int]] = defaultdict(list)
+        # where no rule has blocks, or lines in a row that could be within one, each line is its own
+        kept_for_blocks = frozenset[str]().union(
+            *(
+                block.words
+                for block in self._blocks
+                if any(map(self._bodies, self._hosts_of_block(block)))
+            )
+        )
         self.symbols = [self._known_groups(symbols) for symbols in self.symbols]
         for number, line in enumerate(self.lines):
             symbols = self.symbols[number]
@@ -483,7 +497,7 @@ class Inference:
             if symbols[0].is_operand and (any(beside) or len(symbols) == 1):
                 continue  # no line is a value, or two without a word that says what they are
             head = self._head(symbols)
-            if self.kept_for_blocks.isdisjoint(s.text for s in symbols[:2]):
+            if kept_for_blocks.isdisjoint(s.text for s in symbols[:2]):
                 groups[self._hosts(number), head].append(number)
         families = list(_families(groups))
         for (hosts, head), members in families:
@@ -602,8 +616,7 @@ class Inference:
         if before not in self._hosts_of:
             entered = self._entered(number)
             lines = sorted(entered & self.profile.of_lines)
-            inner = [r for r in sorted(entered) if self._is_line(r, lines)]
-            self._hosts_of[before] = tuple(inner + lines)
+            self._hosts_of[before] = tuple(sorted(entered & self._whole_lines) + lines)
         return self._hosts_of[before]
 
     def _entered(self, number: int) -> frozenset[str]:
@@ -618,14 +631,24 @@ class Inference:
     def _hosts_of(self) -> dict[object, tuple[str, ...]]:
         return {}
 
-    def _is_line(self, rule: str, outer: Sequence[str]) -> bool:
-        """Whether a rule is all of a line but its end, in one of the outer rules."""
-        end = self.profile.line_end
-        return self.profile.is_hub(rule) and any(
-            " ".join(self.grammar.by_name[o].source_of(a).split()) == f"{rule} {end}"
-            for o in outer
-            for a in self.grammar.by_name[o].alternatives
-        )
+    @cached_property
+    def _whole_lines(self) -> frozenset[str]:
+        """Rules that gather alternatives and are somewhere all of a line but its end."""
+        ends = {*self.profile.line_ends, self.lexer.line_end}
+        found: set[str] = set()
+        for rule in self.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                called = [
+                    inner.name if isinstance(inner, Reference) else ""
+                    for e in sequence.elements
+                    for inner in [e.item if isinstance(e, Repeat) else e]
+                ]
+                found.update(
+                    name
+                    for before, name, behind in zip(["", *called], called, called[1:], strict=False)
+                    if behind in ends and (not before or before in ends)
+                )
+        return frozenset(filter(self.profile.is_hub, found & self.rules.reaches.keys()))
 
     def _sort(self, symbol: Symbol) -> str:
         """A symbol by its text, an operand by the bracket it ends with."""

@@ -316,7 +316,8 @@ class Induction:
         self._tried.add(edit)
         evidence = Evidence(len(places), len(origins), len(lines), seen)
         step = Taken(f"{seen[0]} is one literal", (edit,), evidence)
-        if not self.shown.kept(self.grammar, [step], self._names)[0]:
+        kept = self.shown.kept(self.grammar, [step], self._names)[0]
+        if not kept or not self.shown.gains(self.grammar, kept):
             return None
         self._corpus = self._keywords = None
         return step

@@ -32,6 +32,7 @@ from grammar.notation.edits import (
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, GrammarError, Group, Repeat, Rule
+from grammar.parser.lexer import lexer_of
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences
 
@@ -79,6 +80,8 @@ def edited(rule: str, edit: Edit) -> str:
         ("s : A | B | C ;", RemoveAlternative("s", 1), "s : B | C ;"),
         ("s : A | B | C ;", RemoveAlternative("s", 2), "s : A | C ;"),
         ("s : A | B | C ;", RemoveAlternative("s", 3), "s : A | B ;"),
+        ("s : A # x | B # y ;", RemoveAlternative("s", 1), "s : B # y ;"),
+        ("s : A # x | B # y ;", RemoveAlternative("s", 2), "s : A # x ;"),
         (
             "s\n    : A\n    | B\n    | C\n    ;",
             RemoveAlternative("s", 1),
@@ -213,11 +216,10 @@ def test_empty_alternatives_are_refused(rule: str) -> None:
             edited(rule, edit)
 
 
-def test_a_grammar_without_keywords_takes_none() -> None:
-    """Where no keyword stands there is no place for one."""
-    grammar = read("grammar T;\ns : A ;\nA : 'x' ;\n")
-    with pytest.raises(GrammarError, match="no keywords yet"):
-        apply(grammar, [AddToken("B")])
+def test_a_first_keyword_comes_before_what_could_read_it() -> None:
+    """Of two tokens that read the same the first one wins."""
+    grammar = apply(read("grammar T;\ns : A ;\n\nA : [A-Z] ;\nD : 'x' ;\n"), [AddToken("B")])
+    assert ["B", "A"] == [lexer_of(grammar).names[lexer_of(grammar).kinds[w]] for w in "BC"]
 
 
 # ------------------------------------------------------------------------------ addresses

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -115,6 +116,16 @@ def test_a_rule_that_a_form_calls_is_kept() -> None:
     written = " ".join(rules["aggregate"].text.split())
     assert "aggregate : '{' (NAME ':')? component (',' component)* '}' ;" == written
     assert "CIRC target ',' target (',' CA literal)? C_DIS?" in rules["motion"].text
+
+
+def test_a_start_in_another_style_grows() -> None:
+    """Tokens of other names, flat rows, labelled alternatives: new words are reserved there too."""
+    start = read_file(Path(__file__).with_name("other_style.g4"))
+    text = "DEF A()\nWHILE X>1\nLIN P C_DIS\nENDWHILE\nHALT\nRETURN X\nEND\n"
+    files = tuple(CorpusFile(f"{o}/a.src", text, frozenset({o})) for o in ("A", "B", "C"))
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = ("RETURN Q\n", "WHILE A==B\n", "ENDWHILE\n", "LIN\n", "HALT LIN\n")
+    assert [True, True, True, False, False] == [recognizer.accepts(text) for text in texts]
 
 
 def test_the_ledger_replays(growth: Growth) -> None:
