@@ -44,6 +44,16 @@ OUTPUTS = {
     "run": "run --robot none --max-time 1 --trace out/t.json --html out/r.html {1}",
     "path as a table": "run --robot kinematic --max-time 1 --path out/p.csv {1}",
     "compile": "compile -o out/a.krlb {1}",
+    "fixes of the text": "check --no-cache --fix {0}",
+    "baseline": "check --no-cache --write-baseline out/b.json {0}",
+    "debugger": "debug --robot none --max-time 1 {1}",
+    "unit tests": "test --junit out/t.xml --cov-html out/t --lcov out/t.info {0}",
+    "points of an arm": "robot status-turn --machine {1} {1}",
+    "assembler": "asm {1}",
+    "image": "disasm {1}",
+    "code of strangers": "bench real-code --executor vm --json out/c.json {0}",
+    "a name on the command line": "explain {1}",
+    "a case on the command line": "conform --robot none {1}",
 }
 
 
@@ -88,6 +98,8 @@ def _check(path: Path) -> None:
         with path.open(encoding="utf-8", newline="") as file:
             cells = [cell for row in csv.reader(file) for cell in row]
         assert [] == [cell for cell in cells if re.match(r"[=+@\t\r]|-[^0-9.]", cell)]
+    elif path.suffix == ".info":
+        assert None is STEERING.search(path.read_text(encoding="utf-8"))
     elif path.suffix == ".xml":
         ET.parse(path)
     elif path.suffix == ".html":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +92,18 @@ def pages(
     }
 
 
+@pytest.fixture
+def window(request: pytest.FixtureRequest, browser: webdriver.Chrome) -> Iterator[int]:
+    """A window that is so many pixels wide."""
+    size = {"width": request.param, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    yield request.param
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 @pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize("window", [400, 1400], indirect=True)
+@pytest.mark.usefixtures("window")
 def test_a_page_can_be_used_by_all(
     browser: webdriver.Chrome, pages: dict[str, Path], name: str
 ) -> None:
@@ -123,23 +134,18 @@ def _violations(browser: webdriver.Chrome, only: Json) -> list[str]:
 
 
 @pytest.mark.parametrize("name", PAGES)
-@pytest.mark.parametrize("window", [400, 800, 950])
+@pytest.mark.parametrize("window", [400, 800, 950], indirect=True)
 def test_a_page_fits_a_narrow_window(
     browser: webdriver.Chrome, pages: dict[str, Path], name: str, window: int
 ) -> None:
     """Nothing is beside the window, and text stands in words and not in letters."""
-    narrow = {"width": window, "height": 800, "deviceScaleFactor": 1, "mobile": False}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", narrow)
-    try:
-        load(browser, pages[name].as_uri())
-        width = browser.execute_script("return document.documentElement.scrollWidth")
-        columns = browser.execute_script(
-            "return [...document.querySelectorAll('th, td, h1, h2, h3, p, li')].filter((one) => {"
-            " const box = one.getBoundingClientRect();"
-            " return one.textContent.trim().length > 12 && box.width > 0 && box.width < 40"
-            "  && box.height > 60; }).map((one) => one.textContent.trim())"
-        )
-    finally:
-        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    load(browser, pages[name].as_uri())
+    width = browser.execute_script("return document.documentElement.scrollWidth")
+    columns = browser.execute_script(
+        "return [...document.querySelectorAll('th, td, h1, h2, h3, p, li')].filter((one) => {"
+        " const box = one.getBoundingClientRect();"
+        " return one.textContent.trim().length > 12 && box.width > 0 && box.width < 40"
+        "  && box.height > 60; }).map((one) => one.textContent.trim())"
+    )
     assert width <= window
     assert [] == columns
