@@ -10,6 +10,11 @@
 #ifndef KRL_COMPILED_H
 #define KRL_COMPILED_H
 
+/* Here they would take constants from what says that a sum is too large, which then has to be a number each time. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-dominator-opts")
+#endif
+
 #include "machine.h"
 
 #define KRL_ARRAY(number) (&arrays[number])

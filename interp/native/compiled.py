@@ -37,11 +37,7 @@ _HEADERS: Final = (
     *("program.h", "cells.h", "isa.gen.h"),
 )
 #: Every product and sum is rounded by itself, as by the machine (docs/adr/0013-numbers.md).
-#: Dominators would let the C compiler take constants from what says that a sum is too large.
-_FLAGS: Final = (
-    *("-std=c11", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno"),
-    *("-fno-tree-dominator-opts", "-w"),
-)
+_FLAGS: Final = tuple("-std=c11 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno -w".split())
 _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
 #: Steps of a routine that is no call in C, if it calls none itself.
