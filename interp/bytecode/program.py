@@ -32,6 +32,7 @@ __all__ = [
     "Constant",
     "Data",
     "Handle",
+    "Import",
     "Input",
     "Instruction",
     "Items",
@@ -205,6 +206,20 @@ class Data:
 
 
 @dataclass(frozen=True, slots=True)
+class Import:
+    """What a routine calls a variable of another data list, by its number among the data [ADV-05].
+
+    Without a routine it is what the whole module calls it. Instructions have addresses; it is for
+    texts that name variables.
+    """
+
+    module: str
+    routine: str
+    name: str
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of a code object; see `Input` for views."""
 
@@ -276,6 +291,7 @@ class Program:
     data: tuple[Data, ...]
     initial: tuple[tuple[int, int], ...]
     codes: tuple[Code, ...]
+    imports: tuple[Import, ...] = ()
 
     @cached_property
     def addresses(self) -> tuple[int, ...]:

@@ -5,8 +5,8 @@
  */
 #include "reader.h"
 
-enum { SECTIONS = 8 };
-enum { STRS, TYPE, TEXT, ASKS, BLTN, DATA, INIT, CODE };
+enum { SECTIONS = 9 };
+enum { STRS, TYPE, TEXT, ASKS, BLTN, DATA, INIT, CODE, IMPT };
 
 uint32_t krl_checksum(const uint8_t *bytes, size_t length)
 {
@@ -22,12 +22,12 @@ uint32_t krl_checksum(const uint8_t *bytes, size_t length)
 static int open_sections(struct section *sections, const uint8_t *image, size_t length,
                          struct krl_refusal *why)
 {
-    static const char names[] = "STRSTYPETEXTASKSBLTNDATAINITCODE";
+    static const char names[] = "STRSTYPETEXTASKSBLTNDATAINITCODEIMPT";
     size_t start = 20 + 8 * SECTIONS;
     if (length < start || length > INT32_MAX || memcmp(image, KRL_IMAGE_MAGIC, 4) != 0)
         return krl_refuse(why, "not an image, or too short for one");
     if (krl_word_at(image + 4) != KRL_IMAGE_FORMAT)
-        return krl_refuse(why, "the image has a format that is not known");
+        return krl_refuse(why, "the image has another format: compile it again");
     if (krl_word_at(image + 8) != length || krl_word_at(image + 16) != SECTIONS)
         return krl_refuse(why, "the image has another length than it says, or other sections");
     if (krl_word_at(image + 12) != krl_checksum(image + 16, length - 16))
@@ -64,6 +64,7 @@ int krl_read_image(struct krl_program *program, const uint8_t *image, size_t len
     krl_begin_section(&reader, sections[DATA]), krl_read_data(&reader), krl_end_section(&reader);
     krl_begin_section(&reader, sections[INIT]), krl_read_initial(&reader), krl_end_section(&reader);
     krl_begin_section(&reader, sections[CODE]), krl_read_codes(&reader), krl_end_section(&reader);
+    krl_begin_section(&reader, sections[IMPT]), krl_read_imports(&reader), krl_end_section(&reader);
     if (reader.is_wrong) {
         krl_free_program(program);
         return 0;

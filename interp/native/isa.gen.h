@@ -3,7 +3,7 @@
 #define KRL_ISA_GEN_H
 
 #define KRL_IMAGE_MAGIC "KRLI"
-#define KRL_IMAGE_FORMAT 2
+#define KRL_IMAGE_FORMAT 3
 #define KRL_MAX_CELLS 1048576
 
 /* Kinds of operands, as bits of a byte each: the first operand lowest. */

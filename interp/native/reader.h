@@ -74,6 +74,7 @@ struct krl_entry *krl_read_entries(struct reader *reader, int32_t *count);
 
 /* The variables of the data lists, and their values in the beginning. */
 void krl_read_data(struct reader *reader);
+void krl_read_imports(struct reader *reader);
 void krl_read_initial(struct reader *reader);
 
 /* ---------------------------------------------------------------------------- code_object_reader.c */

@@ -214,6 +214,17 @@ void krl_read_data(struct reader *reader)
     program->data_count = count;
 }
 
+/* What routines call variables of other data lists is for Python. */
+void krl_read_imports(struct reader *reader)
+{
+    int32_t count = krl_read_count(reader);
+    for (int32_t i = 0; i < count && !reader->is_wrong; i++) {
+        for (int string = 0; string < 3; string++)
+            krl_read_string(reader);
+        krl_read_choice(reader, (uint32_t)reader->program->data_count);
+    }
+}
+
 void krl_read_initial(struct reader *reader)
 {
     struct krl_program *program = reader->program;

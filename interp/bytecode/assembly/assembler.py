@@ -27,6 +27,7 @@ from interp.bytecode.program import (
     Constant,
     Data,
     Handle,
+    Import,
     Input,
     Instruction,
     Items,
@@ -68,6 +69,7 @@ class _Assembler:
         self._builtins: list[Builtin] = []
         self._data: list[Data] = []
         self._initial: list[tuple[int, int]] = []
+        self._imports: list[Import] = []
         self._address = 0
         self._codes: list[Code] = []
 
@@ -82,6 +84,7 @@ class _Assembler:
             "builtin": self._builtin,
             "data": lambda line: self._variable(line, is_global=False),
             "global": lambda line: self._variable(line, is_global=True),
+            "import": self._import,
             "code": self._code,
         }
         self._head()
@@ -106,6 +109,7 @@ class _Assembler:
             tuple(self._data),
             tuple(self._initial),
             tuple(self._codes),
+            tuple(self._imports),
         )
 
     def _with_stacks(self, program: Program) -> Program:
@@ -227,6 +231,14 @@ class _Assembler:
             while not line.is_done:
                 offset = self._initial_value(line, type_, offset)
         self._address += size(type_)
+
+    def _import(self, line: Line) -> None:
+        module = line.name()
+        line.expect(".")
+        routine, name = "", line.name()
+        if line.found("."):
+            routine, name = name, line.name()
+        self._imports.append(Import(module, routine, name, self._symbols.data_number(line)))
 
     def _initial_value(self, line: Line, type_: Type, offset: int) -> int:
         """Reads one initial value, or a text; gives the offset behind it."""

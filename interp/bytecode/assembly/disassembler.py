@@ -169,6 +169,9 @@ class _Writer:
                 line += ["=", *_initial(type_, addresses[number], initial[start:end])]
             start = end
             yield f"{'global' if variable.is_global else 'data'} {' '.join(line)}"
+        for one in program.imports:
+            names = filter(None, (one.module, one.routine, one.name))
+            yield f"import {'.'.join(map(name_text, names))} {self._data[one.number]}"
 
     # -------------------------------------------------------------------------------- code
 

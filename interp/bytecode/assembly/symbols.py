@@ -112,13 +112,20 @@ class Symbols:
 
     def data_place(self, line: Line) -> int:
         """The address of a part of a variable."""
+        address, type_ = self._places[self._variable(line)]
+        return address + part_offset(line, type_)
+
+    def data_number(self, line: Line) -> int:
+        """The number of a variable among the data."""
+        return list(self._places).index(self._variable(line))
+
+    def _variable(self, line: Line) -> tuple[str, Key]:
         module = line.name()
         line.expect(".")
         label = line.label()
-        place = self._places.get((module.upper(), key(label)))
-        if place is None:
+        if (module.upper(), key(label)) not in self._places:
             raise line.error(f"there is no variable {module}.{label[0]}")
-        return place[0] + part_offset(line, place[1])
+        return module.upper(), key(label)
 
     # ------------------------------------------------------------------------ code objects
 

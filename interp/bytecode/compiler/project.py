@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
-from grammar.semantics.symbols import Symbol
+from grammar.semantics.symbols import Kind, Symbol
 from grammar.semantics.types import BOOL, INT, Array, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
@@ -29,7 +30,7 @@ from interp.bytecode.compiler.locations import (
 )
 from interp.bytecode.compiler.predefined_calls import BY_TEXT
 from interp.bytecode.compiler.statements import Statements
-from interp.bytecode.program import CodeKind, Mode, Program
+from interp.bytecode.program import CodeKind, Import, Mode, Program
 from interp.bytecode.verifier.verify import measured
 from interp.program.load import CheckedProgram, Routine
 from interp.program.variables import MOST_CELLS, cells_of_routine, is_complete, too_large
@@ -98,8 +99,27 @@ class Project:
             tuple(tables.data),
             initial,
             codes,
+            tuple(self._imports()),
         )
         return Compiled(measured(program), tuple(self._shared.refusals), numbers)
+
+    def _imports(self) -> Iterator[Import]:
+        """What modules and routines call data of other lists; what leads nowhere is left out."""
+        program = self._program
+        numbers = {symbol: number for number, symbol in enumerate(self._tables.places)}
+        for unit in program.units.values():
+            assert unit.module.table is not None, "only what can be read is loaded"
+            tables = [(unit.module.table.table, program.project.scope(unit.module), "")]
+            tables += [(one.table.table, one.scope, one.name) for one in program.routines_of(unit)]
+            for table, scope, routine in tables:
+                for space, symbol in table.symbols():
+                    if symbol.kind is Kind.IMPORT:
+                        found = scope.own(space, symbol.key)
+                        assert found is not None, "a scope has what its table has"
+                        with suppress(LinkError):
+                            number = numbers.get(program.declaration(found).symbol)
+                            if number is not None:
+                                yield Import(unit.module.name, routine, symbol.name, number)
 
     # ----------------------------------------------------------------------- routines
 

@@ -27,6 +27,7 @@ from interp.bytecode.program import (
     Constant,
     Data,
     Handle,
+    Import,
     Input,
     Instruction,
     Items,
@@ -61,7 +62,9 @@ def read_image(data: bytes) -> Program:
         raise ImageError("the image is too short")
     _, version, length, checksum, count = struct.unpack_from("<4sIIII", data)
     if version != FORMAT:
-        raise ImageError(f"the image has format {version}, and only {FORMAT} is known")
+        raise ImageError(
+            f"the image has format {version}, and only {FORMAT} is known: compile it again"
+        )
     if length != len(data):
         raise ImageError(f"the image has {len(data):,} bytes, not {length:,} as it says")
     if checksum != zlib.crc32(data[16:]):
@@ -102,7 +105,10 @@ class _Reader:
         data = self._section("DATA", self._data)
         initial = self._section("INIT", lambda: (self._word(), self._signed()))
         codes = self._section("CODE", self._code)
-        return Program(tuple(self._types), texts, asks, builtins, data, initial, codes)
+        imports = self._section(
+            "IMPT", lambda: Import(self._string(), self._string(), self._string(), self._word())
+        )
+        return Program(tuple(self._types), texts, asks, builtins, data, initial, codes, imports)
 
     def _error(self, reason: str) -> ImageError:
         return ImageError(f"the image is damaged: section {self._name}, {reason}")

@@ -22,6 +22,7 @@ from interp.bytecode.program import (
     Constant,
     Data,
     Handle,
+    Import,
     Input,
     Items,
     Local,
@@ -57,6 +58,7 @@ class _Writer:
             "DATA": self._section(self._data, program.data),
             "INIT": self._section(lambda pair: self._put(*pair), program.initial),
             "CODE": self._section(self._code, program.codes),
+            "IMPT": self._section(self._import, program.imports),
         }
         sections["STRS"] = self._string_section()
         table = b"".join(
@@ -165,6 +167,12 @@ class _Writer:
         self._string(variable.module)
         self._string(variable.name)
         self._put(variable.type, int(variable.is_global))
+
+    def _import(self, given: Import) -> None:
+        self._string(given.module)
+        self._string(given.routine)
+        self._string(given.name)
+        self._put(given.number)
 
     def _code(self, code: Code) -> None:
         self._string(code.name)

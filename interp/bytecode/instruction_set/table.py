@@ -42,7 +42,7 @@ __all__ = [
 #: How an image begins, and the version of the format and the instruction set: a change of either
 #: makes it another one.
 MAGIC: Final = b"KRLI"
-FORMAT: Final = 2
+FORMAT: Final = 3
 #: The data lists and all frames together have at most so many cells.
 MAX_CELLS: Final = MOST_CELLS
 

@@ -122,6 +122,9 @@ class _Tables:
             self._type(variable.type, f"{variable.module}.{variable.name}")
         if sum(size(program.types[variable.type]) for variable in program.data) > MAX_CELLS:
             raise VerificationError(f"the data lists have more than {MAX_CELLS:,} cells")
+        for one in program.imports:
+            if not 0 <= one.number < len(program.data):
+                raise VerificationError(f"the import {one.module}.{one.name} leads nowhere")
         last = -1
         for address, word in program.initial:
             number = program.data_at(address)

@@ -59,6 +59,10 @@ class Names:
         self._by_name: dict[str, list[int]] = {}
         for number, variable in enumerate(program.data):
             self._by_name.setdefault(variable.name.upper(), []).append(number)
+        self._imports = {
+            (one.module.upper(), one.routine.upper(), one.name.upper()): one.number
+            for one in program.imports
+        }
 
     def slots(self, code: int) -> tuple[Slot, ...]:
         """The parameters and locals of a code object."""
@@ -193,7 +197,11 @@ class Names:
         numbers = self._by_name.get(name, ())
         own = [n for n in numbers if self._program.data[n].module.upper() == module]
         seen = own or [n for n in numbers if self._program.data[n].is_global]
-        return seen[0] if seen else None
+        routine = self._program.codes[self._state.code].name.upper()
+        imported = self._imports.get((module, routine, name))
+        if imported is None and not own:
+            imported = self._imports.get((module, "", name))
+        return imported if imported is not None else seen[0] if seen else None
 
     def _part(
         self, name: str, whole: Type, start: int, address: int, type_: Type, dimensions: int

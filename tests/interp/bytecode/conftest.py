@@ -17,7 +17,7 @@ from interp.program.load import Limits
 
 #: A program with something of everything, valid and not meant to make sense.
 EVERYTHING = """\
-bytecode 2
+bytecode 3
 enum COLOUR RED GREEN BLUE
 enum VAR_STATE DECLARED INITIALIZED UNKNOWN
 struct POINT X:REAL Y:REAL C:COLOUR N:CHAR[8]
@@ -50,6 +50,8 @@ data MAIN.P POINT = 1.5 @2 !GREEN "ab"
 data MAIN.A INT[2,3] = @2 7
 data MAIN.PS POINT[3]
 data MAIN.T CHAR[8] = "text"
+import OTHER.TEXT MAIN.T
+import OTHER.PART.AMOUNT MAIN.COUNT
 
 code MAIN routine "main.src" 1
   local I INT

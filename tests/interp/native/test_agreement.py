@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 Compare = Callable[[str], list[Any]]
 
 _HEAD = """\
-bytecode 2
+bytecode 3
 enum CASE_SENSE_T CASE_SENS NOT_CASE_SENS
 struct POINT X:REAL N:INT
 struct FRAME X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL

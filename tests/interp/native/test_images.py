@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from interp.native._core import Core
 
 _SMALL = """\
-bytecode 2
+bytecode 3
 struct POINT X:REAL Y:INT
 builtin LENGTH STRLEN view:CHAR[] -> INT
 ask SHOW Write ("$SHOWN") in:INT
@@ -161,7 +161,7 @@ def test_damaged_images(core: type[Core], data: st.DataObject) -> None:
     [
         (lambda _image: b"", "too short"),
         (lambda image: image[:-4], "another length"),
-        (lambda image: image[:4] + _WORD.pack(99) + image[8:], "not known"),
+        (lambda image: image[:4] + _WORD.pack(99) + image[8:], "compile it again"),
         (lambda image: image[:40] + bytes([image[40] ^ 1]) + image[41:], "checksum"),
         (lambda image: b"ELF\x7f" + image[4:], "not an image"),
     ],
@@ -174,7 +174,7 @@ def test_refusals_say_why(core: type[Core], change: object, reason: str) -> None
 
 
 _LOOSE = """\
-bytecode 2
+bytecode 3
 ask SHOW Write ("$SHOWN") in:INT
 data M.L INT[3]
 data M.R REAL

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _PROGRAMS = Path(__file__).resolve().parents[3] / "corpus" / "programs"
 
 _SHARED = """\
-bytecode 2
+bytecode 3
 ask SHOW Write ("$SHOWN") in:INT
 data M.I INT = 1
 code MAIN routine "m.src" 1
@@ -111,7 +111,7 @@ def test_core_checks_what_leads_into_memory(core: type[Core]) -> None:
 
 
 _ENDLESS = """\
-bytecode 2
+bytecode 3
 code MAIN routine "m.src" 1
   local L INT[{size}]
 begin

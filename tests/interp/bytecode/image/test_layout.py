@@ -14,7 +14,7 @@ from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.image.reader import ImageError, read_image
 from interp.bytecode.image.writer import write_image
 
-SMALL = 'bytecode 2\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
+SMALL = 'bytecode 3\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
 
 
 def sealed(data: bytes) -> bytes:
@@ -34,7 +34,7 @@ def test_program_survives_its_image(everything: str) -> None:
 def test_image_begins_with_its_name_and_version() -> None:
     """Four letters, the version, and the length stand first."""
     image = write_image(assemble(SMALL))
-    assert (b"KRLI", 2, len(image)) == struct.unpack_from("<4sII", image)
+    assert (b"KRLI", 3, len(image)) == struct.unpack_from("<4sII", image)
 
 
 @pytest.mark.parametrize(
@@ -82,9 +82,9 @@ def test_bytes_are_refused_quietly(data: bytes) -> None:
 
 def test_targets_lead_to_instructions() -> None:
     """A target between two words of an instruction is no target."""
-    text = 'bytecode 2\ncode M routine "m" 1\nbegin\n  JUMP L\n  PUSH_INT 5\nL:\n  RETURN\nend\n'
+    text = 'bytecode 3\ncode M routine "m" 1\nbegin\n  JUMP L\n  PUSH_INT 5\nL:\n  RETURN\nend\n'
     words = _words(write_image(assemble(text)))
-    place = words.index(4, len(words) - 8)  # the word of RETURN
+    place = words.index(4, len(words) - 9)  # the word of RETURN
     words[place] = 3
     with pytest.raises(ImageError, match="a target is no instruction"):
         read_image(sealed(struct.pack(f"<{len(words)}I", *words)))

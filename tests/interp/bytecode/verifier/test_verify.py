@@ -13,7 +13,7 @@ from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import VerificationError, verify
 
 HEAD = """\
-bytecode 2
+bytecode 3
 enum E ONE TWO
 enum F ONE TWO
 struct S A:INT B:REAL[3]
