@@ -22,7 +22,7 @@ from conformance.runner import run_case
 from conformance.sensitivity.mutants import modules
 from conformance.suite.case import Case
 from support.files.result_store import ResultStore
-from support.parallel.ordered_map import ordered_map
+from support.parallel.ordered_map import in_shares
 
 __all__ = ["NOTHING_KEPT", "Reach", "reach_of", "seen_digest"]
 
@@ -69,9 +69,7 @@ def reach_of(
             found[case.name] = _reach_of_row(case, row)
     on_done(len(found))
     new = [case for case in cases if case.name not in found]
-    shares = [new[at : at + _SHARE] for at in range(0, len(new), _SHARE)]
-    tasks = ((share, setup) for share in shares)
-    for share, reached in zip(shares, ordered_map(_reached, tasks, jobs=jobs), strict=True):
+    for share, reached in in_shares(_reached, new, setup, size=_SHARE, jobs=jobs):
         found.update(zip((case.name for case in share), reached, strict=True))
         store.put((_key(case), _row(one)) for case, one in zip(share, reached, strict=True))
         on_done(len(share))

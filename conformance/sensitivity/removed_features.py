@@ -27,7 +27,7 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from grammar.syntax.unparse import expression
 from grammar.syntax.walk import BODIES, children, root_variable, walk
-from support.parallel.ordered_map import ordered_map
+from support.parallel.ordered_map import in_shares
 
 __all__ = ["Removal", "features", "named_by", "removals_record", "try_removals", "without"]
 
@@ -62,11 +62,8 @@ def try_removals(
 ) -> list[Removal]:
     """What becomes of each case that passes when a feature named in its title is removed."""
     running = [case for case in cases if case.phase == "run"]
-    shares = [running[at : at + _SHARE] for at in range(0, len(running), _SHARE)]
     found: list[Removal] = []
-    for share, removals in zip(
-        shares, ordered_map(_removals, ((one,) for one in shares), jobs=jobs), strict=True
-    ):
+    for share, removals in in_shares(_removals, running, size=_SHARE, jobs=jobs):
         found += removals
         on_done(len(share))
     return found

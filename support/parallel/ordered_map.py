@@ -8,7 +8,7 @@ task that kills every worker it is given to is found, since it is then tried aga
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from typing import TypeVar, TypeVarTuple
 
@@ -16,9 +16,10 @@ from support.parallel.dask_cluster import connected
 from support.parallel.processes import LocalWorkers
 from support.parallel.workers import Pending, Workers, WorkersError
 
-__all__ = ["check_scheduler", "ordered_map"]
+__all__ = ["check_scheduler", "in_shares", "ordered_map"]
 
 _T = TypeVar("_T")
+_Item = TypeVar("_Item")
 _Ts = TypeVarTuple("_Ts")
 
 
@@ -53,6 +54,19 @@ def ordered_map(
                 yield _next(function, submitted, workers, lost)
         while submitted:
             yield _next(function, submitted, workers, lost)
+
+
+def in_shares(
+    function: Callable[[Sequence[_Item], *_Ts], _T],
+    items: Sequence[_Item],
+    *more: *_Ts,
+    size: int,
+    jobs: int = 1,
+) -> Iterator[tuple[Sequence[_Item], _T]]:
+    """Shares of so many items, each with what ``function`` returns for it and ``more``."""
+    shares = [items[at : at + size] for at in range(0, len(items), size)]
+    tasks = ((share, *more) for share in shares)
+    return zip(shares, ordered_map(function, tasks, jobs=jobs), strict=True)
 
 
 def check_scheduler(scheduler: str | None) -> None:

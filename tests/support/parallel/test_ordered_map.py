@@ -12,7 +12,7 @@ import pytest
 
 from krl.cli import main
 from support.parallel import ordered_map as module
-from support.parallel.ordered_map import check_scheduler, ordered_map
+from support.parallel.ordered_map import check_scheduler, in_shares, ordered_map
 from support.parallel.workers import WorkersError
 
 
@@ -128,3 +128,9 @@ def test_what_died_is_tried_again_when_nothing_else_is_out(monkeypatch: pytest.M
     assert [0, 1, 2] == list(ordered_map(abs, ((n,) for n in range(3)), jobs=2))
     again = len(workers.log) - 1 - workers.log[::-1].index(("out", 0))
     assert {("back", 1), ("back", 2)} <= set(workers.log[:again])
+
+
+def test_items_are_shared_out_in_their_order() -> None:
+    """Each share is as large as wanted, but for the last, and comes with its result."""
+    found = list(in_shares(lambda share, more: sum(share) + more, [1, 2, 3, 4, 5], 10, size=2))
+    assert [([1, 2], 13), ([3, 4], 17), ([5], 15)] == found
