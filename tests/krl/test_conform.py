@@ -1,6 +1,7 @@
 """`krl conform` from the outside: selections, outputs, exit status."""
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -182,3 +183,29 @@ def test_a_fault_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> Non
     assert "DELAY counts nothing; DELAY is in hundredths of a second" in capsys.readouterr().err
     assert 2 == run("control/recursion", "--fault", "nobody knows this")
     assert "krl bench conform" in capsys.readouterr().err
+
+
+def test_parsers_of_others_stand_beside_ours(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The table and the record have ours and theirs; theirs may fail without a status of 1."""
+    record = tmp_path / "out.json"
+    words = ["compare", "control/exit_for", "--json", record, "--parser"]
+    assert 0 == run(*words, f"no={sys.executable} -c 'raise SystemExit(1)'")
+    (case,) = json.loads(record.read_text(encoding="utf-8"))["cases"]
+    assert [("krl", "pass"), ("no", "fail")] == [
+        (one["executor"], one["verdict"]) for one in case["results"]
+    ]
+    assert "to be refused" in capsys.readouterr().out
+    for wrong in (["compare"], ["control/exit_for", "--parser", "a=b"]):
+        assert 2 == run(*wrong)
+
+
+def test_pairs_of_features_are_drawn_by_seed(capsys: pytest.CaptureFixture[str]) -> None:
+    """Another seed lists other programs; none of them lies in the folder of cases."""
+    listed = []
+    for seed in (1, 2):
+        assert 0 == run("pairs", "--seed", seed, "--list")
+        listed.append(capsys.readouterr().out.splitlines())
+    assert listed[0] != listed[1]
+    assert all(line.startswith("pairs/drawn_") for line in listed[0] + listed[1])

@@ -108,6 +108,8 @@ def conform(
             return _lint(words)
         if words[:1] == ["compare"]:
             return _compare(words[1:], parser or [], json_file, junit, html)
+        if parser:
+            raise InputError("--parser belongs to krl conform compare")
         if metamorphic is not None:
             from krl.commands.conform.laws import check_laws
 
