@@ -14,7 +14,7 @@ from typing import Any
 from grammar.check.context import Context
 from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import BODIES, children
+from grammar.syntax.walk import BODIES, LEAVES, children
 
 __all__ = ["Access", "Use", "accesses", "calls_of", "parts_of"]
 
@@ -56,7 +56,8 @@ def _add(context: Context, node: ast.Node, found: list[Access]) -> None:
         rule(context, node, found)
         return
     for part in own_parts(node):
-        _add(context, part, found)
+        if type(part) not in LEAVES:
+            _add(context, part, found)
 
 
 def _assignment(context: Context, node: ast.Assignment, found: list[Access]) -> None:
@@ -100,7 +101,8 @@ def parts_of(node: ast.Node) -> Sequence[ast.Node]:
     """A statement and all below it, without the statements in a block."""
     found: list[ast.Node] = [node]
     for here in found:  # grows while it is walked
-        found += own_parts(here)
+        if type(here) not in LEAVES:
+            found += own_parts(here)
     return found
 
 

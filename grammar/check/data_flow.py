@@ -11,11 +11,12 @@ import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from grammar.check.accesses import Access, Use, accesses, calls_of
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, PlacedStatement, RoutineBody
-from grammar.check.control_flow_graph import FlowNode, flow_graph
+from grammar.check.control_flow_graph import FlowGraph, FlowNode, flow_graph
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import BOOL, REAL
@@ -94,8 +95,11 @@ class _DataFlow:
         self.variables = frozenset(
             key for key, one in followed.items() if one.kind is Kind.VARIABLE
         )
-        self._graph = flow_graph(routine.node)
         self._accesses: dict[FlowNode, Sequence[Access]] = {}
+
+    @cached_property
+    def _graph(self) -> FlowGraph:
+        return flow_graph(self._routine.node)
 
     def _of(self, node: FlowNode) -> Sequence[Access]:
         """The accesses at a place: of REPEAT, the condition stands at its end."""
@@ -230,6 +234,8 @@ class _DataFlow:
 
     def _on_conditions(self, followed: frozenset[str]) -> dict[str, _OnCondition]:
         """Those variables that are assigned to inside of blocks, or that a GOTO may pass by."""
+        if not followed:
+            return {}
         assigned: dict[str, list[PlacedStatement]] = {}
         along: dict[PlacedStatement | None, set[str]] = {}
         has_jumps = False
@@ -341,14 +347,15 @@ def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
     Behind ON_ERROR_PROCEED it is a way to ask whether there is a value.
     """
     root = root_variable(node.target)
-    if root is None or root.name.text.startswith("$"):
+    value = without_parentheses(node.value)
+    if root is None or root.name.text.startswith("$") or type(value) is not type(node.target):
         return
     found = context.found(root.name)
     is_plain = found is not None and found.symbol.kind is not Kind.SIGNAL
     has_call = any(isinstance(inner, ast.Call) for inner in walk(node.target))
     shown = [
         "".join(context.source.text[slice(*one.span)].upper().split())
-        for one in (node.target, without_parentheses(node.value))
+        for one in (node.target, value)
     ]
     if is_plain and not has_call and shown[0] == shown[1]:
         yield context.finding("self-assignment", node, f"{root.name.text} is assigned to itself")

@@ -16,27 +16,38 @@ walks over statements must not recurse; within a line nodes lie at most
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TypeVar, dataclass_transform
 
 from support.lazy_dataclass import dataclass
 
 Span = tuple[int, int]
 
+_Class = TypeVar("_Class")
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass_transform(eq_default=False, frozen_default=True)
+def node(kind: type[_Class]) -> type[_Class]:
+    """A class of nodes, frozen for the type checker alone: half of reading a file is making them.
+
+    A dataclass that is frozen at run time takes three times as long to make.
+    """
+    return dataclass(slots=True, eq=False)(kind)
+
+
+@node
 class Node:
     """What every node has: where it stands, as offsets into its text."""
 
     span: Span
 
 
-_Class = TypeVar("_Class", bound=type[Node])
+_Node = TypeVar("_Node", bound=type[Node])
 
 #: The lines of each node, see `template`.
 TEMPLATES: dict[type[Node], tuple[str, ...]] = {}
 
 
-def template(*lines: str) -> Callable[[_Class], _Class]:
+def template(*lines: str) -> Callable[[_Node], _Node]:
     """How a node is written, keywords as they are and fields in angles.
 
     ``<field>`` is the text of a field: a list is separated by commas, ``indices`` stand in
@@ -45,15 +56,15 @@ def template(*lines: str) -> Callable[[_Class], _Class]:
     a node that has such a field is a block.
     """
 
-    def add(node: _Class) -> _Class:
-        TEMPLATES[node] = lines
-        return node
+    def add(kind: _Node) -> _Node:
+        TEMPLATES[kind] = lines
+        return kind
 
     return add
 
 
 @template("<text>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Name(Node):
     """A name as written. Letter case does not tell names apart: compare ``key``.
 
@@ -69,7 +80,7 @@ class Name(Node):
 
 
 @template("<name><indices>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class TypeName(Node):
     """A type by its name; ``indices`` where it is an array: CHAR[128] [TYP-17]."""
 
@@ -81,7 +92,7 @@ class TypeName(Node):
 
 
 @template("<value>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class IntegerLiteral(Node):
     """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01].
 
@@ -94,7 +105,7 @@ class IntegerLiteral(Node):
 
 
 @template("<text>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class RealLiteral(Node):
     """A number with a decimal point or an exponent; ``text`` as written [TYP-02]."""
 
@@ -107,7 +118,7 @@ class RealLiteral(Node):
 
 
 @template("<value>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class BoolLiteral(Node):
     """TRUE or FALSE."""
 
@@ -115,7 +126,7 @@ class BoolLiteral(Node):
 
 
 @template("<text>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class BitLiteral(Node):
     """A binary or hexadecimal integer, ``'B101'`` or ``'HFF'``; ``text`` as written [TYP-04]."""
 
@@ -124,7 +135,7 @@ class BitLiteral(Node):
 
 
 @template('"<text>"')
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class StringLiteral(Node):
     """A text without its quotation marks; of one letter it is a CHAR as well [TYP-03, TYP-11]."""
 
@@ -132,7 +143,7 @@ class StringLiteral(Node):
 
 
 @template("#<name>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class EnumConstant(Node):
     """``#NAME``; its enumeration follows from where it is used [TYP-16]."""
 
@@ -143,7 +154,7 @@ Literal = IntegerLiteral | RealLiteral | BoolLiteral | BitLiteral | StringLitera
 
 
 @template("<name>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Variable(Node):
     """A variable by its name; system variables begin with a dollar sign."""
 
@@ -151,7 +162,7 @@ class Variable(Node):
 
 
 @template("<base><indices>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Subscript(Node):
     """``base[indices]``; an index left out means all of that dimension [TYP-08, TYP-11]."""
 
@@ -160,7 +171,7 @@ class Subscript(Node):
 
 
 @template("<base>.<name>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Member(Node):
     """``base.name``, a member of a structure."""
 
@@ -169,7 +180,7 @@ class Member(Node):
 
 
 @template(":<name>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class ChannelName(Node):
     """``:NAME``, a channel as an argument."""
 
@@ -177,7 +188,7 @@ class ChannelName(Node):
 
 
 @template("<name>(<arguments>)")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Call(Node):
     """A routine called; an argument left out is ``None`` [SCO-13]. ``F()`` has no arguments."""
 
@@ -185,7 +196,7 @@ class Call(Node):
     arguments: tuple[Expression | None, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Unary(Node):
     """``operator`` is NOT, B_NOT, + or -, in upper case."""
 
@@ -193,7 +204,7 @@ class Unary(Node):
     operand: Expression
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Binary(Node):
     """Two operands and what joins them [ARI-05].
 
@@ -207,7 +218,7 @@ class Binary(Node):
 
 
 @template("(<inner>)")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Parenthesised(Node):
     """An expression in parentheses, kept so that it is printed as its author wrote it."""
 
@@ -215,7 +226,7 @@ class Parenthesised(Node):
 
 
 @template("<name><indices> <value>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Component(Node):
     """A component in an aggregate: its name, an index for arrays, and its value."""
 
@@ -225,7 +236,7 @@ class Component(Node):
 
 
 @template("{<type|*: ><components>}")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Aggregate(Node):
     """``{X 1, Y 2}``; components left out get no value [TYP-19]. ``type`` is the prefix."""
 
@@ -251,7 +262,7 @@ Expression = (
 
 
 @template("<name><indices><value|=*>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Declarator(Node):
     """A name that a declaration introduces; initial values stand in data lists only [TYP-10]."""
 
@@ -261,7 +272,7 @@ class Declarator(Node):
 
 
 @template("<has_decl|DECL ><is_global|GLOBAL ><is_constant|CONST ><type> <declarators>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class VariableDeclaration(Node):
     """Variables of one type. ``has_decl``: whether DECL was written [TYP-06]."""
 
@@ -273,7 +284,7 @@ class VariableDeclaration(Node):
 
 
 @template("<is_global|GLOBAL >ENUM <name> <constants>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Enumeration(Node):
     """ENUM: a type and its constants, in order [TYP-16]."""
 
@@ -283,7 +294,7 @@ class Enumeration(Node):
 
 
 @template("<type> <declarators>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class MemberGroup(Node):
     """Members of a structure that share their type."""
 
@@ -292,7 +303,7 @@ class MemberGroup(Node):
 
 
 @template("<is_global|GLOBAL >STRUC <name> <groups>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Structure(Node):
     """STRUC: a type and its members, in order [TYP-14]."""
 
@@ -302,7 +313,7 @@ class Structure(Node):
 
 
 @template("<has_decl|DECL ><is_global|GLOBAL >SIGNAL <name> <first><last| TO *>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Signal(Node):
     """A name for an input or output, or for those from ``first`` to ``last`` [IOT-03].
 
@@ -317,7 +328,7 @@ class Signal(Node):
 
 
 @template("<type><name| *><indices><mode|:*>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class ExternalParameter(Node):
     """A parameter of an external routine; ``mode`` is IN, OUT or ``None``."""
 
@@ -328,7 +339,7 @@ class ExternalParameter(Node):
 
 
 @template("<keyword><result| *> <name>(<parameters>)")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class External(Node):
     """A routine of another module; ``keyword`` is EXT, EXTP, EXTFCT or EXTFCTP [SCO-10]."""
 
@@ -339,7 +350,7 @@ class External(Node):
 
 
 @template("CHANNEL :<name> :<interface> <description>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class ChannelDefinition(Node):
     """CHANNEL: its name, the interface it uses, and the structure that describes it."""
 
@@ -349,7 +360,7 @@ class ChannelDefinition(Node):
 
 
 @template("<has_decl|DECL >IMPORT <type> <declarator> IS <path>..<source>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Importation(Node):
     """IMPORT: a variable of another data list under a name of its own [ADV-05]."""
 
@@ -375,7 +386,7 @@ Definition = (
 
 
 @template("<target> = <value>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Assignment(Node):
     """``target = value``; in a data list, the initial value of an element or a text [TYP-10]."""
 
@@ -384,7 +395,7 @@ class Assignment(Node):
 
 
 @template("<call>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class CallStatement(Node):
     """A routine called for what it does."""
 
@@ -392,7 +403,7 @@ class CallStatement(Node):
 
 
 @template("IF <condition> THEN", "  <<body>>", "<otherwise|ELSE>", "  <<otherwise>>", "ENDIF")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class If(Node):
     """IF; ``otherwise`` is ``None`` without ELSE."""
 
@@ -402,7 +413,7 @@ class If(Node):
 
 
 @template("FOR <counter> = <first> TO <last><step| STEP *>", "  <<body>>", "ENDFOR")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class For(Node):
     """FOR from ``first`` to ``last``, both included [CTL-05]."""
 
@@ -414,7 +425,7 @@ class For(Node):
 
 
 @template("WHILE <condition>", "  <<body>>", "ENDWHILE")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class While(Node):
     """WHILE: tested before each pass [CTL-01]."""
 
@@ -423,7 +434,7 @@ class While(Node):
 
 
 @template("REPEAT", "  <<body>>", "UNTIL <condition>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Repeat(Node):
     """REPEAT … UNTIL: tested after each pass, ends when TRUE [CTL-01]."""
 
@@ -432,7 +443,7 @@ class Repeat(Node):
 
 
 @template("LOOP", "  <<body>>", "ENDLOOP")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Loop(Node):
     """LOOP: endless, left by EXIT [CTL-01]."""
 
@@ -440,7 +451,7 @@ class Loop(Node):
 
 
 @template("CASE <values>", "  <<body>>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class CaseBranch(Node):
     """CASE: constants or names of constants, and what is done [CTL-04]."""
 
@@ -451,7 +462,7 @@ class CaseBranch(Node):
 @template(
     "SWITCH <selector>", "  <<branches>>", "  <default|DEFAULT>", "    <<default>>", "ENDSWITCH"
 )
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Switch(Node):
     """SWITCH; ``default`` is ``None`` without DEFAULT [CTL-03, CTL-04]."""
 
@@ -461,13 +472,13 @@ class Switch(Node):
 
 
 @template("EXIT")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Exit(Node):
     """EXIT: leaves the innermost loop [CTL-02]."""
 
 
 @template("GOTO <label>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Goto(Node):
     """GOTO a label of the same routine [CTL-07]."""
 
@@ -475,7 +486,7 @@ class Goto(Node):
 
 
 @template("<name>:")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Label(Node):
     """``NAME:``, where a GOTO goes."""
 
@@ -483,7 +494,7 @@ class Label(Node):
 
 
 @template("RETURN<value| *>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Return(Node):
     """RETURN, with a value in functions [CTL-09]."""
 
@@ -491,25 +502,25 @@ class Return(Node):
 
 
 @template("HALT")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Halt(Node):
     """HALT [CTL-08]."""
 
 
 @template("CONTINUE")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Continue(Node):
     """CONTINUE: the next line does not stop the advance run [ADV-08]."""
 
 
 @template("ON_ERROR_PROCEED")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class OnErrorProceed(Node):
     """ON_ERROR_PROCEED: an error of the next statement is noted in $ERR [TYP-13]."""
 
 
 @template("CONFIRM <number>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Confirm(Node):
     """CONFIRM: acknowledges a message by its number."""
 
@@ -517,7 +528,7 @@ class Confirm(Node):
 
 
 @template("WAIT FOR <condition>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class WaitFor(Node):
     """WAIT FOR a condition [CTL-12]."""
 
@@ -525,7 +536,7 @@ class WaitFor(Node):
 
 
 @template("WAIT SEC <duration>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class WaitSeconds(Node):
     """WAIT SEC, a time in seconds [TIM-06]."""
 
@@ -533,7 +544,7 @@ class WaitSeconds(Node):
 
 
 @template("<keyword> ON <assignment><delay| DELAY=*><minimum| MINIMUM=*><maximum| MAXIMUM=*>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class SignalOn(Node):
     """ANIN ON, ANOUT ON or DIGIN ON; ``keyword`` is the first word [IOT-05, IOT-09]."""
 
@@ -545,7 +556,7 @@ class SignalOn(Node):
 
 
 @template("<keyword> OFF <variable>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class SignalOff(Node):
     """ANIN OFF, ANOUT OFF or DIGIN OFF."""
 
@@ -557,7 +568,7 @@ class SignalOff(Node):
 
 
 @template("<kind> <auxiliary|*, ><target><angle|, CA *><values| WITH *><criteria| *><reference| *>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Motion(Node):
     """A motion of any kind but those of option packages.
 
@@ -577,7 +588,7 @@ class Motion(Node):
 
 
 @template("MOVE_EMI <device> <action><number| FLT *>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class EmilyMotion(Node):
     """MOVE_EMI: a path that an option package holds."""
 
@@ -587,7 +598,7 @@ class EmilyMotion(Node):
 
 
 @template("CONST_VEL <edge>=<place><on_start| ONSTART>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class ConstantVelocity(Node):
     """CONST_VEL: ``edge`` is START or END of the range, ``place`` in mm [SPL-05, SPL-07]."""
 
@@ -597,7 +608,7 @@ class ConstantVelocity(Node):
 
 
 @template("TIME_BLOCK <edge><value|=*>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class TimeBlock(Node):
     """TIME_BLOCK: ``edge`` is START, PART or END; START has no value [SPL-10]."""
 
@@ -606,7 +617,7 @@ class TimeBlock(Node):
 
 
 @template("STOP WHEN PATH=<place><on_start| ONSTART> IF <condition>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class StopWhen(Node):
     """STOP WHEN PATH, a conditional stop at a place in mm [SPL-06, SPL-07]."""
 
@@ -616,7 +627,7 @@ class StopWhen(Node):
 
 
 @template("<keyword><values| WITH *>", "  <<items>>", "ENDSPLINE<is_approximated| C_SPL>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class SplineBlock(Node):
     """SPLINE or PTP_SPLINE: motions planned and executed as one [SPL-01]."""
 
@@ -630,7 +641,7 @@ class SplineBlock(Node):
 
 
 @template("BRAKE<mode| *>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Brake(Node):
     """BRAKE; ``mode`` is F, FF or ``None`` [INT-09]."""
 
@@ -638,13 +649,13 @@ class Brake(Node):
 
 
 @template("RESUME")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Resume(Node):
     """RESUME [INT-10]."""
 
 
 @template("<is_global|GLOBAL >INTERRUPT DECL <number> WHEN <condition> DO <action>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class InterruptDeclaration(Node):
     """INTERRUPT DECL; its number is its priority [INT-01, INT-02]."""
 
@@ -655,7 +666,7 @@ class InterruptDeclaration(Node):
 
 
 @template("INTERRUPT <action><number| *>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class InterruptSwitch(Node):
     """INTERRUPT ON, OFF, ENABLE or DISABLE; without a number, all of them [INT-07]."""
 
@@ -667,7 +678,7 @@ class InterruptSwitch(Node):
     "TRIGGER WHEN <place_kind>=<place><on_start| ONSTART>"
     " DELAY=<delay> DO <action><priority| PRIO=*>"
 )
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Trigger(Node):
     """TRIGGER. ``place_kind`` is DISTANCE or PATH (mm), ``delay`` in ms [TRG-01 to TRG-06]."""
 
@@ -718,7 +729,7 @@ Item = Definition | Assignment
 
 
 @template("<name><indices><mode|:*>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Parameter(Node):
     """A formal parameter; ``mode`` is IN, OUT, or ``None``, which means OUT [SCO-06, SCO-07]."""
 
@@ -730,7 +741,7 @@ class Parameter(Node):
 @template(
     "<is_global|GLOBAL >DEF<result|FCT *> <name>(<parameters>)", "<<body>>", "END<result|FCT>"
 )
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Routine(Node):
     """DEF, or DEFFCT where there is a ``result``. Declarations stand in the body, as written."""
 
@@ -742,7 +753,7 @@ class Routine(Node):
 
 
 @template("<<routines>>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Program(Node):
     """A SRC or SUB file; the first routine carries the name of the file [SCO-01]."""
 
@@ -750,7 +761,7 @@ class Program(Node):
 
 
 @template("DEFDAT <name><is_public| PUBLIC>", "<<items>>", "ENDDAT")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class DataList(Node):
     """A DAT file."""
 
@@ -760,14 +771,14 @@ class DataList(Node):
 
 
 @template("<text>")
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Header(Node):
     """A line of the controller's file system: &ACCESS, &REL …"""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Module(Node):
     """One file."""
 

@@ -8,7 +8,16 @@ from dataclasses import fields
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
 
-__all__ = ["BODIES", "bodies", "children", "root_variable", "same", "walk", "without_parentheses"]
+__all__ = [
+    "BODIES",
+    "LEAVES",
+    "bodies",
+    "children",
+    "root_variable",
+    "same",
+    "walk",
+    "without_parentheses",
+]
 
 
 _NAMES: dict[type, tuple[str, ...]] = {}
@@ -24,18 +33,12 @@ def _names(node: Node) -> tuple[str, ...]:
 
 def children(node: Node) -> Sequence[Node]:
     """The nodes directly below a node, in the order of the text where that has a meaning."""
-    kind = type(node)
-    names = _INNER.get(kind)
-    if names is None:
-        plain = ("span", *(one.name for one in fields(node) if one.type in _PLAIN))
-        names = _INNER[kind] = tuple(name for name in _names(node) if name not in plain)
+    names = _INNER[type(node)]
     if not names:
         return ()
     found: list[Node] = []
     for name in names:
         value = getattr(node, name)
-        if value is None:
-            continue
         if type(value) is tuple:
             found += [item for item in value if isinstance(item, Node)]
         elif isinstance(value, Node):
@@ -43,9 +46,14 @@ def children(node: Node) -> Sequence[Node]:
     return found
 
 
-#: The fields of each kind of node that may hold nodes, and the types of those that cannot.
-_INNER: dict[type[Node], tuple[str, ...]] = {}
-_PLAIN = frozenset({"str", "int", "bool", "str | None", "int | None", "bool | None"})
+_PLAIN = frozenset({"Span", "str", "int", "bool", "str | None", "int | None", "bool | None"})
+#: The fields of each kind of node that may hold nodes.
+_INNER: Mapping[type[Node], tuple[str, ...]] = {
+    kind: tuple(field.name for field in fields(kind) if field.type not in _PLAIN)
+    for kind in Node.__subclasses__()
+}
+#: The kinds of node that nothing can lie below.
+LEAVES = frozenset(kind for kind, names in _INNER.items() if not names)
 
 
 #: The fields of each kind of block that hold nodes on lines of their own, in the order of the text.
