@@ -17,7 +17,7 @@ from conformance.suite.case import Case
 from grammar.check import advance_stops
 from grammar.check.context import Context
 from grammar.check.framework import check_module
-from grammar.check.undeclared_names import of_project
+from grammar.check.unresolved_names import of_project
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System

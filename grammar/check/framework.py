@@ -27,7 +27,8 @@ from grammar.check.constant_folding import Value
 from grammar.check.context import Context
 from grammar.check.effects import NO_EFFECTS, Effects, effects
 from grammar.check.effects import of_project as of_effects
-from grammar.check.undeclared_names import UnresolvedName
+from grammar.check.unresolved_names import UnresolvedName
+from grammar.check.unresolved_names import of_project as of_names
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import Project, Workspace
 from grammar.semantics.predefined import System
@@ -140,7 +141,7 @@ def check_project(findings: Iterable[Findings], *, is_whole: bool = True) -> lis
     """
     kept = list(findings)
     found = [diagnostic for one in kept for diagnostic in one.diagnostics]
-    found += undeclared_names.of_project(reference for one in kept for reference in one.references)
+    found += of_names(reference for one in kept for reference in one.references)
     if is_whole:
         found += of_effects(one.effects for one in kept)
     return in_order(found)

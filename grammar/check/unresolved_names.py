@@ -1,0 +1,144 @@
+"""Names that files use and nothing at hand declares, graded over all files of a project.
+
+Whether such a name is a mistake or its file is missing, no single file tells: what decides is
+whether all that could declare it has been read, whether it is a slip of a name that is seen there,
+how often it is used, and how many more there are like it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from grammar.diagnostics.codes import Severity
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.diagnostics.typos import Typos
+from grammar.syntax.references import Space
+
+__all__ = ["SLUGS", "WORDS", "UnresolvedName", "of_project"]
+
+#: The code of a name that nothing declares, and what it is called, by the space it belongs to.
+SLUGS: Mapping[Space | None, str] = {
+    None: "no-such-component",
+    Space.VALUE: "unknown-name",
+    Space.ROUTINE: "unknown-routine",
+    Space.TYPE: "unknown-type",
+    Space.CHANNEL: "unknown-name",
+}
+WORDS: Mapping[Space | None, str] = {
+    None: "component",
+    Space.VALUE: "variable",
+    Space.ROUTINE: "routine",
+    Space.TYPE: "type",
+    Space.CHANNEL: "channel",
+}
+
+# A slip is made once or twice; what is written more often is called so.
+_MOST_SLIPS = 2
+# So many names that are near one and the same are a series.
+_SERIES = 3
+# Two names of so many letters that are one slip apart and used once each are one.
+_LONG = 6
+# So many names that nothing declares are mistakes; of more, what declares them is missing.
+_MOST_LOST = 3
+# Data that more modules use were declared in a file that has gone, rather than nowhere.
+_MOST_MODULES = 2
+
+
+@dataclass(frozen=True, slots=True)
+class UnresolvedName:
+    """A name that a file uses and that may be declared in a file that is not at hand.
+
+    ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
+    first place of ``count``. ``near`` are names seen there that it may be a slip of; it
+    ``is_swapped`` with one that the data list declares and the program does not use.
+    ``is_all_read``: no file is missing that could declare it; ``is_certain``: the data list of the
+    program is among those that are there.
+    """
+
+    space: Space | None
+    name: str
+    path: str
+    region: Region
+    count: int
+    is_system: bool
+    near: tuple[str, ...] = ()
+    is_swapped: bool = False
+    is_all_read: bool = False
+    is_certain: bool = False
+
+
+def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
+    """What is to be said of the names that the files of a project take from elsewhere.
+
+    An error in each file for what nothing declares though all that could is read; a warning for
+    what is a slip of a name that is seen there, or that is used again and again and comes from
+    elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
+    is a slip, what declares them is missing, so that these are notes, too.
+    """
+    uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
+    for reference in found:
+        uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
+    counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
+    used = {
+        space: Typos(some[0].name for (at, _), some in uses.items() if at is space)
+        for space in SLUGS
+    }
+    ranks = {key: (counts[key], -number) for number, key in enumerate(uses)}
+    meant = {
+        (space, name): some[0].near
+        or tuple(
+            near
+            for near in used[space].meant(some[0].name)
+            if _is_usual(ranks[space, near.upper()], ranks[space, name], near)
+        )
+        for (space, name), some in uses.items()
+    }
+    series = Counter(name for names in meant.values() for name in names)
+    lost: dict[bool, list[tuple[Space | None, str]]] = {True: [], False: []}
+    slips = {}
+    for key, some in uses.items():
+        near = tuple(name for name in meant[key] if series[name] < _SERIES)
+        is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
+        if near and (is_rare or any(one.is_swapped for one in some)):
+            slips[key] = near
+        elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
+            lost[all(one.is_certain for one in some)].append(key)
+    told = slips | {key: () for keys in lost.values() if len(keys) <= _MOST_LOST for key in keys}
+    for key, some in uses.items():
+        if key in told:
+            for reference in some:
+                yield _undeclared(reference, told[key])
+        elif key[0]:
+            yield _from_elsewhere(some, counts[key])
+
+
+def _is_usual(near: tuple[int, int], wrong: tuple[int, int], name: str) -> bool:
+    """Whether a name is the right one of two: it is used more often, or both once and it first."""
+    if near[0] == wrong[0]:
+        return near[0] == 1 and len(name) >= _LONG and near > wrong
+    return near > wrong
+
+
+def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:
+    is_certain = reference.is_all_read and reference.is_certain
+    severity: Severity = "error" if is_certain else "warning"
+    slug = SLUGS[reference.space]
+    message = f"no {WORDS[reference.space]} is called {reference.name}"
+    if reference.is_system:
+        slug, message = "unknown-system-name", f"no system variable is called {reference.name}"
+    fix = Fix(f"did you mean {' or '.join(near)}?") if near else None
+    return diagnose(slug, reference.path, reference.region, message, severity=severity, fix=fix)
+
+
+def _from_elsewhere(some: Sequence[UnresolvedName], count: int) -> Diagnostic:
+    first = min(some, key=lambda reference: (reference.path, reference.region))
+    uses_of_it = "used once" if count == 1 else f"used {count} times"
+    if first.is_system:
+        slug = "unknown-system-name"
+        message = f"{first.name} is in no table of system variables; {uses_of_it}"
+    else:
+        slug = "unknown-external"
+        message = f"the {WORDS[first.space]} {first.name} is in no file at hand; {uses_of_it}"
+    return diagnose(slug, first.path, first.region, message, severity="note")
