@@ -106,18 +106,17 @@ class Builder:
                     end = ends[at]
                     pieces.append(_Piece(names[child], lexemes[at], starts[at], end))
                     at += 1
-                elif child.rule in _BLOCKS:
+                elif child.rule == "eol":
+                    at += child.width
+                elif plan := plans.get(child) or self._plan(child, at):
+                    value = plan.run(lexemes, starts, ends, at)
+                    start, end = starts[at], ends[at + plan.width - 1]
+                    pieces.append(_Piece(child.rule, value, start, end))
+                    at += child.width
+                else:
                     outer.append(frame)
                     frame = _Frame(child, starts[at])
                     break
-                elif child.rule == "eol":
-                    at += child.width
-                else:
-                    plan = plans.get(child) or self._plan(child, at)
-                    value = plan.run(lexemes, starts, ends, at)
-                    start, end = starts[at], ends[at + child.width - 1]
-                    pieces.append(_Piece(child.rule, value, start, end))
-                    at += child.width
             else:
                 value = _BLOCKS[frame.rule]((frame.start, end), pieces)
                 if not outer:
@@ -127,9 +126,15 @@ class Builder:
                 frame = outer.pop()
                 frame.pieces.append(piece)
 
-    def _plan(self, outline: Outline, first: int) -> Plan:
+    def _plan(self, outline: Outline, first: int) -> Plan | None:
+        """The plan of what lies on one line; ``None`` for what may span more."""
+        inner = outline
+        if outline.rule == "statement" and isinstance(outline.children[0], Outline):
+            inner = outline.children[0]  # behind it comes the line end
+        if inner.rule in _BLOCKS:
+            return None
         try:
-            plan = draft(outline, self._names, RULES, CHAINS)
+            plan = draft(inner, self._names, RULES, CHAINS)
         except TooDeep as error:
             raise TooDeep(first + error.first) from None
         if outline.width <= _WIDEST_REMEMBERED:
