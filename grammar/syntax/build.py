@@ -76,7 +76,7 @@ class Builder:
         self.parser = Parser(recognizer)
         self.failures = FailureFinder(recognizer)
         self._names = recognizer.lexer.names
-        self._plans: dict[Outline, Plan] = {}
+        self._plans: dict[Outline | int, Plan] = {}
 
     def read(self, text: str, path: str = "") -> ast.Module | list[SyntaxFailure]:
         """The tree of a text, or its failures in the order of the text; see `read_module`."""
@@ -106,9 +106,13 @@ class Builder:
                     end = ends[at]
                     pieces.append(_Piece(names[child], lexemes[at], starts[at], end))
                     at += 1
-                elif child.rule == "eol":
+                    continue
+                if child.rule == "eol":
                     at += child.width
-                elif plan := plans.get(child) or self._plan(child, at):
+                    continue
+                inner = child.children[0] if child.rule == "statement" else child
+                plan = plans.get(inner) or self._plan(inner, at)
+                if plan is not None:
                     value = plan.run(lexemes, starts, ends, at)
                     start, end = starts[at], ends[at + plan.width - 1]
                     pieces.append(_Piece(child.rule, value, start, end))
@@ -126,15 +130,12 @@ class Builder:
                 frame = outer.pop()
                 frame.pieces.append(piece)
 
-    def _plan(self, outline: Outline, first: int) -> Plan | None:
+    def _plan(self, outline: Outline | int, first: int) -> Plan | None:
         """The plan of what lies on one line; ``None`` for what may span more."""
-        inner = outline
-        if outline.rule == "statement" and isinstance(outline.children[0], Outline):
-            inner = outline.children[0]  # behind it comes the line end
-        if inner.rule in _BLOCKS:
+        if not isinstance(outline, Outline) or outline.rule in _BLOCKS:
             return None
         try:
-            plan = draft(inner, self._names, RULES, CHAINS)
+            plan = draft(outline, self._names, RULES, CHAINS)
         except TooDeep as error:
             raise TooDeep(first + error.first) from None
         if outline.width <= _WIDEST_REMEMBERED:
