@@ -43,9 +43,12 @@ __all__ = [
 #: First to third derivatives of axes by u, each ``(n, axes)``.
 Rates = tuple[Array, Array, Array]
 
-_FEWEST = 33
-_BLENDED = 65
-"""Points of a blend at the fewest: its third derivative changes quickly."""
+_FEWEST = 65
+"""Points of a curve at the fewest: the third derivative of a blend changes quickly."""
+_COARSE = 8
+_NOISE = 1e-11
+"""Degrees of fourth differences below which each so manieth point is enough: between nearer ones
+differences would be those of rounding."""
 _MOST = 8193
 _SMOOTH = 0.004
 """Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
@@ -261,7 +264,7 @@ class BlendedAxes:
             math.ceil(2.0 * share * len(curve.grid)) + 1
             for curve, share in zip(curves, shares, strict=True)
         ]
-        even = np.linspace(0.0, 1.0, max(_BLENDED, *needed))
+        even = np.linspace(0.0, 1.0, max(_FEWEST, *needed))
         return np.unique(np.concatenate((even, self.transition.breaks)))
 
     def axes(self, u: Array) -> Array:
@@ -346,7 +349,7 @@ class PosePathCurve:
 
     def _points(self, start: Array) -> tuple[Array, Array]:
         """Parameters and axes of so many points that a spline through them is the curve."""
-        count = _BLENDED if self._pose_path.kind == "BLEND" else _FEWEST
+        count = _FEWEST
         while True:
             grid = np.linspace(0.0, 1.0, count)
             axes = self._along(grid, start)
@@ -361,6 +364,8 @@ class PosePathCurve:
         if np.abs(axes[0] - start).max() > _ROUGH:
             raise _singular()
         check_path(self.arm.machine.axes, axes)
+        if np.abs(np.diff(axes[::_COARSE], n=4, axis=0)).max() < _NOISE:
+            return grid[::_COARSE], axes[::_COARSE]
         return grid, axes
 
 

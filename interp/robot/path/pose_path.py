@@ -23,6 +23,7 @@ __all__ = ["Arc", "Blend", "PosePath", "StraightLine", "Way", "poses_of"]
 #: Nodes and weights of Gauss on 0 to 1, which integrate polynomials of degree 9 exactly.
 _NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]
 _PARTS = 32
+_EXACT = 1e-12  # of u
 
 
 class PosePath(Protocol):
@@ -224,7 +225,9 @@ class Way:
             low, high = np.where(missing >= 0.0, u, low), np.where(missing <= 0.0, u, high)
             slope = np.linalg.norm(self._tangents(u), axis=1)
             step = np.divide(missing, slope, out=np.zeros_like(u), where=slope > 0.0)
-            u = np.clip(u + step, low, high)
+            before, u = u, np.clip(u + step, low, high)
+            if np.abs(u - before).max(initial=0.0) < _EXACT:
+                break
         return u
 
     def _between(self, start: Array, end: Array) -> Array:

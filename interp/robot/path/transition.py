@@ -22,6 +22,8 @@ __all__ = ["Cubics", "Overlap", "Rounding", "Transition", "chained"]
 
 _ROUNDS = 60
 _EXACT = 1e-15
+_UNEVEN = 2.0
+"""Ratio of the times of both sides: at most 1.41 times slower both at once, half of it saved."""
 _BEHIND = 1e-9
 """Of u: rounding never takes a place so far behind a break to before it."""
 
@@ -131,11 +133,11 @@ class Cubics:
     def since(self, value: float) -> Cubics:
         """The part from where a value is reached on; values rise."""
         time = self._time(value)
-        return self._between(time, self.duration)
+        return self.between(time, self.duration)
 
     def until(self, value: float) -> Cubics:
         """The part up to where a value is reached; values rise."""
-        return self._between(0.0, self._time(value))
+        return self.between(0.0, self._time(value))
 
     def _time(self, value: float) -> float:
         place = max(int(np.searchsorted(self.knots[:, 1], value)) - 1, 0)
@@ -150,7 +152,8 @@ class Cubics:
                 high = dt
         return float(start + high)
 
-    def _between(self, start: float, end: float) -> Cubics:
+    def between(self, start: float, end: float) -> Cubics:
+        """The part between two times."""
         times = self.knots[:, 0]
         inside = self.knots[(times > start) & (times < end)] - [start, 0.0, 0.0, 0.0, 0.0]
         first = np.concatenate(([0.0], self.at(np.array([start]))[:, 0]))
@@ -174,6 +177,18 @@ class Overlap:
     def duration(self) -> float:
         """Seconds, where no axis finds both at once too fast."""
         return max(self.ending.duration, self.starting.duration)
+
+    @property
+    def is_even(self) -> bool:
+        """Whether neither side takes so long that the whole costs more time than it saves."""
+        durations = self.ending.duration, self.starting.duration
+        return max(durations) <= _UNEVEN * min(durations)
+
+    def evened(self) -> Overlap:
+        """The part in which both motions are on at once: where only one is, it goes its own way."""
+        both = min(self.ending.duration, self.starting.duration)
+        ending = self.ending.between(self.ending.duration - both, self.ending.duration)
+        return Overlap(ending, self.starting.between(0.0, both))
 
     @cached_property
     def before(self) -> float:

@@ -18,10 +18,19 @@ from interp.robot.arm import Approximation, Motion
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_path
-from interp.robot.path.axis_path import BlendedAxes, BlendedOthers, Curve, PosePathCurve, Rates
-from interp.robot.path.pose_path import Blend, StraightLine, Way
+from interp.robot.path.axis_path import (
+    BlendedAxes,
+    BlendedOthers,
+    Curve,
+    InStep,
+    JointLine,
+    PosePathCurve,
+    Rates,
+)
+from interp.robot.path.orientation import turning
+from interp.robot.path.pose_path import Blend, PosePath, StraightLine, Way
 from interp.robot.path.transition import Overlap, Rounding, Transition
-from interp.robot.planning.limits import AxisLimits, Ceiling, even_ceiling
+from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of, even_ceiling
 from interp.robot.planning.profile import Bounds, ramp
 from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
 from interp.robot.planning.timeline import tool_tangents
@@ -42,6 +51,8 @@ _SAVED = 0.97
 _TINY = 1e-9
 _STRAIGHT = 1e-3
 """Relative difference of directions that counts as none."""
+_STRAIGHT_ON = 2e-5
+"""Share of a straight way by which the point between may lie beside it."""
 _EVEN = 1e-6
 _GRID = np.linspace(0.0, 1.0, 65)
 _STEP = 1.0 / 64.0
@@ -102,9 +113,11 @@ def zone_of(first: Track, second: Track) -> Zone | None:
 class Joint:
     """A blend: its curve, how fast that may be travelled, and how it joins what it is between.
 
-    ``into`` and ``out`` are gear and bend at its start and at its end, as in `GearedStretch`.
+    ``zone`` is what it takes of both, which may be less than was asked for. ``into`` and ``out``
+    are gear and bend at its start and at its end, as in `GearedStretch`.
     """
 
+    zone: Zone
     curve: Curve
     ceiling: Ceiling
     into: tuple[float, float]
@@ -121,24 +134,29 @@ def blend_of(
     acceleration is at most $ACC_MA.CP (an assumption: no rule tells). So the speed may drop
     [BLD-15]. Raises `Fault` where the blend leads out of the working range.
     """
-    axes = first.axis_limits.widest(second.axis_limits)
+    axes = first.axis_limits.merged(second.axis_limits, np.maximum)
     one, other = first.pieces[-1], second.pieces[0]
-    directions = _Directions.of(first, second, limits)
-    transition = _soonest(first, second, zone, directions, axes, machine)
+    weights, is_straight = _course(first, second, zone, limits)
+    if is_straight:
+        straight = _straight_on(first, second, zone, weights, machine, limits)
+        if straight is not None:
+            return straight
+    transition: Transition = Rounding(zone.before, zone.after, weights, _SMOOTH)
+    if not is_straight:
+        transition = _soonest(first, second, zone, weights, axes, machine)
+    zone = Zone(transition.before, transition.after)
     curves = (one.curve, other.curve)
-    paths = (one.curve.pose_path, other.curve.pose_path)
+    paths = _common_paths(first, second)
     if (
-        not _has_common_frames(first, second)
+        paths is None
         or not isinstance(curves[0], PosePathCurve)
         or not isinstance(curves[1], PosePathCurve)
-        or paths[0] is None
-        or paths[1] is None
     ):
         curve: Curve = BlendedAxes(*curves, transition)
         check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
         most = _most_of_axes(first, second, curve, machine)
     else:
-        pose_path = Blend(paths[0], paths[1], transition)
+        pose_path = Blend(*paths, transition)
         (start,) = curves[0].axes(np.array([1.0 - zone.before]))
         others = BlendedOthers(curves[0].others, curves[1].others, transition)
         arm, placement = curves[0].arm, curves[0].placement
@@ -148,100 +166,145 @@ def blend_of(
     beside = _beside(one, other, into, out)
     size = one.ceiling.stretches[-1].size / into[0]
     # The spline of the axes sees little of how quickly the curve begins to bend.
-    ends = directions.rates(transition, np.array([0.0, 1.0]))
+    ends = BlendedAxes(*curves, transition).rates(np.array([0.0, 1.0]))
     x, y, z = (np.concatenate(both) for both in zip(curve.rates(curve.grid), ends, strict=True))
     ceiling = even_ceiling((x, y, z), axes, beside, most, size)
-    return Joint(curve, ceiling, into, out)
+    return Joint(zone, curve, ceiling, into, out)
+
+
+def _straight_on(
+    first: Track,
+    second: Track,
+    zone: Zone,
+    weights: tuple[float, float],
+    machine: MachineData,
+    limits: AxisLimits,
+) -> Joint | None:
+    """The joint of two straight ways of which the second goes on where the first leads.
+
+    It is a piece of straight way itself. ``None`` where that would miss the point between.
+    """
+    one, other = first.pieces[-1], second.pieces[0]
+    ends = np.array([1.0 - zone.before, 1.0]), np.array([zone.after])
+    (leaves, corner), (joins,) = one.curve.axes(ends[0]), other.curve.axes(ends[1])
+    length = sum(weights)
+    share = np.array([weights[0] / length])
+    curve: Curve
+    paths: tuple[PathLimits, ...] = ()
+    if isinstance(one.curve, JointLine) and isinstance(other.curve, JointLine):
+        curve = JointLine(one.curve.arm, one.curve.placement, leaves, joins)
+        if not _is_near(curve.axes(share)[0], corner, float(np.abs(joins - leaves).max())):
+            return None
+        allowed = first.axis_limits.merged(second.axis_limits, np.minimum)
+        most = _most_of_axes(first, second, curve, machine)
+        if math.isfinite(most):
+            paths = (PathLimits(1.0, most, math.inf),)
+    else:
+        lines = _common_paths(first, second)
+        if (
+            lines is None
+            or not isinstance(lines[0], StraightLine)
+            or not isinstance(lines[1], StraightLine)
+            or len(one.paths) != len(other.paths)
+        ):
+            return None
+        (points, turned), (point, turn) = lines[0].at(ends[0]), lines[1].at(ends[1])
+        line = StraightLine(points[0], point[0], turning(turned[0], turn[0]), kind="BLEND")
+        place, rotation = line.at(share)
+        if not _is_near(place[0], points[1], line.length) or not _is_near(
+            rotation[0], turned[1], sum(line.angles)
+        ):
+            return None
+        others = InStep(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
+        arm, placement = one.curve.arm, one.curve.placement
+        curve = PosePathCurve(arm, placement, line, leaves[:ROBOT_AXES], others)
+        allowed = limits
+        paths = tuple(
+            PathLimits(
+                zone.before * x.length + zone.after * y.length,
+                min(x.velocity, y.velocity),
+                min(x.acceleration, y.acceleration),
+                min(x.jerk, y.jerk),
+            )
+            for x, y in zip(one.paths, other.paths, strict=True)
+        )
+    into, out = weights[0] / zone.before / length, zone.after / weights[1] * length
+    ceiling = ceiling_of(curve, limits, allowed, paths)
+    return Joint(zone, curve, ceiling, (into, 0.0), (out, 0.0))
+
+
+def _is_near(one: Array, other: Array, size: float) -> bool:
+    """Whether two places differ by no more than a bend that no axis feels."""
+    return float(np.abs(one - other).max()) <= _STRAIGHT_ON * size + _TINY
 
 
 def _soonest(
     first: Track,
     second: Track,
     zone: Zone,
-    directions: _Directions,
+    weights: tuple[float, float],
     axes: AxisLimits,
     machine: MachineData,
 ) -> Transition:
-    """The transition with which both motions are soonest over, judged by their directions at P."""
+    """The transition with which both motions are soonest over.
+
+    Of an overlap of which one side takes much longer than the other, or which costs time, it is as
+    much as is on at once.
+    """
     one, other = first.pieces[-1], second.pieces[0]
-    weights = directions.weights(zone)
-    paths = (one.curve.pose_path, other.curve.pose_path)
-    if directions.is_straight:
-        return Rounding(zone.before, zone.after, weights, _SMOOTH)
-    are_lines = all(isinstance(path, StraightLine) for path in paths)
+    paths = _common_paths(first, second)
+    are_lines = all(isinstance(piece.curve.pose_path, StraightLine) for piece in (one, other))
     choices: list[Transition] = [
         Rounding(zone.before, zone.after, weights, slope)
         for slope in ((_PARABOLA, _SMOOTH) if are_lines else (_SMOOTH,))
     ]
+
+    def duration(transition: Transition) -> float:
+        blend = BlendedAxes(one.curve, other.curve, transition)
+        rates = blend.rates(blend.grid)
+        most = math.inf
+        if paths is not None:
+            tangents = Blend(*paths, transition).tangents(_GRID)
+            most = _most_of_tool(tangents, one, other, machine)
+        return _duration(one, other, transition, rates, most, axes)
+
+    times = [duration(transition) for transition in choices]
+    most = math.inf
     ending, starting = alone(one.ceiling), alone(other.ceiling)
     if ending is not None and starting is not None:
-        choices.append(Overlap(ending.since(1.0 - zone.before), starting.until(zone.after)))
-    times = []
-    for transition in choices:
-        rates = directions.rates(transition, _GRID)
-        most = math.inf
-        if (tangents := directions.tangents(transition)) is not None:
-            most = _most_of_tool(tangents, one, other, machine)
-        times.append(_duration(one, other, transition, rates, most, axes))
-    most = min(times) / _SOONER
-    if ending is not None and starting is not None:
-        most = min(most, _SAVED * (ending.duration + starting.duration))
-    most = max(most, min(times))
+        most = _SAVED * (ending.duration + starting.duration)
+        ending, starting = ending.since(1.0 - zone.before), starting.until(zone.after)
+        overlap = Overlap(ending, starting)
+        for choice in (overlap, overlap.evened()) if overlap.is_even else (overlap.evened(),):
+            choices.append(choice)
+            times.append(duration(choice))
+            if min(times) < most:
+                break
+    most = max(min(most, min(times) / _SOONER), min(times))
     return choices[next(place for place, time in enumerate(times) if time <= most)]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Directions:
-    """Derivatives of both paths at the point between: of axes, and of the tool where both have it.
+def _course(
+    first: Track, second: Track, zone: Zone, limits: AxisLimits
+) -> tuple[tuple[float, float], bool]:
+    """The lengths of both sides of a zone, and whether the second path goes on where the first led.
 
-    ``lengths`` are those of both paths in one unit: mm of the tool, else seconds of axes.
-    ``is_straight``: the second goes on where the first leads.
+    Lengths are mm of the tool where both have that, else seconds of axes.
     """
-
-    axes: tuple[Array, Array]
-    tool: tuple[Array, Array] | None
-    lengths: tuple[float, float]
-    is_straight: bool
-
-    @classmethod
-    def of(cls, first: Track, second: Track, limits: AxisLimits) -> _Directions:
-        one, other = first.pieces[-1].curve, second.pieces[0].curve
-        (leaving,), _, _ = one.rates(np.ones(1))
-        (joining,), _, _ = other.rates(np.zeros(1))
-        paths = one.pose_path, other.pose_path
-        tool, lengths = None, (0.0, 0.0)
-        if _has_common_frames(first, second) and paths[0] is not None and paths[1] is not None:
-            tool = (paths[0].tangents(np.ones(1))[0], paths[1].tangents(np.zeros(1))[0])
-            lengths = (float(np.linalg.norm(tool[0])), float(np.linalg.norm(tool[1])))
-        if min(lengths) <= 0.0:
-            before, after = (float((np.abs(r) / limits.velocity).max()) for r in (leaving, joining))
-            lengths = (max(before, _TINY), max(after, _TINY))
-        onward = leaving * lengths[1] / lengths[0]
-        is_straight = bool(np.abs(joining - onward).max() <= _STRAIGHT * np.abs(joining).max())
-        if is_straight:
-            joining = onward  # but for the splines of the axes, they go straight on
-        return cls((leaving, joining), tool, lengths, is_straight)
-
-    def weights(self, zone: Zone) -> tuple[float, float]:
-        """The lengths of both sides of a zone."""
-        return zone.before * self.lengths[0], zone.after * self.lengths[1]
-
-    def rates(self, transition: Transition, u: Array) -> Rates:
-        """Derivatives of the axes in a blend between straight lines."""
-        leaving, joining = transition.rates(u)
-        x, y, z = (
-            before[:, None] * self.axes[0] + after[:, None] * self.axes[1]
-            for before, after in zip(leaving, joining, strict=True)
-        )
-        return x, y, z
-
-    def tangents(self, transition: Transition) -> Array | None:
-        """Derivatives of the tool's place in such a blend."""
-        if self.tool is None:
-            return None
-        (before, *_), (after, *_) = transition.rates(_GRID)
-        tangents: Array = before[:, None] * self.tool[0] + after[:, None] * self.tool[1]
-        return tangents
+    one, other = first.pieces[-1].curve, second.pieces[0].curve
+    (leaving,), _, _ = one.rates(np.ones(1))
+    (joining,), _, _ = other.rates(np.zeros(1))
+    paths = _common_paths(first, second)
+    lengths = [0.0, 0.0]
+    if paths is not None:
+        tangents = paths[0].tangents(np.ones(1)), paths[1].tangents(np.zeros(1))
+        lengths = [float(np.linalg.norm(tangent)) for tangent in tangents]
+    if min(lengths) <= 0.0:
+        seconds = (float((np.abs(r) / limits.velocity).max()) for r in (leaving, joining))
+        lengths = [max(length, _TINY) for length in seconds]
+    off = np.abs(joining - leaving * lengths[1] / lengths[0]).max()
+    weights = zone.before * lengths[0], zone.after * lengths[1]
+    return weights, bool(off <= _STRAIGHT * np.abs(joining).max())
 
 
 def _duration(
@@ -288,12 +351,18 @@ def _beside(
     return before.scaled(into[0]), after.scaled(1.0 / out[0])
 
 
-def _has_common_frames(first: Track, second: Track) -> bool:
-    """Whether both are paths of the tool, in the same frames."""
+def _common_paths(first: Track, second: Track) -> tuple[PosePath, PosePath] | None:
+    """The paths of the tool of both, where both have one, in the same frames."""
     curves = (first.pieces[-1].curve, second.pieces[0].curve)
-    return all(isinstance(curve, PosePathCurve) and curve.pose_path for curve in curves) and (
-        first.motion.settings.placement == second.motion.settings.placement
-    )
+    paths = curves[0].pose_path, curves[1].pose_path
+    if (
+        not all(isinstance(curve, PosePathCurve) for curve in curves)
+        or paths[0] is None
+        or paths[1] is None
+        or first.motion.settings.placement != second.motion.settings.placement
+    ):
+        return None
+    return paths[0], paths[1]
 
 
 # ---------------------------------------------------------------------------------------- zones

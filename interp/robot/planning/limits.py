@@ -9,7 +9,7 @@ one a of that kind, from samples of it; a curve whose samples differ much is cut
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -71,12 +71,12 @@ class AxisLimits:
             self.jerk * _shares(jerk, count),
         )
 
-    def widest(self, other: AxisLimits) -> AxisLimits:
-        """The wider limit of two for each axis."""
+    def merged(self, other: AxisLimits, choose: Callable[[Array, Array], Array]) -> AxisLimits:
+        """For each axis the lower or the higher of two limits."""
         return AxisLimits(
-            np.maximum(self.velocity, other.velocity),
-            np.maximum(self.acceleration, other.acceleration),
-            np.maximum(self.jerk, other.jerk),
+            choose(self.velocity, other.velocity),
+            choose(self.acceleration, other.acceleration),
+            choose(self.jerk, other.jerk),
         )
 
 

@@ -166,12 +166,12 @@ class PlannedArm:
         except Fault:
             return False
         number = track.motion.number
-        shorter = replace(body, end=leaves)
+        shorter = replace(body, end=1.0 - joint.zone.before)
         gear, bend = joint.into
         blend = Section(body.number, number, joint.curve, joint.ceiling, gear=gear, bend=bend)
         first, *others = _sections(track)
         gear, bend = joint.out
-        rest = (replace(first, start=zone.after, gear=gear, bend=bend), *others)
+        rest = (replace(first, start=joint.zone.after, gear=gear, bend=bend), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
         if not self._reschedule(route, new_behind=shorter):
             return False
