@@ -71,12 +71,16 @@ def _chord(right: Any) -> Any:
 
 
 def _hugging(right: Any) -> Any:
-    return lambda before, after, weights, _slope: right(before, after, weights, 2.9)
+    return lambda before, after, weights, _slope, *others: right(
+        before, after, weights, 2.9, *others
+    )
 
 
 def _unlimited(right: Any) -> Any:
-    def even_ceiling(rates: Any, limits: Any, beside: Any, _most: float, size: float) -> Any:
-        return right(tuple(rate / 100.0 for rate in rates), limits, beside, math.inf, size)
+    def even_ceiling(rates: Any, limits: Any, beside: Any, *speeds: float) -> Any:
+        *_, size = speeds
+        slower = tuple(rate / 100.0 for rate in rates)
+        return right(slower, limits, beside, math.inf, math.inf, size)
 
     return even_ceiling
 

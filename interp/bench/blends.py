@@ -1,8 +1,9 @@
 """How well blends keep their laws, on programs drawn by seed.
 
-Four laws: no program is slower for its blends; a point on a straight line costs nothing; no axis
-exceeds its speed, acceleration or jerk; a path does not depend on the override. Motions are planned
-all at once, and axes differenced at every millisecond.
+Five laws: no program is slower for its blends; a point on a straight line costs nothing; no axis
+exceeds its speed, acceleration or jerk; a path does not depend on the override; under a low one
+nothing is faster than its share of what is programmed. Motions are planned all at once, and axes
+differenced at every millisecond.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ LAWS: Final[dict[str, float]] = {
     "acceleration": 1.0,
     "jerk": 1.0,
     "override_mm": 1e-6,
+    "programmed": 1.0,
 }
 
 _HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
@@ -41,6 +43,7 @@ _STEP = 1000  # µs
 _SLACK = 1e-3
 """Share by which a figure may exceed a law: differences of sampled axes are no derivatives."""
 _SECOND = 1e6
+_LOW = 0.3  # the low override
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,9 +170,8 @@ def _used(machine: MachineData, axes: Array) -> tuple[float, float, float]:
     return shares[0], shares[1], shares[2]
 
 
-def _override_mm(program: Sequence[Motion], arm: PlannedArm) -> float:
-    """By how much a path differs at 30 per cent, in mm or degrees of its sections."""
-    _, other = travel(program, 30.0)
+def _override_mm(arm: PlannedArm, other: PlannedArm) -> float:
+    """By how much the paths of two runs differ, in mm or degrees of their sections."""
     u = np.linspace(0.0, 1.0, 17)
     ours, theirs = (
         {leg.section.key: leg.section.curve for leg in each.path()} for each in (arm, other)
@@ -177,6 +179,28 @@ def _override_mm(program: Sequence[Motion], arm: PlannedArm) -> float:
     if ours.keys() != theirs.keys():
         return math.inf
     return max(float(np.abs(ours[key].axes(u) - theirs[key].axes(u)).max()) for key in ours)
+
+
+def _programmed_share(program: Sequence[Motion], arm: PlannedArm, override: float) -> float:
+    """The greatest share of the programmed speed: of the tool on its paths, of axes between PTP."""
+    kinds = {motion.number: motion.kind for motion in program}
+    settings = program[0].settings
+    machine = default_machine()
+    known = [axis.dynamics for axis in (*machine.axes, *machine.externals) if axis.dynamics]
+    most = np.array([one.velocity for one in known]) * settings.axis_velocity[0] / 100.0
+    shares = [0.0]
+    for leg in arm.path():
+        section = leg.section
+        u, speeds, _ = leg.at(np.linspace(leg.begins, leg.ends, 17))
+        if section.number == program[0].number:
+            continue
+        if section.curve.pose_path is not None:
+            tool = np.linalg.norm(section.curve.pose_path.tangents(u), axis=1) * speeds
+            shares.append(float(tool.max()) / (settings.velocity * 1000.0))
+        elif {kinds[section.number], kinds[section.following or section.number]} == {"PTP"}:
+            axes = np.abs(section.curve.rates(u)[0]) * speeds[:, None]
+            shares.append(float((axes / most).max()))
+    return max(shares) / override
 
 
 def measure(
@@ -193,7 +217,7 @@ def measure(
         try:
             blended, arm = travel(program)
             stopped, _ = travel(exact(program))
-            found["override_mm"].append((_override_mm(program, arm), number))
+            _, slow = travel(program, 100.0 * _LOW)
         except Fault:
             refused += 1
         else:
@@ -201,6 +225,8 @@ def measure(
             ratio = blended.seconds / stopped.seconds
             saved.append(ratio)
             found["time"].append((ratio, number))
+            found["override_mm"].append((_override_mm(arm, slow), number))
+            found["programmed"].append((_programmed_share(program, slow, _LOW), number))
             for name in ("speed", "acceleration", "jerk"):
                 found[name].append((getattr(blended, name), number))
         try:

@@ -299,7 +299,7 @@ class PosePathCurve:
         self.arm = arm
         self.placement = placement
         self.pose_path: PosePath | None = pose_path
-        self._pose_path = pose_path
+        self.tool_path = pose_path
         self._before = matrix_of(placement.before)
         self._after = matrix_of(placement.after)
         self.others = others
@@ -341,7 +341,7 @@ class PosePathCurve:
         return self.placement.befores(self.others.at(u))
 
     def _flanges(self, u: Array) -> Array:
-        poses = poses_of(self._pose_path, u)
+        poses = poses_of(self.tool_path, u)
         if self.placement.mode is IpoMode.TCP:
             poses = _inverted(poses)
         flanges: Array = self._befores(u) @ poses @ self._after

@@ -19,7 +19,8 @@ import numpy as np
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, angle_between, turning
-from interp.robot.path.pose_path import Arc, PosePath, StraightLine, Way
+from interp.robot.path.pose_path import Arc, PosePath, StraightLine
+from interp.robot.path.way import Way
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RotationSpline

@@ -9,6 +9,7 @@ are, and its jerk is bounded.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -17,6 +18,7 @@ from typing import Protocol
 import numpy as np
 
 from interp.robot.kinematics.solver import Array
+from interp.robot.path.way import Way
 
 __all__ = ["Cubics", "Overlap", "Rounding", "Transition", "chained"]
 
@@ -62,13 +64,15 @@ class Rounding:
     ``weights`` are the lengths of both sides of the zone in one unit. Over a parameter v both sides
     follow ``h = (4 - slope)·v³ + (slope - 3)·v⁴``. With a slope of 1 the curve between two lines
     has the apex of a parabola and is within 0.3 per cent of the zone of it; its curvature rises
-    quickly. A slope of 2 takes the whole zone for that. u grows with the sum of both sides.
+    quickly. A slope of 2 takes the whole zone for that. u grows with the sum of both sides; with
+    the ``cosine`` of the angle between two lines, it grows with the way along the curve.
     """
 
     before: float
     after: float
     weights: tuple[float, float]
     slope: float
+    cosine: float = 1.0
 
     @property
     def breaks(self) -> Array:
@@ -93,8 +97,18 @@ class Rounding:
         signs = (1.0, -1.0, 1.0)
         one = [self.before * s * side for s, side in zip(signs, left, strict=True)]
         other = [self.after * side for side in right]
-        a, b = self._shares
-        w1, w2, w3 = (a * s * x + b * y for s, x, y in zip(signs, left, right, strict=True))
+        (a, b), c = self._shares, self.cosine
+        (x1, x2, x3), (y1, y2, y3) = (
+            [a * s * x for s, x in zip(signs, left, strict=True)],
+            [b * y for y in right],
+        )
+        square = x1 * x1 + y1 * y1 + 2.0 * c * x1 * y1
+        half = x1 * x2 + y1 * y2 + c * (x2 * y1 + x1 * y2)  # of its first derivative
+        bend = x2 * x2 + x1 * x3 + y2 * y2 + y1 * y3 + c * (x3 * y1 + 2.0 * x2 * y2 + x1 * y3)
+        root = np.sqrt(square)
+        w1, w2, w3 = (
+            w / self._length for w in (root, half / root, bend / root - half**2 / root**3)
+        )
         inner = (1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5)
         return np.stack(chained(one, inner)), np.stack(chained(other, inner))
 
@@ -105,7 +119,24 @@ class Rounding:
 
     def _inner(self, u: Array) -> Array:
         """The parameter v for u."""
-        return _inner(*self._shares, self.slope, u.tobytes())
+        if self.cosine == 1.0:
+            return _inner(*self._shares, self.slope, u.tobytes())
+        return self._way.parameters(u * self._length)
+
+    @cached_property
+    def _way(self) -> Way:
+        """The way along the curve over v, in sums of both sides."""
+        (a, b), c = self._shares, self.cosine
+
+        def tangents(v: Array) -> Array:
+            one, other = a * _side(1.0 - v, self.slope)[1], b * _side(v, self.slope)[1]
+            return np.stack((one + c * other, math.sqrt(1.0 - c * c) * other), axis=1)
+
+        return Way(tangents)
+
+    @property
+    def _length(self) -> float:
+        return 1.0 if self.cosine == 1.0 else self._way.length
 
 
 @dataclass(frozen=True, eq=False)

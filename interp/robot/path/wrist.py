@@ -59,7 +59,7 @@ class WristCurve(PosePathCurve):
     def _beside(self, u: Array, references: Array) -> Array:
         axes = references.copy()
         axes[:, _MAIN:] = self._from[_MAIN:] + u[:, None] * (self._to - self._from)[_MAIN:]
-        positions, _ = self._pose_path.at(u)
+        positions, _ = self.tool_path.at(u)
         before = self._befores(u)
         wanted = (before[..., :3, :3] @ positions[:, :, None])[:, :, 0] + before[..., :3, 3]
         shifts = np.vstack((np.zeros((1, 6)), _STEP * np.eye(6)[:_MAIN]))

@@ -28,8 +28,9 @@ from interp.robot.path.axis_path import (
     Rates,
 )
 from interp.robot.path.orientation import turning
-from interp.robot.path.pose_path import Blend, PosePath, StraightLine, Way
+from interp.robot.path.pose_path import Blend, StraightLine
 from interp.robot.path.transition import Overlap, Rounding, Transition
+from interp.robot.path.way import Way
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of, even_ceiling
 from interp.robot.planning.profile import Bounds, ramp
 from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
@@ -51,6 +52,8 @@ _SAVED = 0.97
 _TINY = 1e-9
 _STRAIGHT = 1e-3
 """Relative difference of directions that counts as none."""
+_BACK = -0.99
+"""The least cosine of an angle at which speed may be kept: a way back has a point of no length."""
 _STRAIGHT_ON = 2e-5
 """Share of a straight way by which the point between may lie beside it."""
 _EVEN = 1e-6
@@ -134,42 +137,66 @@ def blend_of(
     acceleration is at most $ACC_MA.CP (an assumption: no rule tells). So the speed may drop
     [BLD-15]. Raises `Fault` where the blend leads out of the working range.
     """
-    axes = first.axis_limits.merged(second.axis_limits, np.maximum)
-    one, other = first.pieces[-1], second.pieces[0]
-    weights, is_straight = _course(first, second, zone, limits)
+    one, other = first.pieces[-1].curve, second.pieces[0].curve
+    common = _common_curves(first, second)
+    weights, is_straight = _course(one, other, common, zone, limits)
     if is_straight:
         straight = _straight_on(first, second, zone, weights, machine, limits)
         if straight is not None:
             return straight
     transition: Transition = Rounding(zone.before, zone.after, weights, _SMOOTH)
     if not is_straight:
-        transition = _soonest(first, second, zone, weights, axes, machine)
+        transition = _soonest(first, second, zone, weights, machine)
     zone = Zone(transition.before, transition.after)
-    curves = (one.curve, other.curve)
-    paths = _common_paths(first, second)
-    if (
-        paths is None
-        or not isinstance(curves[0], PosePathCurve)
-        or not isinstance(curves[1], PosePathCurve)
-    ):
-        curve: Curve = BlendedAxes(*curves, transition)
+    axes = BlendedAxes(one, other, transition)
+    curve: Curve = axes
+    if common is None:
         check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
-        most = _most_of_axes(first, second, curve, machine)
     else:
-        pose_path = Blend(*paths, transition)
-        (start,) = curves[0].axes(np.array([1.0 - zone.before]))
-        others = BlendedOthers(curves[0].others, curves[1].others, transition)
-        arm, placement = curves[0].arm, curves[0].placement
-        curve = PosePathCurve(arm, placement, pose_path, start[:ROBOT_AXES], others)
-        most = _most_of_tool(pose_path.tangents(_GRID), one, other, machine)
-    into, out = _gears(transition)
-    beside = _beside(one, other, into, out)
-    size = one.ceiling.stretches[-1].size / into[0]
+        pose_path = Blend(common[0].tool_path, common[1].tool_path, transition)
+        (start,) = one.axes(np.array([1.0 - zone.before]))
+        others = BlendedOthers(common[0].others, common[1].others, transition)
+        curve = PosePathCurve(one.arm, one.placement, pose_path, start[:ROBOT_AXES], others)
     # The spline of the axes sees little of how quickly the curve begins to bend.
-    ends = BlendedAxes(*curves, transition).rates(np.array([0.0, 1.0]))
+    ends = axes.rates(np.array([0.0, 1.0]))
     x, y, z = (np.concatenate(both) for both in zip(curve.rates(curve.grid), ends, strict=True))
-    ceiling = even_ceiling((x, y, z), axes, beside, most, size)
-    return Joint(zone, curve, ceiling, into, out)
+    slowest = _slowest_in_t1(first, second, curve, machine)
+    ceiling = _ceiling(first, second, transition, (x, y, z), machine, slowest)
+    return Joint(zone, curve, ceiling, *_gears(transition))
+
+
+def _ceiling(
+    first: Track,
+    second: Track,
+    transition: Transition,
+    rates: Rates,
+    machine: MachineData,
+    slowest: float = math.inf,
+) -> Ceiling:
+    """The bounds of a blend with such derivatives of the axes.
+
+    The tool is no faster than beside the blend, and has no more acceleration than the machine's
+    [BLD-15]; between PTP no axis is faster than programmed.
+    """
+    one, other = first.pieces[-1], second.pieces[0]
+    (gear, bend), out = _gears(transition)
+    limits = first.axis_limits.merged(second.axis_limits, np.maximum)
+    programmed, most = slowest, math.inf
+    if (common := _common_curves(first, second)) is not None:
+        tangents = Blend(common[0].tool_path, common[1].tool_path, transition).tangents(_GRID)
+        bends = np.gradient(tangents, _STEP, axis=0)
+        sharpest, fastest = (
+            max(float(np.linalg.norm(rows, axis=1).max()), _TINY) for rows in (bends, tangents)
+        )
+        speed = max(path.velocity for piece in (one, other) for path in piece.paths[:1])
+        programmed = min(programmed, speed / fastest)
+        most = math.sqrt(machine.acceleration.path * _METRE / sharpest)
+    elif not first.is_cp and not second.is_cp:
+        speeds = limits.velocity / np.maximum(np.abs(rates[0]), _TINY)
+        programmed = min(programmed, float(speeds.min()))
+    beside = _beside(one, other, (gear, bend), out)
+    size = one.ceiling.stretches[-1].size / gear
+    return even_ceiling(rates, limits, beside, programmed, most, size)
 
 
 def _straight_on(
@@ -196,19 +223,21 @@ def _straight_on(
         if not _is_near(curve.axes(share)[0], corner, float(np.abs(joins - leaves).max())):
             return None
         allowed = first.axis_limits.merged(second.axis_limits, np.minimum)
-        most = _most_of_axes(first, second, curve, machine)
+        most = _slowest_in_t1(first, second, curve, machine)
         if math.isfinite(most):
             paths = (PathLimits(1.0, most, math.inf),)
     else:
-        lines = _common_paths(first, second)
+        common = _common_curves(first, second)
         if (
-            lines is None
-            or not isinstance(lines[0], StraightLine)
-            or not isinstance(lines[1], StraightLine)
+            common is None
+            or not isinstance(common[0].tool_path, StraightLine)
+            or not isinstance(common[1].tool_path, StraightLine)
             or len(one.paths) != len(other.paths)
         ):
             return None
-        (points, turned), (point, turn) = lines[0].at(ends[0]), lines[1].at(ends[1])
+        (points, turned), (point, turn) = (
+            curve.tool_path.at(where) for curve, where in zip(common, ends, strict=True)
+        )
         line = StraightLine(points[0], point[0], turning(turned[0], turn[0]), kind="BLEND")
         place, rotation = line.at(share)
         if not _is_near(place[0], points[1], line.length) or not _is_near(
@@ -239,65 +268,73 @@ def _is_near(one: Array, other: Array, size: float) -> bool:
 
 
 def _soonest(
-    first: Track,
-    second: Track,
-    zone: Zone,
-    weights: tuple[float, float],
-    axes: AxisLimits,
-    machine: MachineData,
+    first: Track, second: Track, zone: Zone, weights: tuple[float, float], machine: MachineData
 ) -> Transition:
     """The transition with which both motions are soonest over.
 
     Of an overlap of which one side takes much longer than the other, or which costs time, it is as
-    much as is on at once.
+    much as is on at once. C_VEL keeps the speed where two lines meet [BLD-12]: the curve is
+    travelled evenly, and what brakes is left for where that costs time.
     """
     one, other = first.pieces[-1], second.pieces[0]
-    paths = _common_paths(first, second)
-    are_lines = all(isinstance(piece.curve.pose_path, StraightLine) for piece in (one, other))
+    common = _common_curves(first, second)
+    lines = [piece.curve.pose_path for piece in (one, other)]
+    are_lines = all(isinstance(line, StraightLine) for line in lines)
+    cosine = 1.0
+    if are_lines and common is not None and first.motion.criteria[0] == "C_VEL":
+        leaving, joining = (curve.tool_path.tangents(np.zeros(1))[0] for curve in common)
+        lengths = float(np.linalg.norm(leaving) * np.linalg.norm(joining))
+        if lengths > 0.0:
+            cosine = max(float(leaving @ joining) / lengths, _BACK)
     choices: list[Transition] = [
-        Rounding(zone.before, zone.after, weights, slope)
+        Rounding(zone.before, zone.after, weights, slope, cosine)
         for slope in ((_PARABOLA, _SMOOTH) if are_lines else (_SMOOTH,))
     ]
 
     def duration(transition: Transition) -> float:
         blend = BlendedAxes(one.curve, other.curve, transition)
         rates = blend.rates(blend.grid)
-        most = math.inf
-        if paths is not None:
-            tangents = Blend(*paths, transition).tangents(_GRID)
-            most = _most_of_tool(tangents, one, other, machine)
-        return _duration(one, other, transition, rates, most, axes)
+        ceiling = _ceiling(first, second, transition, rates, machine)
+        return _duration(one, other, transition, ceiling)
 
     times = [duration(transition) for transition in choices]
     most = math.inf
     ending, starting = alone(one.ceiling), alone(other.ceiling)
     if ending is not None and starting is not None:
-        most = _SAVED * (ending.duration + starting.duration)
-        ending, starting = ending.since(1.0 - zone.before), starting.until(zone.after)
-        overlap = Overlap(ending, starting)
-        for choice in (overlap, overlap.evened()) if overlap.is_even else (overlap.evened(),):
-            choices.append(choice)
-            times.append(duration(choice))
-            if min(times) < most:
-                break
+        exact = ending.duration + starting.duration
+        if cosine < 1.0 and min(times) < exact:
+            return choices[times.index(min(times))]
+        most = _SAVED * exact
+        overlap = Overlap(ending.since(1.0 - zone.before), starting.until(zone.after))
+        if overlap.is_even:
+            choices.append(overlap)
+            times.append(duration(overlap))
+        if not overlap.is_even or min(times) > most:
+            choices.append(overlap.evened())
+            times.append(duration(choices[-1]))
     most = max(min(most, min(times) / _SOONER), min(times))
     return choices[next(place for place, time in enumerate(times) if time <= most)]
 
 
 def _course(
-    first: Track, second: Track, zone: Zone, limits: AxisLimits
+    one: Curve,
+    other: Curve,
+    common: tuple[PosePathCurve, PosePathCurve] | None,
+    zone: Zone,
+    limits: AxisLimits,
 ) -> tuple[tuple[float, float], bool]:
     """The lengths of both sides of a zone, and whether the second path goes on where the first led.
 
     Lengths are mm of the tool where both have that, else seconds of axes.
     """
-    one, other = first.pieces[-1].curve, second.pieces[0].curve
     (leaving,), _, _ = one.rates(np.ones(1))
     (joining,), _, _ = other.rates(np.zeros(1))
-    paths = _common_paths(first, second)
     lengths = [0.0, 0.0]
-    if paths is not None:
-        tangents = paths[0].tangents(np.ones(1)), paths[1].tangents(np.zeros(1))
+    if common is not None:
+        tangents = (
+            common[0].tool_path.tangents(np.ones(1)),
+            common[1].tool_path.tangents(np.zeros(1)),
+        )
         lengths = [float(np.linalg.norm(tangent)) for tangent in tangents]
     if min(lengths) <= 0.0:
         seconds = (float((np.abs(r) / limits.velocity).max()) for r in (leaving, joining))
@@ -307,19 +344,10 @@ def _course(
     return weights, bool(off <= _STRAIGHT * np.abs(joining).max())
 
 
-def _duration(
-    one: Piece,
-    other: Piece,
-    transition: Transition,
-    rates: Rates,
-    most: float,
-    axes: AxisLimits,
-) -> float:
-    """How long both pieces take from rest to rest with a blend of such derivatives."""
+def _duration(one: Piece, other: Piece, transition: Transition, ceiling: Ceiling) -> float:
+    """How long both pieces take from rest to rest with a blend of such bounds."""
     into, out = _gears(transition)
-    beside = _beside(one, other, into, out)
-    size = one.ceiling.stretches[-1].size / into[0]
-    (zone,) = even_ceiling(rates, axes, beside, most, size).stretches
+    (zone,) = ceiling.stretches
     before = one.ceiling.between(0.0, 1.0 - transition.before)
     after = other.ceiling.between(transition.after, 1.0)
     steps = [
@@ -351,18 +379,18 @@ def _beside(
     return before.scaled(into[0]), after.scaled(1.0 / out[0])
 
 
-def _common_paths(first: Track, second: Track) -> tuple[PosePath, PosePath] | None:
-    """The paths of the tool of both, where both have one, in the same frames."""
-    curves = (first.pieces[-1].curve, second.pieces[0].curve)
-    paths = curves[0].pose_path, curves[1].pose_path
+def _common_curves(first: Track, second: Track) -> tuple[PosePathCurve, PosePathCurve] | None:
+    """The curves of both, where both are paths of the tool in the same frames."""
+    one, other = first.pieces[-1].curve, second.pieces[0].curve
     if (
-        not all(isinstance(curve, PosePathCurve) for curve in curves)
-        or paths[0] is None
-        or paths[1] is None
-        or first.motion.settings.placement != second.motion.settings.placement
+        isinstance(one, PosePathCurve)
+        and isinstance(other, PosePathCurve)
+        and one.pose_path
+        and other.pose_path
+        and first.motion.settings.placement == second.motion.settings.placement
     ):
-        return None
-    return paths[0], paths[1]
+        return one, other
+    return None
 
 
 # ---------------------------------------------------------------------------------------- zones
@@ -436,22 +464,11 @@ def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
 # ---------------------------------------------------------------------------------------- speed
 
 
-def _most_of_tool(tangents: Array, one: Piece, other: Piece, machine: MachineData) -> float:
-    """The speed at which the tool is no faster than beside the blend [BLD-15].
-
-    And has no more acceleration than the machine's.
-    """
-    bends = np.gradient(tangents, _STEP, axis=0)
-    sharpest = float(np.linalg.norm(bends, axis=1).max())
-    fastest = float(np.linalg.norm(tangents, axis=1).max())
-    speed = max(path.velocity for piece in (one, other) for path in piece.paths[:1])
-    most = machine.acceleration.path * _METRE
-    return min(speed / max(fastest, _TINY), math.sqrt(most / max(sharpest, _TINY)))
-
-
-def _most_of_axes(first: Track, second: Track, curve: Curve, machine: MachineData) -> float:
+def _slowest_in_t1(first: Track, second: Track, curve: Curve, machine: MachineData) -> float:
     """In T1 the tool is no faster than $VEL_CP_T1 on a blend of axes either [MOT-07]."""
-    if not any(track.motion.settings.is_reduced for track in (first, second)):
+    if curve.pose_path is not None or not any(
+        track.motion.settings.is_reduced for track in (first, second)
+    ):
         return math.inf
     tangents: Array = tool_tangents(curve, np.linspace(0.0, 1.0, 33))
     fastest = float(np.linalg.norm(tangents, axis=1).max())

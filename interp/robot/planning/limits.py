@@ -214,15 +214,20 @@ def ceiling_of(
 
 
 def even_ceiling(
-    rates: Rates, limits: AxisLimits, beside: Sequence[Bounds], most: float, size: float
+    rates: Rates,
+    limits: AxisLimits,
+    beside: Sequence[Bounds],
+    programmed: float,
+    most: float,
+    size: float,
 ) -> Ceiling:
     """The bounds of a blend with such derivatives, which may be passed at one speed.
 
-    ``beside`` are the bounds of what it joins, in the units of its own u; ``most`` is a speed that
-    it has to keep for other reasons. Where speed changes in it, it is no more than a share of what
-    it may be otherwise.
+    ``beside`` are the bounds of what it joins, in the units of its own u; ``programmed`` is a
+    speed of which the override takes shares, ``most`` one that holds under any. Where speed changes
+    in it, it is no more than a share of what it may be otherwise.
     """
-    programmed = min(bounds.velocity for bounds in beside)
+    programmed = min(programmed, *(bounds.velocity for bounds in beside))
     sampled = _Sampled(rates, limits)
     even = min(sampled.steady_speed(_MARGIN), most)
     eased = min(sampled.steady_speed(_MARGIN * _EASED), most)

@@ -443,8 +443,8 @@ def _most_with(bend: float, bounds: Bounds) -> float:
     def fits(speed: float) -> bool:
         gain = abs(bend) * speed**2
         return (
-            gain * _ALIKE <= bounds.acceleration
-            and (speed + gain**2 / (2.0 * bounds.jerk)) * _ALIKE <= bounds.velocity
+            gain * _SPARE <= bounds.acceleration
+            and (speed + gain**2 / (2.0 * bounds.jerk)) * _SPARE <= bounds.velocity
         )
 
     return bounds.velocity if fits(bounds.velocity) else _bisected(fits, 0.0, bounds.velocity)

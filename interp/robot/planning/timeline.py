@@ -14,7 +14,7 @@ import numpy.typing as npt
 from interp.robot.arm import Samples
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, tool_positions
-from interp.robot.path.pose_path import Way
+from interp.robot.path.way import Way
 from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import GearedStretch, PathState

@@ -22,6 +22,7 @@ _WORDS = {
     "acceleration": "nor speeds up too hard",
     "jerk": "nor jerks",
     "override_mm": "the path is the same at any override",
+    "programmed": "nothing is faster than programmed at a low one",
 }
 
 

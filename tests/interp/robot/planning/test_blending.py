@@ -46,6 +46,12 @@ def blend(driver: Driver) -> Section:
     return found
 
 
+def ahead(driver: Driver) -> tuple[int, int]:
+    """When the only blend starts and ends, in µs."""
+    legs = [leg for leg in driver.arm.path() if leg.section.following]
+    return int(1e6 * legs[0].begins) + 1, int(1e6 * legs[-1].ends)
+
+
 def test_a_blend_of_lines_is_nearly_a_parabola(driver: Driver) -> None:
     """Where nothing is gained otherwise, it has the ends of one and keeps 0.12 mm to it."""
     corner(driver, ("C_DIS",), 0.2, cdis=40.0)
@@ -239,6 +245,42 @@ def test_line_into_circle(driver: Driver, others: dict[str, str]) -> None:
     assert np.allclose(1.0, cosines / lengths)
     driver.play()
     driver.check_limits()
+
+
+def test_c_vel_keeps_the_speed(driver: Driver) -> None:
+    """C_VEL goes round a corner as fast as along the lines, where the arm can [BLD-12]."""
+    near = Approximation(cvel=100.0)
+    driver.move("PTP", FIRST)
+    driver.play()
+    for target, criteria in ((CORNER, ("C_VEL",)), (LAST, ())):
+        settings: dict[str, Any] = {"velocity": 0.2, "acceleration": 0.5, "approximation": near}
+        driver.move("LIN", target, criteria=criteria, **settings)
+    begin, end = ahead(driver)
+    speeds = [driver.arm.speed(time) for time in range(begin, end, 2000)]
+    assert [0.2] * len(speeds) == pytest.approx(speeds, rel=0.01)
+
+
+def test_c_dis_slows_down(driver: Driver) -> None:
+    """C_DIS does not promise that, and takes less acceleration [BLD-12]."""
+    corner(driver, ("C_DIS",), 0.2, cdis=40.0)
+    begin, end = ahead(driver)
+    assert 0.15 > driver.arm.speed((begin + end) // 2)
+
+
+def test_points_on_a_line_cost_nothing(driver: Driver) -> None:
+    """Points on one line, 0.01 mm from one another too, are passed as if they were not there."""
+    durations = []
+    for places in ((), (50.0, 49.99, 20.0)):
+        driver.move("PTP", FIRST)
+        driver.play()
+        begin = driver.now
+        near = Approximation(cdis=40.0)
+        for place in places:
+            driver.move("LIN", {**FIRST, "Y": place}, criteria=("C_DIS",), approximation=near)
+        driver.move("LIN", CORNER)
+        driver.play()
+        durations.append(driver.now - begin)
+    assert durations[0] == pytest.approx(durations[1], rel=1e-3)
 
 
 def test_the_path_does_not_depend_on_the_speed(driver: Driver) -> None:
