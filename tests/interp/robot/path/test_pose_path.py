@@ -7,8 +7,9 @@ import pytest
 
 from interp.robot.path.circle import circle_through
 from interp.robot.path.orientation import turning
-from interp.robot.path.pose_path import Arc, Blend, PosePath, StraightLine, Way
+from interp.robot.path.pose_path import Arc, Blend, PosePath, StraightLine
 from interp.robot.path.transition import Rounding
+from interp.robot.path.way import Way
 
 STILL = turning(np.eye(3), np.eye(3))
 FIRST = StraightLine(np.zeros(3), np.array([100.0, 0.0, 0.0]), STILL)
