@@ -1,6 +1,6 @@
 """When the path is passed where: speeds at the ends of spans of path, then a profile for each span.
 
-Stretches whose bounds are alike are one span, however many motions they belong to: within it the
+Stretches whose bounds are alike are one span, over as many motions as there are: within it the
 arm speeds up and brakes as if there were no seams. Between spans the acceleration is zero. A blend
 that bends is a span that is passed at one speed; where it was made of the end of one motion and the
 start of the next, it is entered while braking and left while speeding up.
@@ -103,24 +103,13 @@ class _Span:
         self.scales.append(scale)
         self.ends.append((self.ends[-1] if self.ends else 0.0) + length)
 
-    def takes(self, bounds: Bounds, is_blend: bool, is_loose: bool) -> bool:
-        """Whether a stretch with such bounds can be travelled with it as one; then it will be.
-
-        A blend counts only where it would be an obstacle, something else also where it would be
-        held up.
-        """
-        if self.is_blend and is_blend and not is_loose:
-            return False
+    def takes(self, bounds: Bounds, is_loose: bool) -> bool:
+        """Whether a stretch with such bounds can be travelled with it as one; then it will be."""
         ratio = _LOOSE if is_loose else _ALIKE
-        if not (self.is_blend or _is_about(self.highest, bounds, ratio)) or not (
-            is_blend or _is_about(bounds, self.bounds, ratio)
-        ):
+        if not _is_about(self.highest, bounds, ratio) or not _is_about(bounds, self.bounds, ratio):
             return False
-        if self.is_blend or not is_blend:
-            self.highest = self.highest.merged(bounds, max)
+        self.highest = self.highest.merged(bounds, max)
         self.bounds = self.bounds.merged(bounds, min)
-        self.is_blend = self.is_blend and is_blend
-        self.is_even = False
         return True
 
 
@@ -277,7 +266,8 @@ def _spans(
         if is_blend and is_first and state.speed * _ALIKE > own.velocity:
             own = stretch.even_bounds(override)
         bounds = own.scaled(scale)
-        if not spans or stands or bend != 0.0 or not spans[-1].takes(bounds, is_blend, is_loose):
+        is_alone = stands or is_blend or not spans or spans[-1].is_blend
+        if is_alone or not spans[-1].takes(bounds, is_loose):
             even = stretch.even_bounds(override).velocity * scale
             is_even = is_blend and not is_first
             spans.append(_Span(bounds, even, bend, stands, is_blend, is_even, bounds))
