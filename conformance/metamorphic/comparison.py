@@ -17,6 +17,8 @@ from conformance.evaluation.observation import Event, Observation
 
 __all__ = [
     "Compare",
+    "at_most_twice",
+    "no_sooner",
     "same_axes",
     "same_effects",
     "same_geometry",
@@ -50,6 +52,8 @@ _EFFECTS: Final = frozenset(
 )
 #: Degrees by which axes may differ that were computed in another way.
 _SAME: Final = 1e-3
+#: Share of a time by which something may end later that may not be later at all.
+_LATER: Final = 1e-3
 #: Degrees by which a point may lie beside the other path: both are samples, joined by chords.
 _BESIDE: Final = 0.05
 
@@ -130,6 +134,28 @@ def same_geometry(left: Observation, right: Observation) -> str:
             place = mine[int(np.argmax(off))]
             return f"the {which} path has {_told(place)}, {off.max():.4f} degrees beside the other"
     return ""
+
+
+def no_sooner(left: Observation, right: Observation) -> str:
+    """The last motion of the changed program ends no sooner than it did."""
+    one, other = _ended(left), _ended(right)
+    if one is None or other is None or one <= other * (1.0 + _LATER):
+        return ""
+    return f"motions end after {one / 1e6:.4f} s, then after {other / 1e6:.4f} s"
+
+
+def at_most_twice(left: Observation, right: Observation) -> str:
+    """Its motions end no sooner than they did, and take no more than twice as long."""
+    one, other = _ended(left), _ended(right)
+    if one is None or other is None or other <= 2.0 * one * (1.0 + _LATER):
+        return no_sooner(left, right)
+    return f"motions end after {one / 1e6:.4f} s, then after {other / 1e6:.4f} s"
+
+
+def _ended(run: Observation) -> int | None:
+    """When the last motion ended, in µs; ``None`` for a run that did not come to its end."""
+    times = [one.time for one in run.of_kind("motion_end") if one.time is not None]
+    return max(times, default=0) if run.ending == "end" else None
 
 
 # ------------------------------------------------------------------------------------ events

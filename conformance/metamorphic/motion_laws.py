@@ -10,6 +10,8 @@ from typing import Final
 from conformance.evaluation.observation import Observation
 from conformance.metamorphic.comparison import (
     Compare,
+    at_most_twice,
+    no_sooner,
     same_axes,
     same_geometry,
     same_outputs,
@@ -202,6 +204,23 @@ def _slower(program: Program, random: Random) -> Program | None:
     return _with_prelude(program, ast.Assignment(MADE, variable("$OV_PRO"), percent))
 
 
+def _halved_override(program: Program, _random: Random) -> Program | None:
+    half = ast.IntegerLiteral(MADE, 50)
+    return _with_prelude(program, ast.Assignment(MADE, variable("$OV_PRO"), half))
+
+
+def _stopped(program: Program, _random: Random) -> Program | None:
+    """Exact stops where the program approximates."""
+    if _has_exact_stops(program):
+        return None
+
+    def change(node: ast.Node) -> ast.Node:
+        return replace(node, criteria=()) if isinstance(node, ast.Motion) else node
+
+    modules = (program.modules or {}).items()
+    return program.written({path: rewritten(one, change) for path, one in modules})
+
+
 # ------------------------------------------------------------------------------------ lines
 
 
@@ -299,6 +318,24 @@ LAWS: Final[Sequence[Law]] = (
         _slower,
         _KINEMATIC,
         needs=_has_exact_stops,
+    ),
+    Law(
+        "half the override",
+        "with half the override exact stops are no sooner, and motions take up to twice as long",
+        ("MOT-09",),
+        at_most_twice,
+        _halved_override,
+        _KINEMATIC,
+        needs=_has_exact_stops,
+    ),
+    Law(
+        "exact stops",
+        "a program without its approximations takes no less time",
+        ("BLD-12",),
+        no_sooner,
+        _stopped,
+        _KINEMATIC,
+        needs=_is_timeless,
     ),
     Law(
         "LIN in two halves",

@@ -6,7 +6,15 @@ from random import Random
 import pytest
 
 from conformance.metamorphic import Law, laws, motion_laws, record_of, run_law, try_laws
-from conformance.metamorphic.comparison import same_axes, same_effects, same_geometry, same_trace
+from conformance.metamorphic.comparison import (
+    Compare,
+    at_most_twice,
+    no_sooner,
+    same_axes,
+    same_effects,
+    same_geometry,
+    same_trace,
+)
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program, Run
 from conformance.metamorphic.tree_rewriting import integer, rewritten
@@ -82,7 +90,7 @@ def test_each_law_applies_and_holds(law: Law) -> None:
     programs = [
         _program(COMPUTES),
         _program(MOVES),
-        Program.of_sample(moving_program(1, 1), "m", 60.0),
+        Program.of_sample(moving_program(1, 2), "m", 60.0),
     ]
     found = [run_law(law, program) for program in programs]
     tried = [one for one in found if one is not None]
@@ -154,6 +162,17 @@ def test_the_override_changes_times() -> None:
     attempt = run_law(replace(law, compare=same_trace), _program(MOVES))
     assert attempt is not None
     assert attempt.difference
+
+
+@pytest.mark.parametrize(("percent", "compare"), [(30, at_most_twice), (200, no_sooner)])
+def test_times_beyond_their_bounds_are_caught(percent: int, compare: Compare) -> None:
+    """A third of the speed is more than twice the time, and twice the speed ends sooner."""
+    slow = MOVES.replace("$VEL.CP = 0.4", "$VEL.CP = 0.06")
+    text = slow.replace("0.06", str(0.06 * percent / 100))
+    law = Law("wrong", "", (), compare, lambda *_: _program(text), Run(robot="kinematic"))
+    attempt = run_law(law, _program(slow))
+    assert attempt is not None
+    assert "motions end after" in attempt.difference
 
 
 def test_a_law_that_does_not_apply_says_so() -> None:
