@@ -25,7 +25,7 @@ __all__ = ["Parser", "Stop"]
 
 # Memory stays flat on corpora of any size: lines that are built alike, and the outlines in them,
 # are remembered up to this number, and enormous lines not at all.
-_MOST_REMEMBERED = 50_000
+_MOST_REMEMBERED = 20_000
 _LONGEST_REMEMBERED = 1_000
 
 

@@ -28,8 +28,8 @@ from grammar.syntax.statement_rules import CHAINS, RULES
 
 __all__ = ["BLOCK_RULES", "Builder", "SyntaxFailure", "builder", "read_module"]
 
-# Memory stays flat on corpora of any size.
-_MOST_REMEMBERED = 200_000
+# Memory stays flat on corpora of any size: a plan takes some kilobytes.
+_MOST_REMEMBERED = 20_000
 _WIDEST_REMEMBERED = 1_000
 
 
