@@ -11,12 +11,12 @@ from collections.abc import Iterator, Mapping
 from grammar.check.context import Context, PlacedStatement, RoutineBody
 from grammar.check.statement_heads import head
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.motion_kinds import SPLINE_MOTIONS
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 
-__all__ = ["SPLINE_MOTIONS", "check"]
+__all__ = ["check"]
 
-SPLINE_MOTIONS = frozenset("SPTP SLIN SCIRC SPL SPTP_REL SLIN_REL SCIRC_REL SPL_REL".split())
 #: The one motion that is not the robot's but of external axes on their own.
 _ASYNCHRONOUS = "ASYPTP"
 _WORKSPACES = frozenset({"WSPACEGIVE", "WSPACETAKE"})

@@ -6,12 +6,10 @@ from collections.abc import Iterator
 
 from grammar.check.context import Context, PlacedStatement
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.syntax import ast
 
 __all__ = ["check"]
-
-_IN_SPLINE = frozenset("SPL SLIN SCIRC SPL_REL SLIN_REL SCIRC_REL".split())
-_IN_PTP_SPLINE = frozenset({"SPTP", "SPTP_REL"})
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -33,7 +31,7 @@ def _is_inside(placed: PlacedStatement) -> bool:
 
 def _block(context: Context, block: ast.SplineBlock) -> Iterator[Diagnostic]:
     is_ptp = block.keyword == "PTP_SPLINE"
-    allowed = _IN_PTP_SPLINE if is_ptp else _IN_SPLINE
+    allowed = PTP_SPLINE_SEGMENTS if is_ptp else SPLINE_SEGMENTS
     for item in block.items:
         if isinstance(item, ast.Motion):
             if item.kind not in allowed:

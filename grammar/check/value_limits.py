@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, RoutineBody
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.motion_kinds import WITHOUT_PATH
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
@@ -19,7 +20,6 @@ __all__ = ["check", "is_priority"]
 #: Milliseconds or millimetres: how far a trigger can be shifted [TRG-03, TRG-04].
 _FARTHEST = 10_000_000
 _STOP_MESSAGE = "$STOPMESS"
-_WITHOUT_PATH = frozenset({"PTP", "PTP_REL"})
 
 
 def is_priority(number: float) -> bool:
@@ -131,7 +131,7 @@ def _before_ptp(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
         if isinstance(statement, ast.Trigger) and statement.place_kind == "PATH":
             waiting.append(statement)
         elif isinstance(statement, ast.Motion):
-            if statement.kind in _WITHOUT_PATH:
+            if statement.kind in WITHOUT_PATH:
                 line = context.source.place(statement.span[0])[0]
                 for trigger in waiting:
                     message = f"PATH before {statement.kind} on line {line}"

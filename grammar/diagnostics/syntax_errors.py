@@ -26,6 +26,7 @@ from grammar.diagnostics.line_edits import (
     left_out,
 )
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_likely, open_blocks
+from grammar.motion_kinds import CIRCLES
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
@@ -456,18 +457,17 @@ def _motions(site: ErrorSite) -> _Mistake | None:
     if need is None or site.expects("HALT"):
         return None
     rest = site.words[1 : site.place]
-    if word in _CIRCULAR and site.expects(",") and _commas(rest) == 0:
+    if word in CIRCLES and site.expects(",") and _commas(rest) == 0:
         fix = Fix(f"write {word} and both points, with a comma between")
         reason = "an auxiliary point on the way, and the point where the circle ends"
         return _Mistake(f"{word} needs two points", fix, reason)
-    is_gone = site.place == 1 or (word in _CIRCULAR and site.word(site.place - 1) == ",")
+    is_gone = site.place == 1 or (word in CIRCLES and site.word(site.place - 1) == ",")
     if is_gone and site.expects("NAME", "{"):
         return _Mistake(f"{word} needs {need}")
     return None
 
 
-_CIRCULAR = frozenset({"CIRC", "CIRC_REL", "SCIRC", "SCIRC_REL"})
-_POINTS = dict.fromkeys(_CIRCULAR, "two points") | dict.fromkeys(
+_POINTS = dict.fromkeys(CIRCLES, "two points") | dict.fromkeys(
     ("PTP", "LIN", "PTP_REL", "LIN_REL", "SPTP", "SLIN", "SPTP_REL", "SLIN_REL", "SPL", "SPL_REL"),
     "a point",
 )

@@ -15,6 +15,7 @@ from grammar.generation.expressions import (
 )
 from grammar.generation.patterns import output, pattern
 from grammar.generation.scope import Routine
+from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.semantics.types import INT, REAL
 
 __all__ = [
@@ -31,8 +32,6 @@ __all__ = [
 _PRIORITIES: Final = ("1", "4", "20", "39", "81", "-1")
 _NUMBERS: Final = (1, 2, 4, 5, 10, 39, 81, 128)
 _SINGLE: Final = ("SPTP", "SLIN", "SCIRC", "SPTP_REL", "SLIN_REL", "SCIRC_REL")
-_AXIS_SEGMENTS: Final = ("SPTP", "SPTP_REL")
-_PATH_SEGMENTS: Final = ("SPL", "SLIN", "SCIRC", "SPL_REL", "SLIN_REL", "SCIRC_REL")
 
 
 # ------------------------------------------------------------------------- single motions
@@ -133,7 +132,7 @@ def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> Non
         code.line(f"TIME_BLOCK PART{eq}{expression(code, REAL, 1)}")
     elif way == 3 and not is_axis and edges:
         code.line(f"CONST_VEL {edges.pop()}{eq}{_distance(code)}{_onstart(code)}")
-    code.line(_segment(code, choices.pick(_AXIS_SEGMENTS if is_axis else _PATH_SEGMENTS)))
+    code.line(_segment(code, choices.pick(PTP_SPLINE_SEGMENTS if is_axis else SPLINE_SEGMENTS)))
 
 
 # ------------------------------------------------------------------------- triggers

@@ -250,7 +250,7 @@ class _Line:
         return self._tokens[self._place - 1][1]
 
     def finish(self) -> None:
-        """Nothing more may stand there."""
+        """Fail unless all tokens of the line are used up."""
         if not self.is_done:
             self.fail(f"{self._tokens[self._place][1]!r} is not expected here")
 

@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
+from grammar.motion_kinds import WITHOUT_PATH
 from interp.controller.arm_control import ArmControl
 from interp.controller.messages import message_fault, own_fault
 from interp.controller.motions import MotionBuilder, PlannedMotion
@@ -54,9 +55,6 @@ _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
 #: The most in mm or ms that a trigger may be away from its point [TRG-03, TRG-04].
 _FARTHEST: Final = 10_000_000
 _PATHS: Final = frozenset({"LIN", "CIRC", "SLIN", "SCIRC"})
-#: Motions that a trigger with PATH cannot refer to [TRG-04]; in a run with stand-ins it counts
-#: along the way of the tool.
-_AXIS_MOTIONS: Final = frozenset({"PTP", "PTP_REL"})
 _STATUS_BITS: Final = 7
 #: The message that a motion leads to where the arm is [MOT-11].
 _LENGTH_ZERO: Final = 3171
@@ -167,7 +165,8 @@ class MotionQueue:
             planned = self._builder.block(request, triggers)
         else:
             has_path = any(trigger.place_kind == "PATH" for trigger in triggers)
-            if has_path and request.kind in _AXIS_MOTIONS and not self._state.profile.is_tolerant:
+            # With stand-ins PATH counts along the way of the tool, also of a PTP.
+            if has_path and request.kind in WITHOUT_PATH and not self._state.profile.is_tolerant:
                 raise own_fault("trigger_path")
             planned = self._builder.build(request, triggers)
         self._load(task, planned)

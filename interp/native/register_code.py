@@ -73,7 +73,10 @@ class Step(NamedTuple):
         return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_"))
 
     def named(self, operands: str) -> set[int]:
-        """The registers that are these operands."""
+        """The numbers of registers by their letters.
+
+        ``e`` is the one behind ``c``; ``f`` and ``g`` are the two behind ``b``.
+        """
         values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d}
         values |= {"e": self.c + 1, "f": self.b + 1, "g": self.b + 2}
         return {values[one] for one in operands}

@@ -17,6 +17,7 @@ from itertools import islice, product
 from math import prod
 from typing import Final
 
+from grammar.motion_kinds import AXIS_MOTIONS
 from grammar.semantics.packages import PackageRoutine
 from grammar.semantics.types import (
     BOOL,
@@ -45,7 +46,6 @@ _AXES: Final = frozenset(_ROBOT_AXES)
 _EXTERNAL: Final = frozenset({f"E{number}" for number in range(1, 7)})
 _COMPONENTS: Final = tuple("XYZABC")
 _FRAME: Final = frozenset(_COMPONENTS)
-_AXIS_MOTIONS: Final = frozenset({"PTP", "SPTP", "PTP_REL", "SPTP_REL"})
 _TEXT_LENGTH: Final = 80
 #: Elements in each dimension, by how many there are; more where an index is a larger number.
 _ELEMENTS: Final = {1: 32, 2: 8, 3: 4}
@@ -131,7 +131,7 @@ class Signatures:
 
     def _kind(self, name: str, use: DataUse) -> _Kind | None:
         numbers = [one for one in use.types if one in (INT, REAL)]
-        is_pose = bool(use.motions - _AXIS_MOTIONS or _FRAME & set(use.members))
+        is_pose = bool(use.motions - AXIS_MOTIONS or _FRAME & set(use.members))
         for one in use.types:
             if one not in numbers and not (is_pose and is_axes(one)):
                 known = self._known(name, one, use)
@@ -150,7 +150,7 @@ class Signatures:
             made = f"{name[:_LONGEST]}_T"
             return _Kind(made, self._structure(made, use))
         if use.motions:
-            return self._named("E6AXIS" if use.motions <= _AXIS_MOTIONS else "E6POS", name)
+            return self._named("E6AXIS" if use.motions <= AXIS_MOTIONS else "E6POS", name)
         if use.is_text:
             return _Kind("CHAR", '" "', is_text=True)
         return self._number(use) if numbers else None

@@ -52,7 +52,7 @@ def server() -> LanguageServer:
         lsp.TextDocumentSyncKind.Full,
         protocol_cls=_InUtf16,
     )
-    _Desk(made)
+    _Handlers(made)
     return made
 
 
@@ -69,7 +69,7 @@ class _InUtf16(LanguageServerProtocol):
         return (yield from super().lsp_initialize(params))
 
 
-class _Desk:
+class _Handlers:
     """One editor's session: its files, and the answers to what it asks."""
 
     def __init__(self, server: LanguageServer) -> None:

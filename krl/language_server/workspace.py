@@ -2,7 +2,7 @@
 
 A file is read when its text changes; linking takes the tables of all files, and only files that are
 looked at are checked. Paths are absolute with ``/``, lines and columns count from 1 as everywhere
-in the project; what editors count otherwise is translated at the door, in
+in the project; what editors count otherwise is translated where it comes in, by
 `krl.language_server.server`.
 """
 

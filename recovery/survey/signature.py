@@ -172,7 +172,11 @@ class SignatureBuilder:
         )
 
     def signature(self, failed: FailingLine, form: Form, context: FailureContext) -> Signature:
-        """The shape of a failure."""
+        """The shape of a failure.
+
+        Its rule, the first word of the line, the open bracket, and the token that cannot come; a
+        name that is meant as a keyword is shown as that word.
+        """
         kinds, index = form.kinds, form.index
         meant = dict(self.keywords(failed, form))
         lead = meant.get(0, "")

@@ -1,0 +1,25 @@
+"""The motion instructions of KRL by what they move: axes, the tool on a path, a spline block."""
+
+from __future__ import annotations
+
+from typing import Final
+
+__all__ = [
+    "AXIS_MOTIONS",
+    "CIRCLES",
+    "PTP_SPLINE_SEGMENTS",
+    "SPLINE_MOTIONS",
+    "SPLINE_SEGMENTS",
+    "WITHOUT_PATH",
+]
+
+#: Motions that are no spline and have no path of the tool: nothing refers to places on it [TRG-04].
+WITHOUT_PATH: Final = frozenset({"PTP", "PTP_REL"})
+#: What may stand in PTP_SPLINE and in SPLINE [SPL-02, SPL-03].
+PTP_SPLINE_SEGMENTS: Final = ("SPTP", "SPTP_REL")
+SPLINE_SEGMENTS: Final = ("SPL", "SLIN", "SCIRC", "SPL_REL", "SLIN_REL", "SCIRC_REL")
+SPLINE_MOTIONS: Final = frozenset({*PTP_SPLINE_SEGMENTS, *SPLINE_SEGMENTS})
+#: Motions to a point in axes, whatever the tool does on its way.
+AXIS_MOTIONS: Final = WITHOUT_PATH.union(PTP_SPLINE_SEGMENTS)
+#: Motions through an auxiliary point.
+CIRCLES: Final = frozenset({"CIRC", "CIRC_REL", "SCIRC", "SCIRC_REL"})
