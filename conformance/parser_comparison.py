@@ -15,7 +15,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from importlib import import_module, invalidate_caches
+from importlib import import_module, invalidate_caches, metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
@@ -79,7 +79,9 @@ def _compiled(path: Path, folder: Path) -> Parser:
     named = _NAME.search(_COMMENT.sub("", text))
     if named is None:
         raise ParserError(f"{path}: it is no ANTLR grammar of a parser and its lexer")
-    command = ["antlr4", "-Dlanguage=Python3", "-o", str(folder), str(path.resolve())]
+    release = metadata.version("antlr4-python3-runtime")  # what runs it has to be as old
+    command = ["antlr4", "-v", release, "-Dlanguage=Python3", "-o", str(folder)]
+    command.append(str(path.resolve()))
     try:
         made = subprocess.run(
             command, capture_output=True, text=True, timeout=_LONGEST, cwd=folder, check=False
