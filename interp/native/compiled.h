@@ -89,11 +89,11 @@ typedef struct {
 #define PARAMETERS struct krl_machine *machine, krl_cell *const fp, int32_t left, int32_t open, int32_t extent
 enum { CALLED = -1 };
 
-/* A routine once for calls from compiled code, which hand over its first cells, and once for the interpreter. As both
- * are this one with a constant `entry`, the C compiler leaves out of each what only the other needs. */
+/* A routine once for calls from compiled code, which hand over its first cells, and once for the interpreter. Where
+ * both are this one INLINED, with a constant `entry`, the C compiler leaves out of each what only the other needs. */
 #define INLINED static inline __attribute__((always_inline))
-#define BODY(number, ...)                                                                          \
-    INLINED krl_ended body_##number(PARAMETERS, const int32_t entry, int32_t at, ##__VA_ARGS__)
+#define BODY(kind, number, ...)                                                                          \
+    kind krl_ended body_##number(PARAMETERS, const int32_t entry, int32_t at, ##__VA_ARGS__)
 #define ENTER(number, count, is_owner)                                                             \
     enum { CODE = number };                                                                        \
     krl_cell *const cells = machine->cells;                                                        \

@@ -42,6 +42,8 @@ _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
 #: Steps of a routine that is no call in C, if it calls none itself.
 _SMALL: Final = 30
+#: And of one that is compiled twice, for calls and for the interpreter.
+_MOST_TWICE: Final = 150
 #: What a cell of a type holds; of all others a number.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
 
@@ -189,6 +191,10 @@ class _Routine:
         self.deferred = self._flow.deferred(self._restarts, self._live)
 
     @property
+    def _kind(self) -> str:
+        return "INLINED" if len(self._body) <= _MOST_TWICE else "static"
+
+    @property
     def entries(self) -> set[int]:
         """Where the interpreter may enter it: at its beginning, and where a loop begins."""
         return {self._body[0], *self._flow.loops}
@@ -200,7 +206,7 @@ class _Routine:
         is_small = len(self._body) <= _SMALL and not any(
             self._steps[place].name in CALLS for place in self._body
         )
-        yield f"BODY({number}{parameters});"
+        yield f"BODY({self._kind}, {number}{parameters});"
         kind = "INLINED" if is_small else "static"
         yield f"{kind} krl_ended call_{number}(PARAMETERS{parameters}) {{"
         handed = "".join(f", p{one}" for one in given)
@@ -216,7 +222,7 @@ class _Routine:
         number, frame, received = self._number, self._program.frames[self._number], self._received
         is_owner = any(code.owner == number for code in self._program.codes if code.captures)
         given = range(0 if self._is_copied else received)
-        yield f"BODY({number}{''.join(f', krl_cell p{one}' for one in given)}) {{"
+        yield f"BODY({self._kind}, {number}{''.join(f', krl_cell p{one}' for one in given)}) {{"
         yield f"ENTER({number}, {max(self._used, default=0) + 1}, {int(is_owner)}) {{"
         yield from self._loop_entries()
         yield "}"
