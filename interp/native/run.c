@@ -116,7 +116,8 @@ enter:
 finished:
     stopped.why = KRL_STOP_END;
     goto stop;
-wait:
+wait: /* where a statement begins its frame has no operands */
+    machine->top = (int32_t)(fp - cells) + machine->routines[machine->code].frame;
     stopped.why = KRL_STOP_LINE;
     stopped.at = (int32_t)(pc - machine->steps);
     goto stop;

@@ -12,6 +12,7 @@ from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
+from interp.executors import COMPILED, EXECUTORS, Prepared, is_available
 from interp.native import AVAILABLE
 from interp.port.events import ExecutorEvent, Sink
 from interp.port.executor import Executor
@@ -21,9 +22,11 @@ from interp.port.requests import (
     End,
     Fail,
     MoveSpline,
+    Slice,
     SwitchInterrupt,
+    Write,
 )
-from interp.program.load import load
+from interp.program.load import Limits, load
 from interp.tree import TreeExecutor
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
@@ -175,3 +178,39 @@ def _evaluated(executor: Executor, condition: CodeHandle) -> bool | str:
         return bool(executor.evaluate(condition, lambda _path: True))
     except Fault as error:
         return error.slug
+
+
+_NESTED = """DEF main()
+INTERRUPT DECL 4 WHEN $IN[1] DO R()
+$OV_PRO = 3 * F(4)
+END
+DEF R()
+END
+DEFFCT INT F(N:IN)
+INT N
+IF N < 1 THEN
+RETURN 1
+ENDIF
+RETURN N + 2 * F(N - 1)
+ENDFCT
+"""
+
+
+@pytest.mark.parametrize("name", [*EXECUTORS, COMPILED])
+def test_conditions_are_evaluated_wherever_a_slice_ends(name: str) -> None:
+    """Also within calls whose callers have operands, which stay as they are."""
+    if not is_available(name):
+        pytest.skip("no such executor here")
+    prepared = Prepared(load([Source(_NESTED, "main.src")], "main.src"))
+    executor, evaluated, written = prepared.executor(name, Limits(per_slice=1)), 0, []
+    codes: list[CodeHandle] = []
+    request = executor.advance()
+    while not isinstance(request, End):
+        if isinstance(request, DeclareInterrupt):
+            codes.append(request.condition)
+        elif isinstance(request, Write):
+            written.append(request.value)
+        elif isinstance(request, Slice) and codes:
+            evaluated += not executor.evaluate(codes[0], lambda _path: False)
+        request = executor.advance()
+    assert (10, [126]) == (evaluated, written)
