@@ -14,12 +14,13 @@ __all__ = ["INTERPRETED", "RegisterFlow"]
 
 #: Steps that are left to the interpreter.
 INTERPRETED = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
-_KEEPS_INFINITE = re.compile("(ADD|SUB|MUL|NEG)_REAL(_K)?")
+#: NEG_REAL is not among them: it does not look at its result.
+_FINDS_INFINITE = re.compile("(ADD|SUB|MUL)_REAL(_K)?")
 
 
 def _finds_infinite(taker: Step, operand: int) -> bool:
-    """Whether what a step gives is not finite where this operand is not."""
-    return bool(_KEEPS_INFINITE.fullmatch(taker.name)) or (
+    """Whether a step that takes this operand faults with an overflow where it is not finite."""
+    return bool(_FINDS_INFINITE.fullmatch(taker.name)) or (
         taker.name in ("DIV_REAL", "DIV_REAL_K")
         and (taker.name == "DIV_REAL_K" or taker.c != operand)
     )
@@ -91,22 +92,24 @@ class RegisterFlow:
         """Sums and products whose overflow the step that takes them finds.
 
         What is not finite stays so in sums, products and numerators; a step that faults on it is
-        begun again before the overflow.
+        begun again before the overflow. No jump may lie between: it may lead past that step.
         """
         found = set()
         for place in self._body:
             result = self._steps[place].a
-            if not _KEEPS_INFINITE.fullmatch(self._steps[place].name):
+            if not _FINDS_INFINITE.fullmatch(self._steps[place].name):
                 continue
             for other in range(place + 1, self._body.stop):
                 taker = self._steps[other]
-                if restarts[other - self._body.start] > place:
+                if restarts[other - self._body.start] > place or taker.is_jump:
                     break
                 if self._reads(other, result):
                     if _finds_infinite(taker, result) and (
                         taker.a == result or result not in live[other + 1]
                     ):
                         found.add(place)
+                    break
+                if taker.a == result:  # nobody has taken it
                     break
         return found
 

@@ -56,6 +56,22 @@ ENDFCT
 """
 
 
+NEGATED = """DEF RUN()
+   DECL INT I
+   FOR I = 1 TO 3
+      $OV_PRO = SIGN(I * 1.0E19)
+   ENDFOR
+END
+DEFFCT INT SIGN(X:IN)
+   DECL REAL X
+   IF -(X * X) < 0.0 THEN
+      RETURN 1
+   ENDIF
+   RETURN 2
+ENDFCT
+"""
+
+
 @pytest.fixture(autouse=True, scope="module")
 def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A folder of its own for what is kept."""
@@ -111,6 +127,14 @@ def test_structures_by_value() -> None:
     expected = _requests(program, "native", Limits(per_slice=13))
     assert expected == _requests(program, "compiled", Limits(per_slice=13))
     assert not program.notes
+
+
+def test_overflow_below_a_sign() -> None:
+    """A product that is too large faults where all that is made of it is its sign."""
+    program = Prepared(load([Source(NEGATED, "run.src")], "run.src"))
+    expected = _requests(program, "native", Limits())
+    assert isinstance(expected[-1], Fail)
+    assert expected == _requests(program, "compiled", Limits())
 
 
 def test_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:

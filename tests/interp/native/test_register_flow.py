@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from interp.native.register_code import Step
 from interp.native.register_flow import RegisterFlow
 
@@ -65,3 +67,27 @@ def test_an_overflow_is_found_by_the_step_that_takes_the_result() -> None:
     flow = RegisterFlow(steps, range(len(steps)))
     live = flow.live({8})
     assert {0} == flow.deferred(flow.restarts(live, {8}), live)
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        [_step("NEG_REAL", a=8, b=8)],
+        [_step("ADD_REAL", a=8, b=0, c=1)],
+        [_step("JUMP_IF", b=1, d=3)],
+    ],
+    ids=["negated", "dropped", "jump"],
+)
+def test_an_overflow_is_found_at_once_where_a_way_leads_past_who_would(
+    between: list[Step],
+) -> None:
+    """A sign changes without a look, what is written over is lost, and jumps lead elsewhere."""
+    steps = [
+        _step("MUL_REAL", a=8, b=0, c=1, line=0),
+        *between,
+        _step("DIV_REAL_K", a=8, b=8),
+        _step("RETURN_VALUE", b=8),
+    ]
+    flow = RegisterFlow(steps, range(len(steps)))
+    live = flow.live({8})
+    assert 0 not in flow.deferred(flow.restarts(live, {8}), live)
