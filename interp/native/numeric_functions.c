@@ -41,10 +41,6 @@ int krl_compute(enum krl_function function, float one, float other, float *resul
 {
     double number = one;
     switch (function) {
-    case KRL_ABS:
-        return single(fabs(number), result);
-    case KRL_SQRT:
-        return number < 0 ? KRL_FAULT_DOMAIN : single(sqrt(number), result);
     case KRL_SIN:
         return single(sin(radians(number)), result);
     case KRL_COS:
@@ -61,6 +57,7 @@ int krl_compute(enum krl_function function, float one, float other, float *resul
         if (one == 0 && other == 0)
             return KRL_FAULT_DOMAIN;
         return single(atan2(number, other) * RADIAN, result);
+    case KRL_ABS: case KRL_SQRT: /* the step computes these itself */
     case KRL_FUNCTIONS:
         break;
     }

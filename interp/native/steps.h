@@ -626,7 +626,7 @@ STEP(FUNCTION)
         READ(c, C);
         other = REAL(c);
     }
-    /* Where single gives what double gives. */
+    /* These are exact, or rounded once: in single precision they give what they give in double. */
     if (pc->tag == KRL_ABS || pc->tag == KRL_SQRT) {
         FAULT_IF(pc->tag == KRL_SQRT && REAL(b) < 0, DOMAIN);
         A = OF_REAL(pc->tag == KRL_ABS ? fabsf(REAL(b)) : sqrtf(REAL(b)));
