@@ -280,12 +280,13 @@ def _soonest(
     common = _common_curves(first, second)
     lines = [piece.curve.pose_path for piece in (one, other)]
     are_lines = all(isinstance(line, StraightLine) for line in lines)
-    cosine = 1.0
+    keeps_speed, cosine = False, 1.0
     if are_lines and common is not None and first.motion.criteria[0] == "C_VEL":
         leaving, joining = (curve.tool_path.tangents(np.zeros(1))[0] for curve in common)
         lengths = float(np.linalg.norm(leaving) * np.linalg.norm(joining))
-        if lengths > 0.0:
-            cosine = max(float(leaving @ joining) / lengths, _BACK)
+        keeps_speed = lengths > 0.0
+        if keeps_speed:  # rounding may take it beyond 1
+            cosine = min(max(float(leaving @ joining) / lengths, _BACK), 1.0)
     choices: list[Transition] = [
         Rounding(zone.before, zone.after, weights, slope, cosine)
         for slope in ((_PARABOLA, _SMOOTH) if are_lines else (_SMOOTH,))
@@ -302,7 +303,7 @@ def _soonest(
     ending, starting = alone(one.ceiling), alone(other.ceiling)
     if ending is not None and starting is not None:
         exact = ending.duration + starting.duration
-        if cosine < 1.0 and min(times) < exact:
+        if keeps_speed and min(times) < exact:
             return choices[times.index(min(times))]
         most = _SAVED * exact
         overlap = Overlap(ending.since(1.0 - zone.before), starting.until(zone.after))

@@ -260,6 +260,20 @@ def test_c_vel_keeps_the_speed(driver: Driver) -> None:
     assert [0.2] * len(speeds) == pytest.approx(speeds, rel=0.01)
 
 
+@pytest.mark.parametrize("way", [(-49, -50, -14), (46, -39, 34), (43, 25, 49), (-21, -28, 17)])
+def test_c_vel_where_the_hand_turns_on_a_line(driver: Driver, way: tuple[int, int, int]) -> None:
+    """Between lines in one direction too, whatever rounding makes of the angle between them."""
+    driver.move("PTP", FIRST)
+    driver.play()
+    near = Approximation(cvel=100.0)
+    for times, criteria, turn in ((1.0, ("C_VEL",), 0.0), (1.5, (), 30.0)):
+        place = {word: FIRST[word] + times * by for word, by in zip("XYZ", way, strict=True)}
+        target = {**FIRST, **place, "A": turn}
+        driver.move("LIN", target, criteria=criteria, velocity=0.3, approximation=near)
+    driver.play()
+    assert isinstance(blend(driver).curve.pose_path, Blend)
+
+
 def test_c_dis_slows_down(driver: Driver) -> None:
     """C_DIS does not promise that, and takes less acceleration [BLD-12]."""
     corner(driver, ("C_DIS",), 0.2, cdis=40.0)
