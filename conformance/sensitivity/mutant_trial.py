@@ -96,7 +96,9 @@ def is_possible() -> bool:
 
 def kept_trials(folder: Path | None) -> ResultStore:
     """What is known of mutants of this code, in a folder; a context manager."""
-    return ResultStore(folder, f"mutants {code_digest('conformance', 'grammar', 'interp')}")
+    return ResultStore(
+        folder, f"mutants {code_digest('conformance', 'grammar', 'interp', 'support')}"
+    )
 
 
 def reaches_of(
