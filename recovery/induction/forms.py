@@ -100,7 +100,7 @@ class FormWriter:
 
     def _parts(self, symbol: Symbol, signs: set[str]) -> tuple[Symbol, ...]:
         kinds = symbol.operand.kinds if symbol.operand else ()
-        display = self.rules.recognizer.lexer.display
+        display = self.rules.lexer.display
         for start in range(1, len(kinds)):
             if f"'{display[kinds[start]]}'" in signs:
                 tokens = [(kind, None) for kind in kinds]
@@ -191,22 +191,22 @@ class FormWriter:
 
     def cover(self, operands: Sequence[Operand]) -> list[str] | None:
         """The narrowest rules or tokens that read the operands together; ``None`` without any."""
-        names = self.rules.recognizer.lexer.names
+        names = self.rules.lexer.names
         kinds = {o.kinds for o in operands if o.kinds}
         needed = {o.rule for o in operands if o.rule}
         single = {k[0] for k in kinds if len(k) == 1}
         if not needed and len(single) == len(kinds) == 1:
             (kind,) = single
-            if kind == self.rules.name_kind:
+            if kind == self.rules.lexer.name_kind:
                 return [self._name()]
         indexed = self._indexed(kinds, needed)
         if indexed:
             return [indexed]
         # a single reserved word beside names says nothing of other values
-        reserved = {k for k in single if self.rules.recognizer.lexer.is_keyword(k)}
+        reserved = {k for k in single if self.rules.lexer.is_keyword(k)}
         if len(reserved) == 1 and len(kinds) > 1:
             beside = {k for k in kinds if k[0] not in reserved}
-            is_name = not needed and beside == {(self.rules.name_kind,)}
+            is_name = not needed and beside == {(self.rules.lexer.name_kind,)}
             others = self._name() if is_name else self._indexed(beside, needed)
             if others:
                 return [others, *(names[k] for k in reserved)]
@@ -240,10 +240,10 @@ class FormWriter:
     @cached_property
     def _variable(self) -> str | None:
         """The narrowest rule of names and of what may follow them, and of no other value."""
-        rules, lexer = self.rules, self.rules.recognizer.lexer
-        others = [(k,) for k in lexer.kind_of.values() if k != rules.name_kind]
+        rules, lexer = self.rules, self.rules.lexer
+        others = [(k,) for k in lexer.kind_of.values() if k != rules.lexer.name_kind]
         values = [kinds for kinds in others if rules.matcher.is_operand(kinds[0])]
-        examples = [(rules.name_kind,), *(o.kinds for o in rules.followed.values())]
+        examples = [(rules.lexer.name_kind,), *(o.kinds for o in rules.followed.values())]
         having = frozenset(rules.usual).intersection(*map(rules.matcher.rules_for, examples))
         fitting = having.difference({self._name()}, *map(rules.matcher.rules_for, values))
         return min(fitting, key=self._breadth, default=None) if rules.followed else None
@@ -253,7 +253,7 @@ class FormWriter:
         matcher, name = self.rules.matcher, self._name()
         behind: set[str | None] = set()
         for first, *rest in kinds:
-            if first != self.rules.name_kind and name not in matcher.rules_for((first,)):
+            if first != self.rules.lexer.name_kind and name not in matcher.rules_for((first,)):
                 return None
             if rest:
                 rule = self.rules.following.get(rest[0])
@@ -277,7 +277,7 @@ class FormWriter:
             return None
         count, first, second = min(pairs)
         found = [usual[first], usual[second]]
-        named = self.rules.matcher.rules_for((self.rules.name_kind,))
+        named = self.rules.matcher.rules_for((self.rules.lexer.name_kind,))
         is_constant = wide in named and named.isdisjoint(found)
         return found if is_constant or count <= _MUCH_LESS * self._reads[wide] else None
 
@@ -430,7 +430,7 @@ def samples_of(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[S
 def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
     """The symbols with a name and what follows it in brackets as one operand, as it is read."""
     out: list[Symbol] = []
-    names = {Operand((rules.name_kind,)), Operand((), rules.names or "")}
+    names = {Operand((rules.lexer.name_kind,)), Operand((), rules.names or "")}
     samples = rules.followed
     for symbol in symbols:
         rule = symbol.operand.rule if symbol.operand else symbol.text

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from grammar.notation.addresses import Address, sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Insert, Replace, Widen
-from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer, State
 from recovery.induction.blocks import BlockLines
@@ -230,9 +230,9 @@ class Inference:
                         yield (AddRule(rule, rule_text), Replace(rule, (number, 1), new)), level
                         return
 
-    def _is_operator(self, element: object, *, is_word: bool) -> bool:
-        texts = element.alternatives if isinstance(element, Group) else (element,)
-        first = texts[0].elements[0] if isinstance(texts[0], Alternative) else texts[0]
+    def _is_operator(self, element: Element, *, is_word: bool) -> bool:
+        some = element.alternatives[0].elements if isinstance(element, Group) else (element,)
+        first = some[0] if some else None  # an alternative may be empty
         if isinstance(first, Literal):
             return not is_word and first.text != ","
         return isinstance(first, Reference) and is_word and first.is_token
@@ -545,8 +545,7 @@ class Inference:
         opened = self._opened(self.tokens[number], index) if index else None
         if opened is None:
             return False
-        sign = self.lexer.display[self.tokens[number][opened][0]]
-        return self._writing(number, sign) is not None
+        return self._writing(number, self._shown(self.tokens[number][opened])) is not None
 
     def _head(self, symbols: Sequence[Symbol]) -> str:
         """What says which kind of line it is: its first word, behind one that may be missing."""
@@ -865,9 +864,11 @@ def _of(heads: Sequence[tuple[str, list[int], set[tuple[str, ...]]]]) -> list[st
 
 def _optional(text: str) -> str:
     """A text that may be missing; what may be already stays as it is."""
-    if re.fullmatch(r"\S+", text):
-        return text if text[-1] in "?*" else f"{text}?"
-    return f"({text})?"
+    if not re.fullmatch(r"\S+", text):
+        return f"({text})?"
+    if text[-1] == "+":
+        return f"{text[:-1]}*"
+    return text if text[-1] in "?*" else f"{text}?"
 
 
 def _runs(count: int) -> Iterator[tuple[int, int]]:

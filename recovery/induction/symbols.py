@@ -68,8 +68,6 @@ class OperandRules:
         self.grammar = recognizer.grammar
         self.recognizer = recognizer
         self.lexer = recognizer.lexer
-        #: The kind of token of names.
-        self.name_kind = self.lexer.name_kind
         self.matcher = RuleMatcher(recognizer)
         parser = [rule for rule in self.grammar.rules if not rule.is_lexer]
         self._called = {
@@ -215,11 +213,11 @@ class OperandRules:
     def bracketed(self) -> Mapping[str, str]:
         """The rule that is a pair of brackets and what is between, by the opening one."""
         found: dict[str, str] = {}
-        for name in self.within_lines:
-            for alternative in self.grammar.by_name[name].alternatives:
+        for name in self._called:  # in the order of the grammar
+            if name in self.within_lines and len(self.grammar.by_name[name].alternatives) == 1:
+                (alternative,) = self.grammar.by_name[name].alternatives
                 pair = bracket_pairs(alternative)
-                is_whole = bool(pair) and pair[0][1:] == (0, len(alternative.elements) - 1)
-                if is_whole and len(self.grammar.by_name[name].alternatives) == 1:
+                if pair and pair[0][1:] == (0, len(alternative.elements) - 1):
                     found[pair[0][0]] = name
         return found
 
@@ -241,7 +239,7 @@ class OperandRules:
         for opening, rule in self.following.items():
             sign = lexer.display[opening]
             closing = lexer.display.index(BRACKETS[sign])
-            example = Operand((self.name_kind, opening, self.name_kind, closing))
+            example = Operand((self.lexer.name_kind, opening, self.lexer.name_kind, closing))
             if rule in self.matcher.rules_for(example.kinds[1:]):
                 found |= {rule: example, f"'{sign}'": example}
         return found
