@@ -58,8 +58,7 @@ class Language:
 
 def _krl_source(roots: Sequence[Path]) -> Iterable[tuple[str, str, bytes, str]]:
     for found in discover(roots):
-        data = found if isinstance(found, Skipped) else read(found)
-        if isinstance(found, Skipped) or isinstance(data, Skipped):
+        if isinstance(found, Skipped) or isinstance(data := read(found), Skipped):
             continue
         source = decode(data)
         if not isinstance(source, str):

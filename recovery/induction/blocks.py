@@ -76,13 +76,11 @@ def blocks_of(
     leads = []
     for line in corpus.lines:
         meant = dict(keywords.in_line(line))
-        lead = line[1] if len(line) > 1 and line[0] in prefixes else line[0]
-        at = 1 if lead is not line[0] else 0
-        leads.append(
-            lead if lexer.kinds[lead] != name or at in meant or lead in keywords.words else ""
-        )
-        if lead in keywords.words and at not in meant and lexer.kinds[lead] == name:
-            meant[at] = lead
+        at = int(len(line) > 1 and line[0] in prefixes)
+        lead = line[at]
+        if lead in keywords.words and lexer.kinds[lead] == name:
+            meant.setdefault(at, lead)
+        leads.append(lead if lexer.kinds[lead] != name or at in meant else "")
         tokens.append(tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line)))
     files = [
         SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
