@@ -70,10 +70,12 @@ def recover_auto(
         language = language_of(suffix) if suffix else KRL
         files = language.files(roots)
         growth, struck = _begun(start, out, strike, resume=resume)
-    lexer = lexer_of(start)
+    lexer = lexer_of(growth.start)
     for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
         if kind == ABSENT:
-            raise InputError(f"{name}: no token is that of {what}, which growing needs")
+            raise InputError(
+                f"the grammar to start from has no token of {what}, which growing needs"
+            )
     shown, held, origins = held_out(files, fraction, seed)
     if not files:
         raise InputError("nothing that was named is source that can be read")

@@ -198,6 +198,18 @@ def test_wrong_usage(
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("options", [["--grammar", "{}/start.g4"], ["--resume", "--out", "{}"]])
+def test_a_start_without_line_ends(
+    corpus: Path, tmp_path: Path, options: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A start that skips line ends is refused, also one that lies where growing is to go on."""
+    start = tmp_path / "start.g4"
+    start.write_text("grammar S;\nstart : WORD* ;\nWORD : [A-Z]+ ;\nEND : '\\n' -> skip ;\n")
+    (tmp_path / "constructs").mkdir()
+    assert auto(corpus, *(option.format(tmp_path) for option in options)) == 2
+    assert "no token of line ends" in capsys.readouterr().err
+
+
 def test_an_unknown_step(out: Path, corpus: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A step that there is not is named."""
     assert auto(corpus, "--out", out, "--strike", "9999-nothing") == 2
