@@ -170,8 +170,9 @@ class _Writer:
             start = end
             yield f"{'global' if variable.is_global else 'data'} {' '.join(line)}"
         for one in program.imports:
-            names = filter(None, (one.module, one.routine, one.name))
-            yield f"import {'.'.join(map(name_text, names))} {self._data[one.number]}"
+            routine = (one.routine,) if one.routine else ()
+            names = ".".join(map(name_text, (one.module, *routine, one.name)))
+            yield f"import {names} {self._data[one.number]}"
 
     # -------------------------------------------------------------------------------- code
 
