@@ -148,7 +148,12 @@ class InterruptUnit:
         is_moving = self._arm.is_moving
         self._arm.discard()
         self._queue.fired.clear()
-        return Blocked(request, lambda: not is_moving or self._arm.is_standing, lambda: None)
+        return Blocked(
+            request,
+            lambda: not is_moving or self._arm.is_standing,
+            lambda: None,
+            is_open=False,  # the executor has left its routine: other interrupts may be entered
+        )
 
 
 def _call(command: CallCommand) -> TriggerCall:

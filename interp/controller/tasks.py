@@ -34,7 +34,8 @@ class Blocked:
 
     ``finish`` gives the reply once ``is_ready``, or what is to be waited for next. ``wake`` is a
     time at which to look again; else it is looked at whenever something happened. ``is_open``: the
-    executor waits for the reply. It does not where a routine has ended whose motions have not.
+    executor waits for the reply. It does not where a routine has ended whose motions have not, nor
+    behind a RESUME.
     """
 
     request: Request

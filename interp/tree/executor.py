@@ -41,13 +41,15 @@ class _Interrupted:
     """What waits for the end of an action.
 
     That is the open request, or that RESUME has come back, whether ON_ERROR_PROCEED held, and the
-    end of the program where it has ended: the arm may still be on its way.
+    end of the program where it has ended, or where RESUME has come back to it: the arm may still be
+    on its way.
     """
 
     request: Request | None
     resumed: Resumed | Selected | None
     guard: Guard
     final: Request | None
+    resumed_at_end: Request | None
 
 
 @dataclass(slots=True, eq=False)
@@ -130,10 +132,12 @@ class TreeExecutor:
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
         node: Any = handed.node
         steps = Statements(run, frame).action(node)
-        interrupted = _Interrupted(self._open, self._resumed, run.guard, self._final)
+        interrupted = _Interrupted(
+            self._open, self._resumed, run.guard, self._final, self._resumed_at_end
+        )
         self._stack.append(_Active(steps, frame, interrupted))
         self._open, self._is_asked, self._resumed, run.guard = None, False, None, Guard.OFF
-        self._final = None
+        self._final = self._resumed_at_end = None
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """The value of a condition; raises `interp.values.faults.Fault`.
@@ -179,7 +183,8 @@ class TreeExecutor:
             active = self._stack.pop()
             active.steps.close()
             self._left(active)
-            self._resumed_at_end = active.interrupted.final if active.interrupted else None
+            below = active.interrupted
+            self._resumed_at_end = (below.final or below.resumed_at_end) if below else None
         self._run.guard = Guard.OFF
         self._open, self._is_asked, self._resumed = None, False, Resumed()
 
@@ -305,6 +310,7 @@ class TreeExecutor:
         self._open, self._is_asked = active.interrupted.request, False
         self._resumed = active.interrupted.resumed
         self._final = active.interrupted.final
+        self._resumed_at_end = active.interrupted.resumed_at_end
         return end
 
     def _at(self) -> At:

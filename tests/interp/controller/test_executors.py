@@ -24,6 +24,14 @@ PROGRAMS: Mapping[str, tuple[str, str]] = {
         "t=0.1 IN[1]=TRUE\nt=0.2 IN[2]=TRUE\nt=1.2 IN[1]=FALSE\nt=1.3 IN[1]=TRUE\n"
         "on HALT after 0.1 press START",
     ),
+    "pending": (  # an interrupt that came before a RESUME, which goes back to the end
+        "DEF main()\nINTERRUPT DECL 9 WHEN $IN[1] DO LOW()\n"
+        "INTERRUPT DECL 4 WHEN $IN[2] DO HIGH()\n"
+        f"INTERRUPT DECL 20 WHEN $FLAG[2] DO LAST()\n{HOME}INTERRUPT ON\nPTP {{A1 100}}\nEND\n"
+        "DEF LOW()\nWAIT SEC 1\nEND\nDEF HIGH()\nBRAKE\n$FLAG[2]=TRUE\nWAIT SEC 0.1\nRESUME\nEND\n"
+        "DEF LAST()\n$OUT[4]=TRUE\nWAIT SEC 0.1\nEND\n",
+        "t=0.3 IN[1]=TRUE\nt=0.4 IN[2]=TRUE",
+    ),
     "triggers": (
         f"DEF main()\nINT I\nI=3\n{HOME}TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[1]=TRUE\n"
         "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO DONE(I) PRIO=-1\n"

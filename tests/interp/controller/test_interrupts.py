@@ -199,3 +199,17 @@ def test_halt_waits_for_the_advance_run(go: Go) -> None:
     text = BRAKING.replace("BRAKE\nWAIT SEC 0.5", "HALT")
     ran = go(text, "t=0.5 IN[1]=TRUE\non HALT press START")
     assert [2.0] == ran.times("halt")
+
+
+def test_an_interrupt_that_waits_for_a_resume(go: Go) -> None:
+    """What came before a RESUME is entered behind it, and the program goes on where that leads."""
+    text = program(
+        "INTERRUPT DECL 5 WHEN $IN[1] DO BACK()\nINTERRUPT DECL 20 WHEN $FLAG[2] DO LAST()\n"
+        + f"{HOME}INTERRUPT ON\nWAY()\n$OUT[2]=TRUE\n",
+        "DEF WAY()\nPTP {A1 100}\nWAIT SEC 0\n$OUT[1]=TRUE\nEND\n"
+        "DEF BACK()\nBRAKE\n$FLAG[2]=TRUE\nWAIT SEC 0.1\nRESUME\nEND\n"
+        "DEF LAST()\n$OUT[3]=TRUE\nEND\n",
+    )
+    ran = go(text, "t=0.5 IN[1]=TRUE")
+    assert "end" == ran.outcome.ending
+    assert [False, True, True] == [ran.value("$OUT", place) for place in (1, 2, 3)]
