@@ -313,11 +313,13 @@ class Induction:
         if found is None or found[0] in self._tried or len(found[1]) < self.least_origins:
             return None
         edit, origins, seen = found
-        self._tried.add(edit)
         evidence = Evidence(len(places), len(origins), len(lines), seen)
         step = Taken(f"{seen[0]} is one literal", (edit,), evidence)
         kept = self.shown.kept(self.grammar, [step], self._names)[0]
-        if not kept or not self.shown.gains(self.grammar, kept):
+        if kept and not self.shown.gains(self.grammar, kept):
+            return None  # lines may still fail ahead of it: it is tried again
+        self._tried.add(edit)
+        if not kept:
             return None
         self._corpus = self._keywords = None
         return step
