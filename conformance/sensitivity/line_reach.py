@@ -28,7 +28,7 @@ __all__ = ["NOTHING_KEPT", "Reach", "reach_of", "seen_digest"]
 
 #: So many cases go to a process at once.
 _SHARE: Final = 16
-#: A store that forgets.
+#: A store that keeps nothing.
 NOTHING_KEPT: Final = ResultStore(None, "")
 
 
@@ -37,7 +37,7 @@ class Reach:
     """What a case runs: lines by module, negative in lambdas, and how many in all, one by one.
 
     ``cost`` is that number. ``seen`` tells what was seen of it from anything else (`seen_digest`).
-    ``shared`` is how many cases run that of its lines which fewest do.
+    ``shared`` is the number of cases that run its rarest line, the one that fewest cases run.
     """
 
     case: Case

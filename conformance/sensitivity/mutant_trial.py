@@ -278,7 +278,10 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
 
 
 def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """So many that may fail, half of them those that run what few others do; and a tenth others."""
+    """The cases to try: ``most`` that may fail, and a tenth as many of the others.
+
+    Of the first, half come in the order given, and half are those with the rarest lines.
+    """
     hard = [one for one in cases if one.case.may_fail]
     first = hard[: most - most // 2]
     yield from first

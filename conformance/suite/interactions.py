@@ -227,7 +227,7 @@ def cases() -> Iterator[tuple[str, str]]:
 
 
 def drawn(seed: int) -> list[Case]:
-    """Cases in which each pair of all values stands together; which others do follows from seed."""
+    """Cases in which any two values of different features meet; the seed says with which others."""
     chance = Random(f"interactions {seed}")
     every = {name: (*values, *_MORE.get(name, ())) for name, values in FEATURES.items()}
     features = {
@@ -237,7 +237,7 @@ def drawn(seed: int) -> list[Case]:
     rows = covering(features)
     for row in rows:
         if row["act"] == "resume" and row["when"] == "0.7":
-            row["when"] = "0.05"  # a way may be at its end by then, and RESUME a fault
+            row["when"] = "0.05"  # after 0.7 s the motion may be over, and RESUME a fault
     with TemporaryDirectory() as place:
         folder = Path(place, "pairs")
         folder.mkdir()

@@ -47,8 +47,8 @@ _FEWEST = 65
 """Points of a curve at the fewest: the third derivative of a blend changes quickly."""
 _COARSE = 8
 _NOISE = 1e-11
-"""Degrees of fourth differences below which each so manieth point is enough: between nearer ones
-differences would be those of rounding."""
+"""Degrees of fourth differences below which every eighth point is kept, as `_COARSE` says: the
+differences of points nearer to one another would be those of rounding."""
 _MOST = 8193
 _SMOOTH = 0.004
 """Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
