@@ -88,8 +88,8 @@ def language_of(suffix: str) -> Language:
                     is_empty = False
                     inside = path.relative_to(root).parts
                     data = read_bytes(path)
-                    origin = inside[0] if len(inside) > 1 else root.name
-                    yield path.as_posix(), origin, data, data.decode("utf-8", "replace")
+                    origin = inside[0] if len(inside) > 1 else root.absolute().name
+                    yield path.as_posix(), origin, data, data.decode("utf-8-sig", "replace")
         if is_empty:
             raise IngestError(f"{', '.join(map(str, roots))}: no file ends in {suffix}")
 

@@ -33,6 +33,14 @@ def test_every_folder_is_an_origin() -> None:
     assert {".s"} == {Path(file.path).suffix for file in _FILES}
 
 
+def test_a_file_in_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder is its origin by name, and a byte order mark is no part of its text."""
+    (tmp_path / "a.s").write_bytes(b"\xef\xbb\xbfret\n")
+    monkeypatch.chdir(tmp_path)
+    origins = frozenset({tmp_path.name})
+    assert (CorpusFile("a.s", "ret\n", origins),) == language_of(".s").files([Path()])
+
+
 def test_no_file_is_told_in_one_line(tmp_path: Path) -> None:
     """Where nothing ends so there is nothing to learn from."""
     with pytest.raises(IngestError, match=r"no file ends in \.s$"):
