@@ -15,13 +15,14 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from importlib import import_module, invalidate_caches, metadata
+from importlib import import_module, invalidate_caches
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from conformance.runner import CaseResult, Result
 from conformance.suite.case import Case
+from grammar.notation.generate import GenerationError, run_antlr
 from grammar.parser.antlr_reference import refusal_by
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
@@ -30,7 +31,7 @@ __all__ = ["OWN", "Parser", "ParserError", "compared", "parsers"]
 
 #: The name of this project's parser.
 OWN: Final = "krl"
-#: Seconds that a command may take for a file, and ANTLR for a grammar.
+#: Seconds that a command may take for a file.
 _LONGEST: Final = 600
 _NAME: Final = re.compile(r"^\s*(?:parser\s+)?grammar\s+(\w+)\s*;", re.MULTILINE)
 _FRONT: Final = re.compile(r"(?:;@.*\n)+")
@@ -79,18 +80,10 @@ def _compiled(path: Path, folder: Path) -> Parser:
     named = _NAME.search(_COMMENT.sub("", text))
     if named is None:
         raise ParserError(f"{path}: it is no ANTLR grammar of a parser and its lexer")
-    release = metadata.version("antlr4-python3-runtime")  # what runs it has to be as old
-    command = ["antlr4", "-v", release, "-Dlanguage=Python3", "-o", str(folder)]
-    command.append(str(path.resolve()))
     try:
-        made = subprocess.run(
-            command, capture_output=True, text=True, timeout=_LONGEST, cwd=folder, check=False
-        )
-    except (OSError, subprocess.TimeoutExpired) as error:
-        raise ParserError(f"{path}: ANTLR cannot be run: {error}") from error
-    if made.returncode:
-        told = (made.stderr or made.stdout).strip().splitlines() or ["it gives no reason"]
-        raise ParserError(f"{path}: ANTLR refuses it: {told[0]}")
+        run_antlr(["-o", str(folder), str(path.resolve())], folder)
+    except GenerationError as error:
+        raise ParserError(f"{path}: {error}") from error
     sys.path.insert(0, str(folder))
     try:
         lexer, parser = (_imported(f"{named[1]}{part}") for part in ("Lexer", "Parser"))

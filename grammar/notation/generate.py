@@ -14,11 +14,21 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
-__all__ = ["ANTLR_VERSION", "GRAMMAR", "check", "generate", "main"]
+__all__ = [
+    "ANTLR_VERSION",
+    "GRAMMAR",
+    "GenerationError",
+    "check",
+    "generate",
+    "main",
+    "run_antlr",
+]
 
 ANTLR_VERSION = "4.13.2"
+_LONGEST = 600  # seconds that ANTLR may take for a grammar
 HERE = Path(__file__).resolve().parents[1]
 GRAMMAR = HERE / "KRL.g4"
 GENERATED = HERE / "_generated"
@@ -36,26 +46,10 @@ def generate(grammar: Path, folder: Path) -> None:
 
     Raises `GenerationError` where Java or ANTLR is missing or the grammar has errors.
     """
-    tool = shutil.which(
-        "antlr4",
-        path=os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", ""))),
-    )
-    if tool is None:
-        raise GenerationError("antlr4 is missing: install the extra 'dev' (antlr4-tools)")
     with tempfile.TemporaryDirectory() as scratch:
         # ANTLR writes the path it was given into what it generates; a bare name keeps that stable
         shutil.copyfile(grammar, Path(scratch) / "KRL.g4")
-        command = [tool, "-Dlanguage=Python3", "-no-listener", "-no-visitor", "-Werror", "KRL.g4"]
-        environment = {**os.environ, "ANTLR4_TOOLS_ANTLR_VERSION": ANTLR_VERSION}
-        try:
-            run = subprocess.run(
-                command, cwd=scratch, env=environment, capture_output=True, text=True, check=False
-            )
-        except OSError as error:
-            raise GenerationError(f"antlr4 cannot be run: {error}") from None
-        if run.returncode != 0:
-            lines = (run.stderr or run.stdout).strip().splitlines()
-            raise GenerationError(lines[0] if lines else "ANTLR failed without a message")
+        run_antlr(["-no-listener", "-no-visitor", "-Werror", "KRL.g4"], Path(scratch))
         folder.mkdir(parents=True, exist_ok=True)
         for name in ("KRLLexer.py", "KRLParser.py"):
             text = (Path(scratch) / name).read_text(encoding="utf-8")
@@ -64,6 +58,33 @@ def generate(grammar: Path, folder: Path) -> None:
     (folder / DATA).write_text(_data(grammar), encoding="utf-8", newline="\n")
     manifest = "".join(f"{digest}  {name}\n" for name, digest in _digests(grammar, folder))
     (folder / MANIFEST).write_text(manifest, encoding="utf-8", newline="\n")
+
+
+def run_antlr(arguments: Sequence[str], folder: Path) -> None:
+    """Let ANTLR make Python in a folder. Raises `GenerationError`."""
+    tool = shutil.which(
+        "antlr4",
+        path=os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", ""))),
+    )
+    if tool is None:
+        raise GenerationError("antlr4 is missing: install the extra 'dev' (antlr4-tools)")
+    command = [tool, "-Dlanguage=Python3", *arguments]
+    environment = {**os.environ, "ANTLR4_TOOLS_ANTLR_VERSION": ANTLR_VERSION}
+    try:
+        run = subprocess.run(
+            command,
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=_LONGEST,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise GenerationError(f"antlr4 cannot be run: {error}") from None
+    if run.returncode != 0:
+        lines = (run.stderr or run.stdout).strip().splitlines()
+        raise GenerationError(lines[0] if lines else "ANTLR failed without a message")
 
 
 def check(grammar: Path = GRAMMAR, folder: Path = GENERATED) -> str | None:
