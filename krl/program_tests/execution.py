@@ -35,6 +35,7 @@ from support.files.untrusted import read_text
 __all__ = ["Outcome", "run_test"]
 
 _WORDS: Final = re.compile(r"[A-Za-z_$][\w$]*")
+_CALLED: Final = re.compile(r"calls ([A-Za-z_$][\w$]*)", re.IGNORECASE)
 _ROOT: Final = re.compile(r"value ([A-Za-z_]\w*)", re.IGNORECASE)
 
 
@@ -86,6 +87,8 @@ def run_test(
     failures = list(_failures(test, project.program, done, _seen(done, setup, lengths)))
     if test.is_recorded:
         failures += compared(test, recording_of(done, lengths), update=update)
+    if failures:
+        failures += _stood_in(project.program, done)
     coverage = project.coverage.of(done.events, _replaced(test, project))
     return Outcome(tuple(failures), coverage, project.files)
 
@@ -205,6 +208,7 @@ def _failures(
     for stated in test.expected:
         try:
             one = stated.read(seen.values)
+            _check_called(stated.text, program)
             read.append(replace(one, file=_path(stated, program)))
             lines.append(stated.line)
         except (ExpectationError, LookupError) as error:
@@ -223,6 +227,22 @@ def _failures(
     for touched in done.observations:
         if not touched.is_estimate:
             yield from _told(test, test.line, "nothing is touched", str(touched))
+
+
+def _check_called(expected: str, program: CheckedProgram) -> None:
+    """Raise `LookupError` where an expectation is about calls of a name that no file mentions."""
+    if about := _CALLED.match(expected):
+        name = re.compile(rf"\b{re.escape(about[1])}\b", re.IGNORECASE)
+        if not any(name.search(unit.source.text) for unit in program.units.values()):
+            raise LookupError(f"no file of the program mentions {about[1]}")
+
+
+def _stood_in(program: CheckedProgram, done: RunResult) -> Iterator[str]:
+    """A line with the routines that were called and are in no file, where there are any."""
+    lacking = {one.name.upper() for one in program.stand_ins}
+    called = (event.fields["name"] for event in done.events if event.kind == "call")
+    if names := [name for name in dict.fromkeys(called) if str(name).upper() in lacking]:
+        yield f"    note:     in no file, so nothing happened there: {', '.join(names)}"
 
 
 def _told(

@@ -25,6 +25,7 @@ PAIRS = [
     ("avoids box 1 -50 -900 to 200 50 900 in 545 100 0 90 0 0", "avoids in_the_way"),
     ("speed most 0.6", "speed most 0.3"),
     ("calls measure times 1", "calls measure never"),
+    ("calls measure before 9", "calls mesure never"),
     ("ends before 5", "ends before 1"),
     ("work.src:12: runs 1", "work.src:12: runs 2"),
     ("work.src:8: lasts 1.2 within 0.1", "work.src:8: lasts 1.2 within 0.001"),
@@ -55,6 +56,14 @@ def test_a_failure_says_what_was_expected_and_seen(run: Run) -> None:
     assert "    expected: out 1 TRUE before 0.5" == expected
     assert seen.startswith("    seen:     1.")
     assert seen.endswith(" s (work.src:9)")
+
+
+def test_a_failure_names_called_routines_that_no_file_has(run: Run, tmp_path: Path) -> None:
+    """A message that an option package would have shown is not looked for in vain."""
+    (tmp_path / "tell.src").write_text('DEF tell()\n  MsgNotify("part")\nEND\n', encoding="utf-8")
+    outcomes = run("program = 'tell.src'\n[[test]]\nname = 'a'\nexpect = ['message 1']\n")
+    note = "    note:     in no file, so nothing happened there: MSGNOTIFY"
+    assert outcomes["a"].failures[-1] == note
 
 
 def test_a_fault_fails_a_test_that_does_not_expect_it(run: Run) -> None:
