@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from grammar.syntax import ast
-from grammar.syntax.walk import walk
+from grammar.syntax.walk import left_chain, walk
 
 __all__ = [
     "MADE",
@@ -40,11 +40,26 @@ def rewritten(node: _Any, change: Change) -> _Any:
 
 
 def _changed(node: ast.Node, change: Change) -> ast.Node | tuple[ast.Node, ...]:
+    if not isinstance(node, ast.Binary):
+        return _with_changed(node, change)
+    first, *others = left_chain(node)
+    found = _with_changed(first, change)
+    for each in others:
+        found = _with_changed(each, change, left=found)
+    return found
+
+
+def _with_changed(
+    node: ast.Node, change: Change, **changed: Any
+) -> ast.Node | tuple[ast.Node, ...]:
+    """A node whose fields are changed, but for those that are, and then itself."""
     values: dict[str, Any] = {}
     for field in node.__dataclass_fields__:
         before = getattr(node, field)
-        after = before
-        if isinstance(before, ast.Node):
+        after = changed.get(field, before)
+        if after is not before:
+            values[field] = after
+        elif isinstance(before, ast.Node):
             after = _changed(before, change)
         elif field != "span" and isinstance(before, tuple):
             after = tuple(_sequence(before, change))

@@ -14,7 +14,7 @@ from typing import Any
 from grammar.check.context import Context
 from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import BODIES, LEAVES, children
+from grammar.syntax.walk import BODIES, LEAVES, children, left_chain
 
 __all__ = ["Access", "Use", "accesses", "calls_of", "parts_of"]
 
@@ -63,6 +63,12 @@ def _add(context: Context, node: ast.Node, found: list[Access]) -> None:
 def _assignment(context: Context, node: ast.Assignment, found: list[Access]) -> None:
     _add(context, node.value, found)
     _add_place(context, node.target, Use.WRITTEN, found)
+
+
+def _binary(context: Context, node: ast.Binary, found: list[Access]) -> None:
+    chain = left_chain(node)
+    for operand in (chain[0].left, *(each.right for each in chain)):
+        _add(context, operand, found)
 
 
 def _loop(context: Context, node: ast.For, found: list[Access]) -> None:
@@ -143,6 +149,7 @@ def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
 
 _RULES: Mapping[type[Any], Callable[[Context, Any, list[Access]], object]] = {
     ast.Assignment: _assignment,
+    ast.Binary: _binary,
     ast.Call: _call,
     ast.For: _loop,
     ast.InterruptDeclaration: _later,

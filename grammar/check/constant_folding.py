@@ -11,6 +11,7 @@ from grammar.check.context import Context
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import INT_MAX, INT_MIN
 from grammar.syntax import ast
+from grammar.syntax.walk import left_chain
 
 __all__ = ["Value", "constant", "integer_of"]
 
@@ -80,7 +81,16 @@ def _unary(context: Context, node: ast.Unary) -> Value | None:
 
 
 def _binary(context: Context, node: ast.Binary) -> Value | None:
-    left, right = constant(context, node.left), constant(context, node.right)
+    first, *others = left_chain(node)
+    value = _folded(first.operator, constant(context, first.left), constant(context, first.right))
+    for each in others:
+        if value is None:
+            break
+        value = _folded(each.operator, value, constant(context, each.right))
+    return value
+
+
+def _folded(operator: str, left: Value | None, right: Value | None) -> Value | None:
     if (
         left is None
         or isinstance(left, str | bool)
@@ -89,7 +99,7 @@ def _binary(context: Context, node: ast.Binary) -> Value | None:
     ):
         return None
     value: int | float | None = None
-    match node.operator:
+    match operator:
         case "+":
             value = left + right
         case "-":

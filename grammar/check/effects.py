@@ -19,7 +19,7 @@ from grammar.check.data_flow import needed_parameters
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import without_parentheses
+from grammar.syntax.walk import left_chain, without_parentheses
 from support.lazy_dataclass import dataclass
 
 __all__ = ["NO_EFFECTS", "Effects", "LeftOut", "Place", "effects", "of_project"]
@@ -243,12 +243,15 @@ class _Collector:
             case ast.Unary(operator="NOT", operand=operand):
                 inner = self._with_flags_off(operand, keys)
                 return None if inner is None else not inner
-            case ast.Binary(operator="AND" | "OR" | "==" | "<>" as sign) as both:
-                left = self._with_flags_off(both.left, keys)
-                right = self._with_flags_off(both.right, keys)
-                if left is None or right is None:
-                    return None
-                return _OPERATORS[sign](left, right)
+            case ast.Binary() as both:
+                chain = left_chain(both)
+                left = self._with_flags_off(chain[0].left, keys)
+                for each in chain:
+                    right = self._with_flags_off(each.right, keys)
+                    if left is None or right is None or each.operator not in _OPERATORS:
+                        return None
+                    left = _OPERATORS[each.operator](left, right)
+                return left
         return None
 
     # --------------------------------------------------------------------------- calls

@@ -39,7 +39,7 @@ from grammar.semantics.types import (
 )
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
-from grammar.syntax.walk import root_variable
+from grammar.syntax.walk import left_chain, root_variable
 
 __all__ = ["type_checker"]
 
@@ -153,15 +153,20 @@ def _unary(checker: TypeChecker, node: ast.Unary, _expected: Type) -> Type:
 
 
 def _binary(checker: TypeChecker, node: ast.Binary, _expected: Type) -> Type:
-    operator = node.operator
-    if operator in _RELATIONS and (_is_logical(node.left) or _is_logical(node.right)):
-        return _mixed(checker, node)
-    return _joined(checker, node)
+    chain = left_chain(node)
+    before = len(checker.diagnostics)
+    left = checker.infer(chain[0].left)
+    for each in chain:
+        joined = _joined(checker, each, left)
+        if each.operator in _RELATIONS and (_is_logical(each.left) or _is_logical(each.right)):
+            joined = _mixed(checker, each, joined, before)
+        left = checker.context.types.setdefault(each, joined)
+    return left
 
 
-def _joined(checker: TypeChecker, node: ast.Binary) -> Type:
+def _joined(checker: TypeChecker, node: ast.Binary, left: Type) -> Type:
     operator = node.operator
-    left, right = checker.infer(node.left), checker.infer(node.right)
+    right = checker.infer(node.right)
     if left is INT is right and operator in "+-*/":
         return INT
     typed = binary(operator, left, right)
@@ -189,14 +194,12 @@ def _joined(checker: TypeChecker, node: ast.Binary) -> Type:
     return typed.type
 
 
-def _mixed(checker: TypeChecker, node: ast.Binary) -> Type:
+def _mixed(checker: TypeChecker, node: ast.Binary, made: Type, before: int) -> Type:
     """Relations bind weakest, so ``A == 1 AND B == 2`` is ``(A == (1 AND B)) == 2`` [ARI-05].
 
     Nobody means that. As the order of operators is recollection, what comes of it is reported as
-    one warning.
+    one warning. ``before`` is the number of findings before this one.
     """
-    before = len(checker.diagnostics)
-    made = _joined(checker, node)
     if any(found.severity == "error" for found in checker.diagnostics[before:]):
         del checker.diagnostics[before:]
         message = "relations bind weaker than AND, OR, EXOR and NOT, so this does not fit"

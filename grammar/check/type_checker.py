@@ -6,7 +6,7 @@ of their own. Types, and the enumerations that constants belong to, which follow
 stand [TYP-16], are noted in the context. What does not fit is reported once: its type is `UNKNOWN`
 from there on.
 
-Recursion goes as deep as an expression, which `grammar.syntax.node_plans.MAX_DEPTH` limits.
+Recursion goes as deep as expressions nest, which `grammar.syntax.node_plans.MAX_DEPTH` limits.
 """
 
 from __future__ import annotations

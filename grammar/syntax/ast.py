@@ -10,7 +10,8 @@ block, follow from that.
 
 Sequences are tuples. What a program may leave out is ``None``. Blocks nest without a limit, so
 walks over statements must not recurse; within a line nodes lie at most
-`grammar.syntax.node_plans.MAX_DEPTH` deep.
+`grammar.syntax.node_plans.MAX_DEPTH` deep, but for the left operands of operators: a sum may have
+any number of terms (`grammar.syntax.walk.left_chain`).
 """
 
 from __future__ import annotations

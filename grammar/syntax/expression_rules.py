@@ -114,11 +114,10 @@ def _relation(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
 
 def _infix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """Operators of equal rank join from left to right."""
-    value = parts[0].value
+    value, chain = parts[0].value, None
     for operator, right in zip(parts[1::2], parts[2::2], strict=True):
-        value = draft.node(
-            ast.Binary, parts[0].first, right.stop, _operator(operator), value, right.value
-        )
+        operands = _operator(operator), value, right.value
+        value = chain = draft.node(ast.Binary, parts[0].first, right.stop, *operands, chain=chain)
     return value
 
 

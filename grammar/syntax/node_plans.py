@@ -36,7 +36,8 @@ __all__ = [
     "values_of",
 ]
 
-#: How deep nodes may lie within a line. Whoever walks an expression may rely on it and recurse.
+#: How deep nodes may lie within a line, chains of operators counted once. Whoever walks an
+#: expression may rely on it and recurse, but for `grammar.syntax.walk.left_chain`.
 MAX_DEPTH = 200
 # A call has three rules for its one node, nothing has more: no need to draft what is far too deep.
 _MOST_FRAMES = 3 * MAX_DEPTH + 10
@@ -74,11 +75,22 @@ class Draft:
         self._steps: list[tuple[Callable[..., object], int, int, tuple[int, ...]]] = []
         self._depths: list[int] = []
 
-    def node(self, make: Callable[..., object], first: int, stop: int, *values: Value) -> int:
-        """A step: ``make`` called with a span and ``values``; returns the slot of its result."""
+    def node(
+        self,
+        make: Callable[..., object],
+        first: int,
+        stop: int,
+        *values: Value,
+        chain: int | None = None,
+    ) -> int:
+        """A step: ``make`` called with a span and ``values``; returns the slot of its result.
+
+        The node at the slot ``chain`` lies no deeper for it: it is the same chain, begun before.
+        """
         slots = tuple(map(self._slot, values))
-        depth = 1 + max(
-            (self._depths[s - self._width] for s in slots if s >= self._width), default=0
+        depth = max(
+            (self._depths[s - self._width] + (s != chain) for s in slots if s >= self._width),
+            default=1,
         )
         if depth > MAX_DEPTH:
             raise TooDeep(first)

@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import zip_longest
 from typing import Any, NamedTuple
 
 from grammar.syntax import ast
-from grammar.syntax.walk import BODIES
+from grammar.syntax.walk import BODIES, left_chain
 
 __all__ = ["expression", "indent", "unparse"]
 
@@ -186,11 +187,16 @@ def _operand(node: ast.Expression, least: int) -> str:
 
 
 def _binary(node: ast.Binary) -> str:
-    rank = _RANK[node.operator]
-    left, right = _operand(node.left, rank), _operand(node.right, rank + 1)
-    if node.operator == ":":
-        return f"{left}:{right}"
-    return f"{left} {node.operator} {right}"
+    chain = left_chain(node)
+    opened, texts = 0, [_operand(chain[0].left, _RANK[chain[0].operator])]
+    for each, outer in zip_longest(chain, chain[1:]):
+        rank = _RANK[each.operator]
+        sign = ":" if each.operator == ":" else f" {each.operator} "
+        texts += (sign, _operand(each.right, rank + 1))
+        if outer is not None and rank < _RANK[outer.operator]:
+            opened += 1
+            texts.append(")")
+    return "(" * opened + "".join(texts)
 
 
 def _unary(node: ast.Unary) -> str:

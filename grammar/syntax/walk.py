@@ -13,6 +13,7 @@ __all__ = [
     "LEAVES",
     "bodies",
     "children",
+    "left_chain",
     "root_variable",
     "same",
     "walk",
@@ -97,6 +98,18 @@ def same(left: Node, right: Node) -> bool:
         elif isinstance(one, Node | tuple) or one != other:
             return False
     return True
+
+
+def left_chain(node: ast.Binary) -> list[ast.Binary]:
+    """An operation and those that its left operands are, the innermost first; sums of any length.
+
+    Whoever recurses into right operands and into the left one of the first goes no deeper than
+    `grammar.syntax.node_plans.MAX_DEPTH`.
+    """
+    chain = [node]
+    while type(left := chain[-1].left) is ast.Binary:
+        chain.append(left)
+    return chain[::-1]
 
 
 def without_parentheses(node: ast.Expression) -> ast.Expression:

@@ -12,6 +12,7 @@ from functools import cache
 from grammar.semantics.types import Enumeration, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
+from grammar.syntax.walk import left_chain
 from interp.port.executor import Reader
 from interp.port.inspection import Seen
 from interp.port.requests import Path
@@ -134,13 +135,16 @@ class _Evaluation:
         return made
 
     def _binary(self, node: ast.Binary) -> Value:
-        if isinstance(node.left, ast.EnumConstant):
-            right = self.value(node.right)
-            left = self.value(node.left, getattr(right, "type", None))
-        else:
-            left = self.value(node.left)
-            right = self.value(node.right, left.type if isinstance(left, EnumValue) else None)
-        return apply(node.operator, left, right)
+        chain = left_chain(node)
+        first = chain[0].left
+        wanted = None
+        if isinstance(first, ast.EnumConstant):
+            wanted = getattr(self.value(chain[0].right), "type", None)
+        left = self.value(first, wanted)
+        for each in chain:
+            wanted = left.type if isinstance(left, EnumValue) else None
+            left = apply(each.operator, left, self.value(each.right, wanted))
+        return left
 
     def _variable(self, node: ast.Expression) -> Value:
         steps = self.steps(node)

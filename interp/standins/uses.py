@@ -32,7 +32,7 @@ from grammar.semantics.types import (
 )
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from grammar.syntax.walk import walk
+from grammar.syntax.walk import left_chain, walk
 from support.lazy_dataclass import dataclass
 
 __all__ = ["FOLDER", "DataUse", "RoutineUse", "Uses"]
@@ -114,6 +114,7 @@ class Uses:
         self._checked: Checked | None = None
         self._result: Type = UNKNOWN
         self._statements: set[ast.Call] = set()
+        self._numbers: set[tuple[ast.Binary, Type]] = set()
         #: The largest number that loops of a routine count to, by the counter.
         self._counted: dict[str, int] = {}
 
@@ -226,7 +227,9 @@ class Uses:
         if isinstance(node, ast.Parenthesised):
             yield from self._targets(node.inner)
         elif isinstance(node, ast.Binary) and node.operator == ":":
-            yield from [*self._targets(node.right)] or self._targets(node.left)
+            chain = left_chain(node)
+            parts = *(each.right for each in reversed(chain)), chain[0].left
+            yield from next(filter(None, ([*self._targets(part)] for part in parts)), ())
         elif node is not None:
             use = self._use(node)
             if use is not None:
@@ -371,9 +374,8 @@ class Uses:
             self._expect(node.operand, type_)
         use = self._use(node)
         if use is None or type_ == UNKNOWN:
-            if isinstance(node, ast.Binary) and type_ in (INT, REAL) and node.operator in "+-*/":
-                self._expect(node.left, type_)
-                self._expect(node.right, type_)
+            if isinstance(node, ast.Binary) and type_ in (INT, REAL):
+                self._expect_number(node, type_)
             return
         match type_:
             case Constant(name=name):
@@ -390,6 +392,17 @@ class Uses:
                     use.members.setdefault(name.upper(), DataUse())
             case Scalar() | Structure() | Enumeration():
                 use.types.append(type_)
+
+    def _expect_number(self, node: ast.Binary, type_: Type) -> None:
+        """Operands of what is a number are; those of a long sum are asked about but once."""
+        operand: ast.Expression = node
+        while isinstance(operand, ast.Binary) and operand.operator in "+-*/":
+            if (operand, type_) in self._numbers:
+                return
+            self._numbers.add((operand, type_))
+            self._expect(operand.right, type_)
+            operand = operand.left
+        self._expect(operand, type_)
 
 
 _PLAIN = (Kind.VARIABLE, Kind.PARAMETER)

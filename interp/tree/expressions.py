@@ -21,6 +21,7 @@ from grammar.semantics.types import (
     Type,
 )
 from grammar.syntax import ast
+from grammar.syntax.walk import left_chain
 from interp.tree.designators import Designators
 from interp.tree.places import LocalPlace, member
 from interp.tree.run import Steps
@@ -92,9 +93,12 @@ class Expressions(Designators):
         return apply_unary(node.operator, (yield from self.value(node.operand)))
 
     def _binary(self, node: ast.Binary, _wanted: Type) -> Steps[Value]:
-        left = yield from self.value(node.left)
-        wanted = left.type if isinstance(left, EnumValue) else UNKNOWN
-        return apply(node.operator, left, (yield from self.value(node.right, wanted)))
+        chain = left_chain(node)
+        left = yield from self.value(chain[0].left)
+        for each in chain:
+            wanted = left.type if isinstance(left, EnumValue) else UNKNOWN
+            left = apply(each.operator, left, (yield from self.value(each.right, wanted)))
+        return left
 
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Steps[Value]:
         type_ = self._structure(node, wanted)

@@ -214,3 +214,16 @@ def test_conditions_are_evaluated_wherever_a_slice_ends(name: str) -> None:
             evaluated += not executor.evaluate(codes[0], lambda _path: False)
         request = executor.advance()
     assert (10, [126]) == (evaluated, written)
+
+
+def test_chains_of_operators_have_any_length() -> None:
+    """Sums, conditions and compositions of many operands are no nesting."""
+    operands = (("+", "I", 3_000), (" AND ", "B", 3_000), (":", "F", 300))
+    sums, conditions, poses = (sign.join([name] * count) for sign, name, count in operands)
+    seen = _run(
+        "DEF main()\nINT I\nBOOL B\nFRAME F\nI=2\nB=TRUE\n"
+        f"F={{X 1.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0}}\n$OV_PRO=({sums})/100\n"
+        f"$OUT[1]={conditions}\nF={poses}\n$TIMER[1]=F.X\nEND\n"
+    )
+    assert isinstance(seen.last, End)
+    assert [60, True, 300] == [one.value for one in seen.steps if isinstance(one, Write)]

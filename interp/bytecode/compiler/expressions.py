@@ -24,6 +24,7 @@ from grammar.semantics.types import (
     Type,
 )
 from grammar.syntax import ast
+from grammar.syntax.walk import left_chain
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import bits_of
 from interp.bytecode.compiler.code_writer import Label
@@ -184,7 +185,9 @@ class Expressions:
 
     def operand(self, node: ast.Expression, wanted: Type) -> Scalar | Reference:
         """A value that an operator works on."""
-        value = self.value(node, wanted)
+        return self._as_operand(self.value(node, wanted))
+
+    def _as_operand(self, value: Value) -> Scalar | Reference:
         match value:
             case Text(text) if len(text) == 1:
                 self._emit(Op.PUSH_CHAR, ord(text))
@@ -194,8 +197,15 @@ class Expressions:
         raise self._emitter.fail("operand")
 
     def _binary(self, node: ast.Binary, _wanted: Type) -> Value:
+        chain = left_chain(node)
         first = self._writer.here
-        left = self.operand(node.left, UNKNOWN)
+        value: Value = self.operand(chain[0].left, UNKNOWN)
+        for each in chain:
+            value = self._joined(each, self._as_operand(value), first)
+        return value
+
+    def _joined(self, node: ast.Binary, left: Scalar | Reference, first: int) -> Value:
+        """An operation on what lies on the stack and its right operand."""
         between = self._writer.here
         wanted = left.type if isinstance(left.type, Enumeration) else UNKNOWN
         right = self.operand(node.right, wanted)

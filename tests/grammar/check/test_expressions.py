@@ -126,7 +126,8 @@ def test_an_expression_may_be_as_deep_as_it_can_be_read(agrees: Agrees) -> None:
     depth = MAX_DEPTH - 10
     nested = f"{'(' * depth}1{')' * depth}"
     indexed = f"{'LIST[' * (depth // 2)}1{']' * (depth // 2)}"
-    summed = " + ".join(["I"] * depth)
-    text = program(f"I = {nested}", f"I = {indexed}", f"I = {summed}")
+    summed = " + ".join(["I"] * 3_000)
+    decided = " AND ".join(["B"] * 3_000)
+    text = program(f"I = {nested}", f"I = {indexed}", f"I = {summed}", f"B = {decided}")
     assert not isinstance(read_module(text), list)
     agrees(text)

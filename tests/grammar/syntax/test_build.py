@@ -12,6 +12,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import BLOCK_RULES, SyntaxFailure, builder, read_module
 from grammar.syntax.node_plans import MAX_DEPTH
 from grammar.syntax.statement_rules import RULES
+from grammar.syntax.unparse import expression
 from grammar.syntax.walk import children, walk
 
 
@@ -427,7 +428,11 @@ def test_a_text_without_anything_fails() -> None:
 
 @pytest.mark.parametrize(
     "line",
-    ["X=" + "(" * 3_000 + "1" + ")" * 3_000, "X=1" + "+1" * 20_000, "X=" + "NOT " * 300 + "A"],
+    [
+        "X=" + "(" * 3_000 + "1" + ")" * 3_000,
+        "X=1" + "+(1" * 201 + ")" * 201,
+        "X=" + "NOT " * 300 + "A",
+    ],
 )
 def test_too_deep_an_expression_is_a_failure(line: str) -> None:
     """What is nested deeper than the limit is refused with its line, not crashed on."""
@@ -449,6 +454,16 @@ def test_what_is_below_the_limit_is_built() -> None:
     depth = MAX_DEPTH - 10
     (assignment,) = statements("X=" + "(" * depth + "1" + ")" * depth)
     assert depth == sum(isinstance(node, ast.Parenthesised) for node in walk(assignment))
+
+
+@pytest.mark.parametrize("operator", ["+", "*", "AND", "EXOR", "==", ":"])
+def test_a_chain_of_operators_is_no_nesting(operator: str) -> None:
+    """Thousands of operands of equal rank are built, and printed as they were written."""
+    text = (operator if operator == ":" else f" {operator} ").join(["A"] * 2_000)
+    (assignment,) = statements(f"X={text}")
+    assert isinstance(assignment, ast.Assignment)
+    assert 1_999 == sum(isinstance(node, ast.Binary) for node in walk(assignment))
+    assert text == expression(assignment.value)
 
 
 def test_blocks_nest_without_limit() -> None:
