@@ -1,5 +1,7 @@
 """Packages that only some commands need, and the extras of the package that install them."""
 
+import json
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -69,7 +71,32 @@ def need(name: str) -> None:
 
 
 def _refused(name: str) -> InputError:
-    extra = _EXTRA_OF[name]
-    return InputError(
-        f"this needs {name}, which is not installed: pip install 'krl-workbench[{extra}]'"
-    )
+    return InputError(f"this needs {name}, which is not installed: {_cure(_EXTRA_OF[name])}")
+
+
+def _cure(extra: str) -> str:
+    """The command that installs an extra, by the tool and from the file that installed us.
+
+    The environments of `uv tool` and pipx have no pip, and are made anew: what is there is named.
+    """
+    from importlib import metadata
+
+    prefix = Path(sys.prefix)
+    tool = "pip install"
+    if (prefix / "uv-receipt.toml").is_file():
+        tool = "uv tool install"
+    elif (prefix / "pipx_metadata.json").is_file():
+        tool = "pipx install --force"
+    extras = {extra}
+    if tool != "pip install":
+        extras.update(extra for package, extra in _EXTRA_OF.items() if find_spec(package))
+    named = f"[{','.join(sorted(extras))}]"
+    try:
+        origin = metadata.distribution("krl-workbench").read_text("direct_url.json")
+        installed = json.loads(origin or "{}")
+    except metadata.PackageNotFoundError:  # a checkout that was not installed
+        installed = {}
+    if installed.get("dir_info", {}).get("editable"):
+        return f"{tool} -e '.{named}'"
+    url = installed.get("url")
+    return f"{tool} 'krl-workbench{named}{f' @ {url}' if url else ''}'"

@@ -1,5 +1,6 @@
 """The command line as a whole."""
 
+import json
 import os
 import subprocess
 import sys
@@ -7,10 +8,13 @@ from importlib import metadata
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
 from krl.cli import main
+from krl.errors import InputError
+from krl.extras import need
 
 
 def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
@@ -70,6 +74,34 @@ def test_a_package_of_the_same_name_is_named(
     out, err = capsys.readouterr()
     assert ("", 1) == (out, len(err.splitlines()))
     assert f"and is {tmp_path / 'grammar'}, of another project" in err
+
+
+@pytest.mark.parametrize(
+    ("mark", "origin", "cure"),
+    [
+        ("", None, "pip install 'krl-workbench[arm]'"),
+        ("", {"url": "file:///a/b.whl"}, "pip install 'krl-workbench[arm] @ file:///a/b.whl'"),
+        ("", {"url": "file:///a", "dir_info": {"editable": True}}, "pip install -e '.[arm]'"),
+        ("uv-receipt.toml", None, "uv tool install 'krl-workbench[arm,lsp]'"),
+        ("pipx_metadata.json", None, "pipx install --force 'krl-workbench[arm,lsp]'"),
+    ],
+)
+def test_a_missing_extra_is_installed_by_the_tool_that_installed_us(
+    mark: str,
+    origin: dict[str, object] | None,
+    cure: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Tools that make an environment anew are told the extras that are there already, too."""
+    (tmp_path / (mark or "pyvenv.cfg")).touch()
+    monkeypatch.setattr("sys.prefix", str(tmp_path))
+    monkeypatch.setattr("krl.extras.find_spec", lambda name: name == "pygls" or None)
+    ours = Mock(read_text=Mock(return_value=origin and json.dumps(origin)))
+    monkeypatch.setattr("importlib.metadata.distribution", lambda _: ours)
+    with pytest.raises(InputError) as error:
+        need("mujoco")
+    assert f"this needs mujoco, which is not installed: {cure}" == str(error.value)
 
 
 def test_start_is_quick() -> None:

@@ -218,7 +218,8 @@ def test_without_the_extra(ask: Ask, monkeypatch: pytest.MonkeyPatch, package: s
     status, _, err = ask([])
     assert 2 == status
     assert f"needs {package}" in err
-    assert "pip install 'krl-workbench[arm]'" in err
+    assert "pip install " in err
+    assert "[arm]" in err
 
 
 def test_nothing_of_it_is_loaded_before_it_is_asked_for() -> None:
