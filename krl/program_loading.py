@@ -1,9 +1,9 @@
 """The program that a file on the command line means: with all files of its project."""
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path, PurePath, PurePosixPath
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from krl.errors import InputError
 
@@ -12,7 +12,14 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from support.files.discovery import Found
 
-__all__ = ["load_program", "project_paths", "project_root", "read_sources", "sources_below"]
+__all__ = [
+    "compile_project",
+    "load_program",
+    "project_paths",
+    "project_root",
+    "read_sources",
+    "sources_below",
+]
 
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
@@ -20,6 +27,7 @@ _ENDINGS = frozenset({".src", ".dat", ".sub"})
 _MOST_FILES = 20_000
 _MOST_SHOWN = 5
 
+_T = TypeVar("_T")
 _P = TypeVar("_P", bound=PurePath)
 _Folder_contra = TypeVar("_Folder_contra", bound=PurePath, contravariant=True)
 
@@ -35,18 +43,59 @@ def load_program(
     (`support.files.kept_values`). Raises `InputError` for what cannot be read, and
     `interp.values.faults.LinkError` for what cannot be run.
     """
-    from interp.executors import CODE
     from interp.program.load import load
+
+    def loaded(sources: "list[Source]", main: str, unread: list[str]) -> "CheckedProgram":
+        return load(sources, main, strict=strict, stands_in=stands_in, unread=unread)
+
+    return _made_once(file, f"{strict} {stands_in}", loaded)
+
+
+class Image(NamedTuple):
+    """A compiled program as bytes; ``refusals`` are what ends it when it is reached."""
+
+    data: bytes
+    codes: int
+    instructions: int
+    refusals: tuple[str, ...]
+
+
+def compile_project(file: Path, *, strict: bool = False) -> tuple[Image, list[str]]:
+    """As `load_program`, but the image of the program; what was compiled before is not again."""
+
+    def compiled(sources: "list[Source]", main: str, unread: list[str]) -> Image:
+        from interp.bytecode.compiler import compile_program
+        from interp.bytecode.verifier.verify import VerificationError, verify
+        from interp.program.load import load
+        from interp.values.faults import LinkError
+
+        made = compile_program(load(sources, main, strict=strict, unread=unread))
+        try:
+            data = verify(made.program).image
+        except VerificationError as error:
+            raise LinkError(str(error)) from error
+        codes = made.program.codes
+        refusals = tuple(f"{one.path}:{one.line}: {one.reason}" for one in made.refusals)
+        return Image(data, len(codes), sum(len(code.instructions) for code in codes), refusals)
+
+    return _made_once(file, f"image {strict}", compiled)
+
+
+def _made_once(
+    file: Path, how: str, make: "Callable[[list[Source], str, list[str]], _T]"
+) -> "tuple[_T, list[str]]":
+    """What is made of the project of a file, its main file and the list of what is left out."""
+    from interp.executors import CODE
     from support.files.kept_values import kept
 
     sources, main, left = read_sources(file)
 
-    def loaded() -> "tuple[CheckedProgram, list[str]]":
+    def made() -> "tuple[_T, list[str]]":
         unread = left.copy()
-        return load(sources, main, strict=strict, stands_in=stands_in, unread=unread), unread
+        return make(sources, main, unread), unread
 
     texts = (text for one in sources for text in (one.path, one.text))
-    return kept(CODE, (main, f"{strict} {stands_in}", *left, *texts), loaded)
+    return kept(CODE, (main, how, *left, *texts), made)
 
 
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":

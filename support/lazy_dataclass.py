@@ -8,7 +8,7 @@ A class inherits only from classes that are made here too, or from none that are
 
 import dataclasses
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -96,11 +96,15 @@ def _hash(cls: Any) -> tuple[str, dict[str, Any]]:
     return f"def __hash__(self):\n return hash(({_compared(cls, 'self')}))", {}
 
 
+@cache
+def _shown(cls: Any) -> tuple[str, ...]:
+    return tuple(one.name for one in dataclasses.fields(cls) if one.repr)
+
+
 @recursive_repr()
 def _repr(self: Any) -> str:
-    shown = (
-        f"{one.name}={getattr(self, one.name)!r}" for one in dataclasses.fields(self) if one.repr
-    )
+    cls: Any = type(self)
+    shown = (f"{name}={getattr(self, name)!r}" for name in _shown(cls))
     return f"{type(self).__qualname__}({', '.join(shown)})"
 
 

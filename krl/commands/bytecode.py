@@ -2,17 +2,14 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.output_files import check_files
-from krl.program_loading import load_program
+from krl.program_loading import compile_project
 from support.files.atomic_write import write_atomic
-
-if TYPE_CHECKING:
-    from interp.bytecode.program import Program
 
 __all__ = ["assemble_file", "compile_file", "disassemble_image"]
 
@@ -45,32 +42,30 @@ def compile_file(
     programs too. What ends the program when it is reached is reported on stderr, with exit status
     1: a routine that no file has, a variable of no known type. The image is written all the same.
     """
-    from interp.bytecode.compiler import compile_program
     from interp.values.faults import LinkError
 
     try:
-        program, left = load_program(file, strict=strict)
-        compiled = compile_program(program)
+        image, left = compile_project(file, strict=strict)
     except LinkError as error:
         raise InputError(f"{file}: {error}") from error
     target = output or file.with_suffix(".krlb")
-    write_image_of(compiled.program, file, target)
+    _write(image.data, target)
     told = [f"left out: {why}" for why in left]
     if native:
-        told += _native_code(compiled.program)
-    told += [f"{one.path}:{one.line}: {one.reason}" for one in compiled.refusals]
+        told += _native_code(image.data)
+    told += image.refusals
     for line in told[:_MOST_TOLD]:
         typer.echo(one_line(line), err=True)
     if len(told) > _MOST_TOLD:
         typer.echo(f"and {len(told) - _MOST_TOLD} more", err=True)
-    codes = compiled.program.codes
-    count = sum(len(code.instructions) for code in codes)
-    typer.echo(one_line(f"{target}: {len(codes):,} code objects, {count:,} instructions"))
-    return FINDINGS if compiled.refusals else FINE
+    count = f"{image.codes:,} code objects, {image.instructions:,} instructions"
+    typer.echo(one_line(f"{target}: {count}"))
+    return FINDINGS if image.refusals else FINE
 
 
-def _native_code(program: "Program") -> Iterator[str]:
+def _native_code(image: bytes) -> Iterator[str]:
     """Make and keep it; gives why there is none."""
+    from interp.bytecode.image.reader import read_image
     from interp.bytecode.verifier.verify import verify
     from interp.native import AVAILABLE
 
@@ -80,7 +75,7 @@ def _native_code(program: "Program") -> Iterator[str]:
     from interp.native.compiled import keep
 
     try:
-        keep(verify(program))
+        keep(verify(read_image(image)))
     except OSError as error:
         yield f"no native code: {error}"
 
@@ -94,6 +89,7 @@ def assemble_file(
 ) -> None:
     """Assemble a program of the bytecode machine, verify it, and write its image."""
     from interp.bytecode.assembly.assembler import AssemblyError, assemble
+    from interp.bytecode.verifier.verify import VerificationError, verify
 
     try:
         program = assemble(_read(file).decode("utf-8-sig"))
@@ -101,7 +97,11 @@ def assemble_file(
         raise InputError(f"{file}: not a text in UTF-8") from None
     except AssemblyError as error:
         raise InputError(f"{file}: {error}") from error
-    write_image_of(program, file, output or file.with_suffix(".krlb"))
+    try:
+        image = verify(program).image
+    except VerificationError as error:
+        raise InputError(f"{file}: {error}") from error
+    _write(image, output or file.with_suffix(".krlb"))
 
 
 def disassemble_image(
@@ -133,17 +133,9 @@ def disassemble_image(
         typer.echo(line)
 
 
-def write_image_of(program: "Program", source: Path, target: Path) -> None:
-    """Verify a program and write its image, whole or not at all."""
-    from interp.bytecode.image.writer import write_image
-    from interp.bytecode.verifier.verify import VerificationError, verify
-
-    try:
-        verify(program)
-    except VerificationError as error:
-        raise InputError(f"{source}: {error}") from error
+def _write(image: bytes, target: Path) -> None:
     check_files(target)
-    write_atomic(target, write_image(program))
+    write_atomic(target, image)
 
 
 def _read(file: Path) -> bytes:

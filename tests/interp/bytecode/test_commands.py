@@ -50,6 +50,23 @@ def test_what_is_wrong_is_told_on_one_line(
     assert [file] == list(tmp_path.iterdir())
 
 
+def test_what_was_compiled_is_not_compiled_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second time the same image is written and the same said; another text is compiled."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    source, image = tmp_path / "a.src", tmp_path / "a.krlb"
+    source.write_text("DEF A()\nINT I\nI=NOWHERE()\nEND\n" + ";\n" * 5_000, encoding="utf-8")
+    assert 1 == main(["compile", str(source)])
+    told, made = capsys.readouterr(), image.read_bytes()
+    with monkeypatch.context() as patched:
+        patched.delattr("interp.bytecode.compiler.compile_program")
+        assert 1 == main(["compile", str(source)])
+    assert (told, made) == (capsys.readouterr(), image.read_bytes())
+    source.write_text("DEF A()\nINT I\nI=1\nEND\n" + ";\n" * 5_000, encoding="utf-8")
+    assert 0 == main(["compile", str(source)])
+
+
 def test_folders_are_no_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A folder is neither read nor written."""
     source = tmp_path / "a.kasm"
