@@ -38,6 +38,7 @@ __all__ = [
     "PosePathCurve",
     "Rates",
     "tool_positions",
+    "tool_tangents",
 ]
 
 #: First to third derivatives of axes by u, each ``(n, axes)``.
@@ -52,6 +53,7 @@ differences of points nearer to one another would be those of rounding."""
 _MOST = 8193
 _SMOOTH = 0.004
 """Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
+_NEAR = 1e-4  # of u: half the width of a difference
 _ROUGH = 0.05  # degrees of them at which, with most points, an axis is taken to jump
 
 
@@ -391,6 +393,16 @@ def tool_positions(curve: Curve, u: Array) -> Array:
         points = _inverted(points)
     positions: Array = points[:, :3, 3]
     return positions
+
+
+def tool_tangents(curve: Curve, u: Array) -> Array:
+    """Positions of the tool differentiated by u, ``(n, 3)`` in mm."""
+    if curve.pose_path is not None:
+        return curve.pose_path.tangents(u)
+    middle = np.clip(u, _NEAR, 1.0 - _NEAR)
+    both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
+    tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)
+    return tangents
 
 
 def _inverted(poses: Array) -> Array:

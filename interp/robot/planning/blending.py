@@ -16,26 +16,23 @@ import numpy as np
 
 from interp.robot.arm import Approximation, Motion
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
-from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_path
 from interp.robot.path.axis_path import (
     BlendedAxes,
     BlendedOthers,
     Curve,
-    InStep,
-    JointLine,
     PosePathCurve,
     Rates,
+    tool_tangents,
 )
-from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import Blend, StraightLine
 from interp.robot.path.transition import Overlap, Rounding, Transition
 from interp.robot.path.way import Way
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of, even_ceiling
 from interp.robot.planning.profile import Bounds, ramp
 from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
-from interp.robot.planning.timeline import tool_tangents
-from interp.robot.planning.tracks import Piece, Track
+from interp.robot.planning.straight_run import StraightRun, extended, straight_through, way_of
+from interp.robot.planning.tracks import Piece, Track, reduced_paths
 
 __all__ = ["Joint", "Zone", "blend_of", "wants_blend", "zone_of"]
 
@@ -54,8 +51,6 @@ _STRAIGHT = 1e-3
 """Relative difference of directions that counts as none."""
 _BACK = -0.99
 """The least cosine of an angle at which speed may be kept: a way back has a point of no length."""
-_STRAIGHT_ON = 2e-5
-"""Share of a straight way by which the point between may lie beside it."""
 _EVEN = 1e-6
 _GRID = np.linspace(0.0, 1.0, 65)
 _STEP = 1.0 / 64.0
@@ -117,7 +112,8 @@ class Joint:
     """A blend: its curve, how fast that may be travelled, and how it joins what it is between.
 
     ``zone`` is what it takes of both, which may be less than was asked for. ``into`` and ``out``
-    are gear and bend at its start and at its end, as in `GearedStretch`.
+    are gear and bend at its start and at its end, as in `GearedStretch`. ``straight`` is the
+    straight way that both motions are parts of, if they are.
     """
 
     zone: Zone
@@ -125,12 +121,18 @@ class Joint:
     ceiling: Ceiling
     into: tuple[float, float]
     out: tuple[float, float]
+    straight: StraightRun | None = None
 
 
 def blend_of(
-    first: Track, second: Track, zone: Zone, machine: MachineData, limits: AxisLimits
+    first: Track,
+    second: Track,
+    zone: Zone,
+    machine: MachineData,
+    limits: AxisLimits,
+    run: StraightRun | None = None,
 ) -> Joint:
-    """The blend of a zone.
+    """The blend of a zone; ``run`` is the straight way that ends in the first motion, if any.
 
     Of the transitions that are about as soon over, its shape is the one nearest to a parabola.
     ``limits`` are those of the machine data, which hold for all axes; on the path of the tool the
@@ -141,7 +143,7 @@ def blend_of(
     common = _common_curves(first, second)
     weights, is_straight = _course(one, other, common, zone, limits)
     if is_straight:
-        straight = _straight_on(first, second, zone, weights, machine, limits)
+        straight = _straight_on(first, second, zone, machine, limits, run)
         if straight is not None:
             return straight
     transition: Transition = Rounding(zone.before, zone.after, weights, _SMOOTH)
@@ -160,7 +162,9 @@ def blend_of(
     # The spline of the axes sees little of how quickly the curve begins to bend.
     ends = axes.rates(np.array([0.0, 1.0]))
     x, y, z = (np.concatenate(both) for both in zip(curve.rates(curve.grid), ends, strict=True))
-    slowest = _slowest_in_t1(first, second, curve, machine)
+    settings = first.motion.settings, second.motion.settings
+    in_t1 = reduced_paths(curve, machine, *settings)
+    slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
     ceiling = _ceiling(first, second, transition, (x, y, z), machine, slowest)
     return Joint(zone, curve, ceiling, *_gears(transition))
 
@@ -203,52 +207,27 @@ def _straight_on(
     first: Track,
     second: Track,
     zone: Zone,
-    weights: tuple[float, float],
     machine: MachineData,
     limits: AxisLimits,
+    run: StraightRun | None,
 ) -> Joint | None:
     """The joint of two straight ways of which the second goes on where the first leads.
 
     It is a piece of straight way itself. ``None`` where that would miss the point between.
     """
     one, other = first.pieces[-1], second.pieces[0]
-    ends = np.array([1.0 - zone.before, 1.0]), np.array([zone.after])
-    (leaves, corner), (joins,) = one.curve.axes(ends[0]), other.curve.axes(ends[1])
-    length = sum(weights)
-    share = np.array([weights[0] / length])
-    curve: Curve
-    paths: tuple[PathLimits, ...] = ()
-    if isinstance(one.curve, JointLine) and isinstance(other.curve, JointLine):
-        curve = JointLine(one.curve.arm, one.curve.placement, leaves, joins)
-        if not _is_near(curve.axes(share)[0], corner, float(np.abs(joins - leaves).max())):
-            return None
-        allowed = first.axis_limits.merged(second.axis_limits, np.minimum)
-        most = _slowest_in_t1(first, second, curve, machine)
-        if math.isfinite(most):
-            paths = (PathLimits(1.0, most, math.inf),)
+    curve = straight_through((one.curve, other.curve), 1.0 - zone.before, zone.after)
+    if curve is None or len(one.paths) != len(other.paths):
+        return None
+    ways = way_of(one.curve), way_of(other.curve)
+    length = zone.before * ways[0] + zone.after * ways[1]
+    straight = extended(run, first, second, (zone.before, zone.after), machine, limits)
+    if straight is not None:
+        ceiling = straight.ceiling_of((first.motion.number, True, 0))
     else:
-        common = _common_curves(first, second)
-        if (
-            common is None
-            or not isinstance(common[0].tool_path, StraightLine)
-            or not isinstance(common[1].tool_path, StraightLine)
-            or len(one.paths) != len(other.paths)
-        ):
-            return None
-        (points, turned), (point, turn) = (
-            curve.tool_path.at(where) for curve, where in zip(common, ends, strict=True)
-        )
-        line = StraightLine(points[0], point[0], turning(turned[0], turn[0]), kind="BLEND")
-        place, rotation = line.at(share)
-        if not _is_near(place[0], points[1], line.length) or not _is_near(
-            rotation[0], turned[1], sum(line.angles)
-        ):
-            return None
-        others = InStep(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
-        arm, placement = one.curve.arm, one.curve.placement
-        curve = PosePathCurve(arm, placement, line, leaves[:ROBOT_AXES], others)
-        allowed = limits
-        paths = tuple(
+        allowed = first.axis_limits.merged(second.axis_limits, np.minimum)
+        settings = first.motion.settings, second.motion.settings
+        paths = reduced_paths(curve, machine, *settings) or tuple(
             PathLimits(
                 zone.before * x.length + zone.after * y.length,
                 min(x.velocity, y.velocity),
@@ -257,14 +236,9 @@ def _straight_on(
             )
             for x, y in zip(one.paths, other.paths, strict=True)
         )
-    into, out = weights[0] / zone.before / length, zone.after / weights[1] * length
-    ceiling = ceiling_of(curve, limits, allowed, paths)
-    return Joint(zone, curve, ceiling, (into, 0.0), (out, 0.0))
-
-
-def _is_near(one: Array, other: Array, size: float) -> bool:
-    """Whether two places differ by no more than a bend that no axis feels."""
-    return float(np.abs(one - other).max()) <= _STRAIGHT_ON * size + _TINY
+        ceiling = ceiling_of(curve, limits, allowed, paths)
+    into, out = ways[0] / length, length / ways[1]
+    return Joint(zone, curve, ceiling, (into, 0.0), (out, 0.0), straight)
 
 
 def _soonest(
@@ -460,17 +434,3 @@ def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
     wanted = way.length - distance if at_end else distance
     (u,) = way.parameters(np.array([wanted]))
     return float(1.0 - u if at_end else u)
-
-
-# ---------------------------------------------------------------------------------------- speed
-
-
-def _slowest_in_t1(first: Track, second: Track, curve: Curve, machine: MachineData) -> float:
-    """In T1 the tool is no faster than $VEL_CP_T1 on a blend of axes either [MOT-07]."""
-    if curve.pose_path is not None or not any(
-        track.motion.settings.is_reduced for track in (first, second)
-    ):
-        return math.inf
-    tangents: Array = tool_tangents(curve, np.linspace(0.0, 1.0, 33))
-    fastest = float(np.linalg.norm(tangents, axis=1).max())
-    return machine.t1_speed * _METRE / fastest if fastest > 0.0 else math.inf

@@ -60,6 +60,11 @@ class AxisLimits:
     acceleration: Array
     jerk: Array
 
+    def equals(self, other: AxisLimits) -> bool:
+        """Whether all limits are the same."""
+        names = ("velocity", "acceleration", "jerk")
+        return all(np.array_equal(getattr(self, n), getattr(other, n)) for n in names)
+
     def scaled(
         self, velocity: Sequence[float], acceleration: Sequence[float], jerk: Sequence[float]
     ) -> AxisLimits:
@@ -80,7 +85,7 @@ class AxisLimits:
         )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class PathLimits:
     """A length that u stands for, how fast it may grow, and how fast its speed may change.
 
@@ -134,6 +139,13 @@ class Stretch:
             return self
         return replace(self, start=max(start, self.start), end=min(end, self.end))
 
+    def part(self, start: float, share: float) -> Stretch:
+        """The same over the parameter of a share of the curve from a start on."""
+        rates = ("velocity", "programmed", "acceleration", "jerk", "hardest", "sharpest", "even")
+        scaled = {name: getattr(self, name) / share for name in rates}
+        ends = {"start": (self.start - start) / share, "end": (self.end - start) / share}
+        return replace(self, size=self.size * share, **ends, **scaled)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ceiling:
@@ -149,6 +161,11 @@ class Ceiling:
             if stretch.end > start and stretch.start < end
         )
         return tuple(part for part in parts if part.end > part.start)
+
+    def part(self, start: float, end: float) -> Ceiling:
+        """That of a part of the curve, whose own parameter goes from 0 to 1."""
+        share = end - start
+        return Ceiling(tuple(each.part(start, share) for each in self.between(start, end)))
 
 
 def axis_limits(machine: MachineData) -> AxisLimits:

@@ -18,11 +18,13 @@ from interp.robot.arm import ArmEvent, Motion, Position, Samples
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_limits
+from interp.robot.path.axis_path import tool_tangents
 from interp.robot.path.targets_in_force import Programmed, check_numbers, check_start
 from interp.robot.planning.blending import blend_of, zone_of
 from interp.robot.planning.execution import PathExecution
 from interp.robot.planning.path_events import Passage, events_of
 from interp.robot.planning.spline_blocks import block
+from interp.robot.planning.straight_run import StraightRun
 from interp.robot.planning.timeline import (
     MICROSECOND,
     Key,
@@ -30,7 +32,6 @@ from interp.robot.planning.timeline import (
     Section,
     Timeline,
     micros,
-    tool_tangents,
 )
 from interp.robot.planning.tracks import Track, Tracks
 from interp.values.faults import Fault
@@ -45,13 +46,15 @@ _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the pla
 class _Plan:
     """All that is planned and not yet travelled. ``last`` is the motion that the next follows.
 
-    ``programmed`` is the target that the next motion starts from.
+    ``programmed`` is the target that the next motion starts from, ``straight`` the straight way
+    that ends in the last motion, if it is more than that.
     """
 
     programmed: Programmed
     route: tuple[Section, ...] = ()
     passages: tuple[Passage, ...] = ()
     last: Track | None = None
+    straight: StraightRun | None = None
     is_aborted: bool = False
 
 
@@ -162,7 +165,8 @@ class PlannedArm:
         if leaves < body.start or reached > leaves:
             return False
         try:
-            joint = blend_of(before.last, track, zone, self._tracks.machine, self._tracks.limits)
+            machine, limits = self._tracks.machine, self._tracks.limits
+            joint = blend_of(before.last, track, zone, machine, limits, before.straight)
         except Fault:
             return False
         number = track.motion.number
@@ -173,6 +177,9 @@ class PlannedArm:
         gear, bend = joint.out
         rest = (replace(first, start=joint.zone.after, gear=gear, bend=bend), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
+        if joint.straight is not None:
+            route = tuple(joint.straight.bounded(section) for section in route)
+            shorter = route[len(before.route) - 1]
         if not self._reschedule(route, new_behind=shorter):
             return False
         self._plan = _Plan(
@@ -184,6 +191,7 @@ class PlannedArm:
                 Passage(track.motion, rest, into=blend),
             ),
             track,
+            joint.straight,
         )
         return True
 

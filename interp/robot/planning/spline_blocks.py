@@ -23,7 +23,7 @@ from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning.limits import ceiling_of
 from interp.robot.planning.spline_ranges import with_ranges
-from interp.robot.planning.tracks import Piece, Track, Tracks
+from interp.robot.planning.tracks import Piece, Track, Tracks, reduced_paths
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
@@ -197,7 +197,9 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
                 curve = JointSpline(tracks.arm, own.placement, part_of)
                 check_path(tracks.every, part_of.at(_CLOSE))
             limits = tracks.programmed(own)
-            ceiling = ceiling_of(curve, tracks.limits, limits, tracks.reduced(curve, own))
+            ceiling = ceiling_of(
+                curve, tracks.limits, limits, reduced_paths(curve, tracks.machine, own)
+            )
             gear = spans[place - 1] / spans[place] if place > first else 0.0
             pieces.append(Piece(curve, ceiling, (), gear))
     last_settings = motion.parts[-1].settings or motion.settings

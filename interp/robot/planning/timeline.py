@@ -13,20 +13,19 @@ import numpy.typing as npt
 
 from interp.robot.arm import Samples
 from interp.robot.kinematics.solver import Array
-from interp.robot.path.axis_path import Curve, tool_positions
+from interp.robot.path.axis_path import Curve, tool_tangents
 from interp.robot.path.way import Way
 from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import GearedStretch, PathState
 
-__all__ = ["MICROSECOND", "Key", "Leg", "Section", "Timeline", "micros", "tool_tangents"]
+__all__ = ["MICROSECOND", "Key", "Leg", "Section", "Timeline", "micros"]
 
 MICROSECOND = 1e-6
 #: The number of a motion, whether it is the blend behind it, and the part of a spline block.
 Key = tuple[int, bool, int]
 
 _NOTHING = 1e-9  # of u
-_NEAR = 1e-4  # of u: half the width of a difference
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,13 +233,3 @@ class Timeline:
 def micros(seconds: float) -> int:
     """The whole microsecond at which something has happened."""
     return math.ceil(seconds / MICROSECOND - 1e-3)
-
-
-def tool_tangents(curve: Curve, u: Array) -> Array:
-    """Positions of the tool differentiated by u, ``(n, 3)`` in mm."""
-    if curve.pose_path is not None:
-        return curve.pose_path.tangents(u)
-    middle = np.clip(u, _NEAR, 1.0 - _NEAR)
-    both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
-    tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)
-    return tangents

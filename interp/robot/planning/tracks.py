@@ -19,7 +19,7 @@ from interp.robot.path.axis_path import (
     JointLine,
     Others,
     PosePathCurve,
-    tool_positions,
+    tool_tangents,
 )
 from interp.robot.path.circle import Circle, circle_through
 from interp.robot.path.orientation import Carried, Orientation, Turning, about, turning
@@ -30,7 +30,7 @@ from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_l
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = ["Piece", "Track", "Tracks"]
+__all__ = ["Piece", "Track", "Tracks", "reduced_paths"]
 
 _STILL = 1e-6  # mm or degrees: less is no motion
 _ZERO_LENGTH, _SINGULAR, _TURNED_VARIABLY = 3171, 2868, 2821
@@ -138,7 +138,9 @@ class Tracks:
         curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
         limits = self.programmed(settings)
         is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
-        ceiling = ceiling_of(curve, self.limits, limits, self.reduced(curve, settings))
+        ceiling = ceiling_of(
+            curve, self.limits, limits, reduced_paths(curve, self.machine, settings)
+        )
         piece = Piece(curve, ceiling, is_still=is_still)
         track = Track(motion, (piece,), limits, goal.is_singular)
         return track, before.reached(goal.axes, goal.components, settings.placement)
@@ -247,16 +249,6 @@ class Tracks:
             limits.append(PathLimits(angle, turn, turn_gain, jerks[1]))
         return tuple(limit for limit in limits if limit.length > _STILL)
 
-    def reduced(self, curve: Curve, settings: Settings) -> tuple[PathLimits, ...]:
-        """In T1 the tool is no faster than $VEL_CP_T1 in PTP either [MOT-07]."""
-        if not settings.is_reduced:
-            return ()
-        places = tool_positions(curve, np.linspace(0.0, 1.0, 65))
-        fastest = float(np.linalg.norm(np.diff(places, axis=0), axis=1).max()) * 64.0
-        if fastest < _STILL:
-            return ()
-        return (PathLimits(fastest, self.machine.t1_speed * _METRE, math.inf),)
-
     def check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
         """Raise `Fault` 1102 where an axis would be too fast and $CP_VEL_TYPE forbids to slow down.
 
@@ -276,6 +268,22 @@ class Tracks:
             name = self.every[int(np.argmax(over))].name
             text = f"the path would move {name} faster than it can"
             raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
+
+
+def reduced_paths(
+    curve: Curve, machine: MachineData, *settings: Settings
+) -> tuple[PathLimits, ...]:
+    """What holds for a curve of axes where one of some settings is of T1.
+
+    The tool is no faster than $VEL_CP_T1 there either [MOT-07].
+    """
+    if curve.pose_path is not None or not any(each.is_reduced for each in settings):
+        return ()
+    tangents = tool_tangents(curve, np.linspace(0.0, 1.0, 65))
+    fastest = float(np.linalg.norm(tangents, axis=1).max())
+    if fastest < _STILL:
+        return ()
+    return (PathLimits(fastest, machine.t1_speed * _METRE, math.inf),)
 
 
 def _turning(settings: Settings, start: Array, end: Array) -> Turning:

@@ -34,13 +34,14 @@ def test_no_program_is_slower_for_its_blends(seed: int) -> None:
 
 @FEW
 @given(seed=SEEDS)
-def test_points_on_a_straight_way_cost_next_to_nothing(seed: int) -> None:
-    """A line or a PTP takes as long with points on it that are blended, to half a per cent."""
+@example(seed=999028)  # the axes allow 1.7 times less at the end of the line than at its start
+def test_points_on_a_straight_way_cost_nothing(seed: int) -> None:
+    """A line or a PTP takes as long with points on it that are blended."""
     try:
         whole, parts = (travel(row)[0].seconds for row in straight(seed))
     except Fault:
         assume(False)
-    assert parts <= whole * 1.005
+    assert parts <= whole * 1.00001
 
 
 @FEW

@@ -1,0 +1,155 @@
+"""Straight motions of which each goes on where the one before leads, planned as one.
+
+How fast a straight way may be travelled is seen from all of it, so points on it cost no time: the
+bounds of its motions, and of the blends between them, are parts of those of the whole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
+from interp.robot.kinematics.solver import Array
+from interp.robot.path.axis_path import Curve, InStep, JointLine, PosePathCurve
+from interp.robot.path.orientation import turning
+from interp.robot.path.pose_path import StraightLine
+from interp.robot.planning.limits import AxisLimits, Ceiling, ceiling_of
+from interp.robot.planning.timeline import Key, Section
+from interp.robot.planning.tracks import Track, reduced_paths
+
+__all__ = ["StraightRun", "extended", "straight_through", "way_of"]
+
+_BESIDE = 2e-5
+"""Share of a straight way by which a point on it may lie beside it: no axis feels such a bend."""
+_TINY = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StraightRun:
+    """Motions in a row along one straight way.
+
+    ``places`` are where each of their sections, and of the blends between them, would start and end
+    in mm or degrees of the whole ``length`` if it were travelled from u = 0 to 1.
+    """
+
+    curves: tuple[Curve, ...]
+    places: dict[Key, tuple[float, float]]
+    length: float
+    ceiling: Ceiling
+
+    def bounded(self, section: Section) -> Section:
+        """A section with the bounds that the whole has there; one beside it as it is."""
+        if section.key not in self.places:
+            return section
+        return replace(section, ceiling=self.ceiling_of(section.key))
+
+    def ceiling_of(self, key: Key) -> Ceiling:
+        """The bounds of one of its sections."""
+        start, end = (where / self.length for where in self.places[key])
+        return self.ceiling.part(start, end)
+
+
+def extended(
+    run: StraightRun | None,
+    first: Track,
+    second: Track,
+    shares: tuple[float, float],
+    machine: MachineData,
+    limits: AxisLimits,
+) -> StraightRun | None:
+    """A run with one motion more, or where it does not lead there, the run of the last two.
+
+    ``shares`` are those that the blend takes of both. ``None`` where they are no straight way, or
+    different speeds are programmed. Raises `Fault` as `PosePathCurve`.
+    """
+    one, other = first.pieces[-1], second.pieces[0]
+    if first.motion.parts or second.motion.parts:  # a block has bounds of its own
+        return None
+    if one.curve.placement != other.curve.placement:
+        return None
+    limits_of = [[replace(path, length=1.0) for path in piece.paths] for piece in (one, other)]
+    if limits_of[0] != limits_of[1] or not first.axis_limits.equals(second.axis_limits):
+        return None
+    curves: tuple[Curve, ...] = (one.curve, other.curve)
+    places: dict[Key, tuple[float, float]] = {}
+    whole = None
+    if run is not None and run.curves[-1] is one.curve:
+        whole = straight_through((*run.curves, other.curve))
+    if run is not None and whole is not None:
+        curves, places = (*run.curves, other.curve), dict(run.places)
+    else:
+        whole = straight_through(curves)
+    if whole is None:
+        return None
+    before, behind = way_of(one.curve), way_of(other.curve)
+    length = math.fsum(way_of(curve) for curve in curves)
+    corner = length - behind
+    number, following = first.motion.number, second.motion.number
+    places[number, False, 0] = corner - before, corner
+    places[number, True, 0] = corner - shares[0] * before, corner + shares[1] * behind
+    places[following, False, 0] = corner, length
+    if whole.is_straight:
+        paths = reduced_paths(whole, machine, first.motion.settings, second.motion.settings)
+    else:
+        paths = tuple(replace(x, length=x.length * length / behind) for x in other.paths)
+    return StraightRun(curves, places, length, ceiling_of(whole, limits, second.axis_limits, paths))
+
+
+def straight_through(
+    curves: Sequence[Curve], start: float = 0.0, end: float = 1.0
+) -> JointLine | PosePathCurve | None:
+    """The straight way from a parameter of the first curve to one of the last.
+
+    ``None`` where they are not straight, or a point between two of them would lie beside it. Raises
+    `Fault` as `PosePathCurve`.
+    """
+    one, other = curves[0], curves[-1]
+    ways = np.array([way_of(curve) for curve in curves])
+    ways[0] *= 1.0 - start
+    ways[-1] *= end
+    if not ways.all() or any(not _is_like(one, curve) for curve in curves):
+        return None
+    (leaves,), (joins,) = one.axes(np.array([start])), other.axes(np.array([end]))
+    shares = np.cumsum(ways)[:-1] / ways.sum()
+    corners = np.array([curve.end for curve in curves[:-1]])
+    if isinstance(one, JointLine):
+        line = JointLine(one.arm, one.placement, leaves, joins)
+        return line if _is_near(line.axes(shares), corners, joins - leaves) else None
+    lines = [curve.pose_path for curve in curves if curve.pose_path is not None]
+    (point,), (turned,) = lines[0].at(np.array([start]))
+    (there,), (turn,) = lines[-1].at(np.array([end]))
+    whole = StraightLine(point, there, turning(turned, turn), kind="BLEND")
+    others = InStep(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
+    ends = [line.at(np.ones(1)) for line in lines[:-1]]
+    points, turns = (np.concatenate(both) for both in zip(*ends, strict=True))
+    places, rotations = whole.at(shares)
+    is_through = (
+        _is_near(places, points, whole.length)
+        and _is_near(rotations, turns, sum(whole.angles))
+        and _is_near(others.at(shares), corners[:, ROBOT_AXES:], others.end - others.start)
+    )
+    if not is_through:
+        return None
+    return PosePathCurve(one.arm, one.placement, whole, leaves[:ROBOT_AXES], others)
+
+
+def way_of(curve: Curve) -> float:
+    """The length of a straight curve, in what it goes by; 0 where it is bent."""
+    if isinstance(curve, JointLine):
+        return float(np.linalg.norm(curve.end - curve.start))
+    line = curve.pose_path
+    return (line.length or sum(line.angles)) if isinstance(line, StraightLine) else 0.0
+
+
+def _is_like(one: Curve, other: Curve) -> bool:
+    is_axes = isinstance(one, JointLine)
+    return type(one) is type(other) and (is_axes or one.placement == other.placement)
+
+
+def _is_near(ours: Array, theirs: Array, way: Array | float) -> bool:
+    off = float(np.abs(ours - theirs).max(initial=0.0))
+    return off <= _BESIDE * float(np.abs(way).max(initial=0.0)) + _TINY
