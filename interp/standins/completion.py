@@ -7,6 +7,7 @@ names are used. Stand-ins are files like others, so executors and checks know no
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import PurePosixPath
@@ -229,6 +230,7 @@ class _Making:
         #: Variables that stand in as points, by name in upper case.
         self.placed: set[str] = set()
         self._texts: dict[str, str] = {}
+        self._types: dict[str, str] = {}
         self._files: dict[tuple[str, str], File] = {}
         self._apart: set[tuple[str, str]] | None = None
         self._add_types_of_packages()
@@ -257,7 +259,7 @@ class _Making:
             for name, datum in library.data.items()
             if name.endswith(_DEFAULT)
         }
-        signatures = Signatures(self._enumerations(), self._type, values, self._places)
+        signatures = Signatures(self._enumerations(), self._type, values, self._places, self._types)
         before = dict(self._texts)
         for name in unknown:
             signatures.type(name, uses.types[name])
@@ -269,8 +271,8 @@ class _Making:
             for name, use in uses.data.items()
             for line in signatures.data(name, use, is_last=is_last)
         ]
-        self._texts[_data_path()] = self._data_list(signatures, data)
         self._add_own_lists(signatures, uses, is_last=is_last)
+        self._texts[_data_path()] = self._data_list(signatures, data)
         self.placed = signatures.placed
         if self._texts == before and not is_last:
             return True
@@ -304,12 +306,13 @@ class _Making:
         """Data lists in place of missing ones, with what would not agree in one list for all."""
         lines: dict[str, list[str]] = {}
         for (path, name), use in uses.apart.items():
+            signatures.owner = path
             lines.setdefault(f"{path.rpartition('.')[0]}.dat", []).extend(
                 signatures.data(name, use, is_last=is_last, access="")
             )
         for path, declared in lines.items():
-            name = PurePosixPath(path).stem
-            self._texts[path] = "\n".join([f"DEFDAT {name}", *declared, "ENDDAT", ""])
+            name = re.sub(r"\W", "_", PurePosixPath(path).stem)
+            self._texts[path] = "\n".join([f"DEFDAT LIST_{name}", *declared, "ENDDAT", ""])
 
     # ------------------------------------------------------------------------- the library
 
@@ -406,7 +409,7 @@ def _ambiguous(uses: Uses) -> Iterator[tuple[str, str]]:
         by_name.setdefault(name, []).append((path, use))
     for name, places in by_name.items():
         every = [uses.data[name], *(use for _, use in places)]
-        sorts = {sort for use in every for sort in _sort(use)}
+        sorts = {(sort, bool(use.indices)) for use in every for sort in _sort(use)}
         asked_for = {use.asked_for for use in every if use.asked_for}
         is_constant = not any(use.is_assigned for use in every)
         if len(sorts) > 1 or (is_constant and len(asked_for) > 1):

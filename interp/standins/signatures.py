@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import islice, product
 from math import prod
 from typing import Final
+from zlib import crc32
 
 from grammar.motion_kinds import AXIS_MOTIONS
 from grammar.semantics.packages import PackageRoutine
@@ -69,8 +70,9 @@ class Signatures:
     """Makes declarations; ``find_type`` gives a type of the project that is seen everywhere.
 
     ``values`` are defaults by the names of their types, where zeros will not do; ``places`` are for
-    points. ``types`` are the lines of new types, by name in upper case; ``placed`` are the
-    variables that have got places.
+    points. ``types`` are the lines of new types, by name in upper case, also of those made before;
+    ``placed`` are the variables that have got places; ``owner`` is the file that alone has what
+    comes next.
     """
 
     def __init__(
@@ -79,8 +81,10 @@ class Signatures:
         find_type: Callable[[str], Type | None],
         values: Mapping[str, str],
         places: Places,
+        types: dict[str, str] | None = None,
     ) -> None:
-        self.types: dict[str, str] = {}
+        self.types = {} if types is None else types
+        self.owner = ""
         self.placed: set[str] = set()
         self._places = places
         self._values = values
@@ -132,8 +136,10 @@ class Signatures:
     def _kind(self, name: str, use: DataUse) -> _Kind | None:
         numbers = [one for one in use.types if one in (INT, REAL)]
         is_pose = bool(use.motions - AXIS_MOTIONS or _FRAME & set(use.members))
+        # What was made for one of its other uses is made again with what this round knows.
+        own = self.types if use.members or use.constants else ()
         for one in use.types:
-            if one not in numbers and not (is_pose and is_axes(one)):
+            if one not in numbers and not (is_pose and is_axes(one)) and str(one) not in own:
                 known = self._known(name, one, use)
                 if known is not None:
                     return known
@@ -147,13 +153,20 @@ class Signatures:
                 return self._named("FRAME", name)
             if members <= _FRAME | _EXTERNAL | {"S", "T"}:
                 return self._named("E6POS", name)
-            made = f"{name[:_LONGEST]}_T"
+            made = self._made(name, "T")
             return _Kind(made, self._structure(made, use))
         if use.motions:
             return self._named("E6AXIS" if use.motions <= AXIS_MOTIONS else "E6POS", name)
         if use.is_text:
             return _Kind("CHAR", '" "', is_text=True)
         return self._number(use) if numbers else None
+
+    def _made(self, name: str, kind: str) -> str:
+        """The name of a type that is made for what has a name: another one for each owner."""
+        if self.owner or len(name) > _LONGEST:
+            digest = crc32(f"{self.owner} {name}".encode()) % 0x10000
+            name = f"{name[: _LONGEST - 4]}{digest:04X}"
+        return f"{name}_{kind}"
 
     def _number(self, use: DataUse) -> _Kind:
         begins_at_0 = use.is_assigned and not (use.is_index or use.is_part or use.indices)
@@ -181,7 +194,7 @@ class Signatures:
             has_all = not one.is_open and all(constant in one for constant in use.constants)
             if has_all and self._find_type(one.name) == one:
                 return _Kind(one.name, f"#{first}")
-        made = f"{name[:_LONGEST]}_E"
+        made = self._made(name, "E")
         self.types[made] = f"GLOBAL ENUM {made} {','.join(use.constants.values())}"
         return _Kind(made, f"#{first}")
 

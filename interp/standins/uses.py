@@ -361,10 +361,11 @@ class Uses:
         return found
 
     def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
-        """Both sides are of one type."""
-        one, other = self._type(left), self._type(right)
-        self._expect(right, one)
-        self._expect(left, other)
+        """Both sides are of one type; no statement has whole arrays on its sides."""
+        for node, other in ((left, right), (right, left)):
+            type_ = self._type(other)
+            if not isinstance(type_, Array) or type_.element == CHAR:
+                self._expect(node, type_)
 
     def _expect(self, node: ast.Expression, type_: Type) -> None:
         """An expression is of a type."""

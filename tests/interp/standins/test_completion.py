@@ -424,3 +424,43 @@ def test_arrays_have_what_a_loop_counts_to() -> None:
     program = _main("FOR I=1 TO 100\nPTP P[I]\nENDFOR\n", declared="INT I\n")
     run = _run(program)
     assert (("end", ""), 100) == (_outcome(run), len(_planned(run)))
+
+
+def _skipped(files: Mapping[str, str]) -> list[tuple[str, int]]:
+    """The lines that fail where all statements that do are skipped."""
+    setup = RunSetup(is_tolerant=True, skips_failures=True)
+    return list(run_program(_program(files), setup).controller.skipped)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("S.MODE=#A\nS.SIZE=2.5\nIF S.MODE==#A THEN\nENDIF\n", "S.SIZE=3.5\nCOPY=S\n"),
+        ("D=3\nX=D/2\n", "D[1]=7\nX=D[1]\n"),
+        ("R[1].Y=2.5\nX=R[1].Y\n", "R.MODE=#ON\n"),
+        ("T=S.MODE\nS.MODE=#B\n", "S=5\nN=S\n"),
+    ],
+    ids=["one structure", "an array only here", "structures only here", "a number only there"],
+)
+def test_types_of_variables_without_data_lists(first: str, second: str) -> None:
+    """Structures, arrays and enumerations that only uses tell of hold what is assigned to them."""
+    files = {
+        "a/main.src": f"DEF main ( )\n{first}other ( )\nEND\n",
+        "a/other.src": f"DEF other ( )\n{second}END\n",
+    }
+    assert [] == _skipped(files)
+
+
+def test_types_of_parameters_with_long_names() -> None:
+    """Each parameter of a missing routine takes its own constants, however long its name is."""
+    body = "A_NAME_OF_TWENTY_TWO_X(#LEFT,#FAST)\nA_NAME_OF_TWENTY_TWO_X(#RIGHT,#SLOW)\n"
+    assert [] == _skipped({"main.src": f"DEF main ( )\n{body}END\n"})
+
+
+def test_file_names_that_are_no_names() -> None:
+    """A program whose file cannot give a data list its name has one in place of its own."""
+    files = {
+        "a/1 lift().src": "DEF lift ( )\nFLAG=TRUE\nother ( )\nEND\n",
+        "a/other.src": "DEF other ( )\nFLAG=5\nEND\n",
+    }
+    assert [] == _skipped(files)
