@@ -17,6 +17,7 @@ are several.
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -81,6 +82,7 @@ class _Match:
     alternative: int
     branches: frozenset[Branch]
     places: tuple[Address, ...]
+    rounds: tuple[tuple[Address, int], ...]
 
 
 class GrammarCoverage:
@@ -96,6 +98,8 @@ class GrammarCoverage:
         self._matches: dict[tuple[str, tuple[str, ...]], _Match] = {}
         self._alternatives: set[tuple[str, int]] = set()
         self._branches: set[Branch] = set()
+        #: How often parts with a suffix came, each outline of a tree counted once.
+        self.rounds: dict[tuple[str, Address], Counter[int]] = defaultdict(Counter)
 
     def add(self, tree: Tree) -> None:
         """Count a tree of this grammar."""
@@ -115,6 +119,8 @@ class GrammarCoverage:
             found = match(outline)
             self._alternatives.add((outline.rule, found.alternative))
             self._branches.update(found.branches)
+            for at, often in found.rounds:
+                self.rounds[outline.rule, at][often] += 1
             for child, place in zip(outline.children, found.places, strict=True):
                 if isinstance(child, Outline):
                     is_word = child.rule in self._words
@@ -204,6 +210,7 @@ class GrammarCoverage:
         taken: set[Branch] = set()
         places: list[Address] = []
         rounds: dict[Address, int] = {}
+        ended: list[tuple[Address, int]] = []
         for step in _way(self._written[name], symbols):
             at = step.at
             match step.sign:
@@ -218,12 +225,13 @@ class GrammarCoverage:
                 case "end":
                     element = element_at(self._rules[name], at)
                     assert isinstance(element, Repeat)
+                    ended.append((at, rounds[at]))
                     taken.add(Branch(name, at, None, _how_often(element.operator, rounds[at])))
                 case None if step.symbol is not None:
                     places.append(at)
         if name in self._words:
             taken.add(Branch(name, (), None, alternative))
-        return _Match(alternative, frozenset(taken & self._all.keys()), tuple(places))
+        return _Match(alternative, frozenset(taken & self._all.keys()), tuple(places), tuple(ended))
 
 
 def _how_often(operator: str, rounds: int) -> str:

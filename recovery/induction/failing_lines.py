@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections import defaultdict
+from collections.abc import Collection, Sequence, Set
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -63,6 +64,10 @@ class FailingLines:
                     line.seen.append(f"{files[place].path}:{failure.line}")
         self.patterns = list(found)
         self.occurrences = list(found.values())
+        self._of_file: dict[int, set[int]] = defaultdict(set)
+        for number, line in enumerate(self.occurrences):
+            for place in line.files:
+                self._of_file[place].add(number)
 
     def weight(self, lines: Collection[int]) -> int:
         """The files of lines, each once a line."""
@@ -77,9 +82,11 @@ class FailingLines:
         shown = tuple(islice(seen, _MOST_SHOWN))
         return Evidence(len(files), len(origins), self.weight(lines), shown)
 
-    def is_repeated(self, lines: Collection[int], edits: Sequence[Edit]) -> bool:
+    def is_repeated(self, lines: Set[int], edits: Sequence[Edit]) -> bool:
         """Whether lines of a single file show edits often enough to be no slip."""
         some = [self.occurrences[n] for n in lines]
         if any(isinstance(edit, AddToken) for edit in edits):
             return len({text for line in some for text in line.texts}) >= _LINES_OF_ONE_FILE
-        return sum(len(line.seen) for line in some) >= _PLACES_IN_ONE_FILE
+        # where nothing else is wrong in a file a single line is none either
+        is_all = any(self._of_file[p] <= lines for line in some for p in line.files)
+        return is_all or sum(len(line.seen) for line in some) >= _PLACES_IN_ONE_FILE

@@ -7,9 +7,10 @@ with. Of a kind are words between which and names some rule gives a choice.
 
 from __future__ import annotations
 
-from collections import defaultdict
+import math
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise, zip_longest
+from itertools import pairwise, takewhile, zip_longest
 
 from grammar.notation.edits import (
     AddAlternative,
@@ -33,8 +34,8 @@ from grammar.notation.model import (
 )
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.forms import LONG_LIST, FormWriter, samples_of
-from recovery.induction.inference import Inferred
-from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
+from recovery.induction.steps import Inferred
+from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
 from recovery.proposals.grammar_profile import GrammarProfile
 
 __all__ = ["Folding", "size"]
@@ -197,27 +198,41 @@ class Folding:
 
     def _trailing(self) -> Iterator[Inferred]:
         """One choice for words that may end lines, where two such choices have a word in common."""
-        found: list[tuple[str, tuple[int, int], frozenset[str], bool]] = []
+        found: list[tuple[str, int, Sequence[Element], frozenset[str], float]] = []
         for rule, number, elements in self._lines():
-            match elements[-1]:
-                case Repeat(item=item, operator="?" | "*" as often) if self._words(item):
-                    place = (number, len(elements))
-                    found.append((rule.name, place, self._words(item), often == "*"))
+            run = list(takewhile(self._is_ending, reversed(elements)))
+            words = Counter(w for e in run for w in self._ending_words(e))
+            if run:
+                is_any = any(isinstance(e, Repeat) and e.operator == "*" for e in run)
+                often = math.inf if is_any else max(*words.values(), min(len(run), 2))
+                found.append((rule.name, number, run[::-1], frozenset(words), often))
         done: set[frozenset[str]] = set()
-        for _, _, words, _ in found:
-            alike = [f for f in found if f[2] & words]
-            every = frozenset[str]().union(*(f[2] for f in alike))
-            is_often = any(f[3] for f in alike)
-            text = f"({' | '.join(sorted(every))}){'*' if is_often else '?'}"
+        for _, _, _, known, _ in found:
+            alike = [f for f in found if f[3] & known]
+            every = frozenset[str]().union(*(f[3] for f in alike))
+            often = max(f[4] for f in alike)
+            word = f"({' | '.join(sorted(every))})"
+            text = f"{word}*" if often == math.inf else " ".join([f"{word}?"] * int(often))
             edits = [
-                Replace(rule, place, text)
-                for rule, place, some, how in alike
-                if (some, how) != (every, is_often)
+                Replace(
+                    rule, (number, len(self._line(rule, number)) - len(run) + 1), text, len(run)
+                )
+                for rule, number, run, some, how in alike
+                if (some, how) != (every, often) or len(run) != text.count(word)
             ]
             if len(every) > 1 and edits and every not in done:
                 done.add(every)
                 title = f"{', '.join(sorted(every))} at the end of lines"
                 yield Inferred(title, tuple(edits), (), breadth=_LONGER * len(edits))
+
+    def _is_ending(self, element: Element) -> bool:
+        """Whether an element is words that may be missing."""
+        return bool(self._ending_words(element))
+
+    def _ending_words(self, element: Element) -> frozenset[str]:
+        if isinstance(element, Repeat) and element.operator != "+":
+            return self._words(element.item)
+        return frozenset()
 
     def _alternative(self, rule: str, number: int) -> Alternative:
         return self.grammar.by_name[rule].alternatives[number - 1]
@@ -312,10 +327,12 @@ class Folding:
         return tuple(edits)
 
     def _of_kind(self, symbol: Symbol, words: set[str]) -> Symbol:
-        if symbol.text in self.types:
-            words.add(symbol.text)
-            return Symbol(self._kind)
-        is_kind = symbol.operand is not None and symbol.operand.rule == self._kind
+        operand = symbol.operand or Operand()
+        names = self.lexer.names
+        text = names[operand.kinds[0]] if len(operand.kinds) == 1 else symbol.text
+        if text in self.types:
+            words.add(text)
+        is_kind = text in self.types or operand.rule == self._kind
         return Symbol(self._kind) if is_kind else symbol
 
 

@@ -204,7 +204,7 @@ class FormWriter:
             return [indexed]
         # a single reserved word beside names says nothing of other values
         reserved = {k for k in single if self.rules.lexer.is_keyword(k)}
-        if len(reserved) == 1 and len(kinds) > 1:
+        if len(reserved) == 1 and len(kinds) > 1 and not reserved <= self.rules.type_kinds:
             beside = {k for k in kinds if k[0] not in reserved}
             is_name = not needed and beside == {(self.rules.lexer.name_kind,)}
             others = self._name() if is_name else self._indexed(beside, needed)
@@ -306,6 +306,8 @@ def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
 def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int) -> int:
     """How many symbols at the end of a list's first piece belong to the list."""
     texts = {text for shape in shapes for text in shape}
+    if _sketch(s.text for s in first) in set(map(_sketch, shapes)):
+        return len(first)
     if len(first) <= longest and texts.issuperset(s.text for s in first):
         return len(first)
     for size in range(min(longest, len(first)), 0, -1):
@@ -315,6 +317,11 @@ def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int)
                 return 3
             return size
     return 0
+
+
+def _sketch(texts: Iterable[str]) -> tuple[str, ...]:
+    """A shape with any word for each word, and without what only follows operands."""
+    return tuple("word" if text.isupper() else text for text in texts if not text.islower())
 
 
 def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]:
@@ -441,17 +448,23 @@ def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol,
     return tuple(out)
 
 
-def _grouped(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
-    """The symbols with what is between two brackets as one of them."""
+def _grouped(
+    rules: OperandRules, symbols: Sequence[Symbol], *, is_line: bool = True
+) -> tuple[Symbol, ...]:
+    """The symbols with what is between two brackets as one of them, types as they are read."""
     out: list[Symbol] = []
     at = 0
+    kind_of = rules.lexer.kind_of
     while at < len(symbols):
         text = symbols[at].text
         closing = f"'{BRACKETS.get(text.strip(chr(39)), '')}'"
         close = next((i for i in range(at, len(symbols)) if symbols[i].text == closing), None)
         if text and close is not None:
-            out.append(Symbol(text, None, _grouped(rules, symbols[at + 1 : close])))
+            inside = _grouped(rules, symbols[at + 1 : close], is_line=False)
+            out.append(Symbol(text, None, inside))
             at = close
+        elif text in rules.type_words and (at or not is_line):
+            out.append(Symbol("", Operand((kind_of[text],))))
         else:
             out.append(symbols[at])
         at += 1

@@ -30,12 +30,13 @@ from recovery.induction.blocks import blocks_of
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import Folding, size
-from recovery.induction.inference import Inference, Inferred
+from recovery.induction.inference import Inference
+from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
 from recovery.induction.objections import Judge
 from recovery.induction.shown_files import Failures, ShownFiles, reading
-from recovery.induction.steps import Evidence, Refused, Round, Taken, joined
+from recovery.induction.steps import Evidence, Inferred, Refused, Round, Taken, joined
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
 from recovery.induction.would_be_keywords import LEAST_FILES_ALONE, WouldBeKeywords, names_read
 from recovery.language import CorpusFile, Language
@@ -88,7 +89,7 @@ class Induction:
         ``language`` is that of the ``negatives``.
         """
         self.struck = frozenset(struck)
-        self.grammar = grammar
+        self.grammar = self._start = grammar
         self.shown = ShownFiles(shown)
         self.held = held
         self.negatives = negatives
@@ -123,7 +124,7 @@ class Induction:
             finder.recognizer, self.negatives.rejected_by(finder.recognizer), self._reserved_in
         )
         if step == "fold":
-            taken, refused = self._folded(judge, failures)
+            taken, refused = self._folded(judge, failures, is_last=least == (1, 1))
         else:
             taken, refused = self._inferred(judge, finder, failures, least, inner=step == "inner")
         self.grammar = apply(self.grammar, joined(taken))
@@ -241,7 +242,8 @@ class Induction:
             evidence = table.evidence(lines)
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
-            is_wide = evidence.origins == 1 and not fixed.isdisjoint(operands)
+            is_new = any(isinstance(e, AddToken) for e in found.edits)
+            is_wide = evidence.origins == 1 and not (is_new or fixed.isdisjoint(operands))
             if evidence.origins < least[0] or evidence.files < (
                 _OPERAND_FILES if is_wide else least[1]
             ):
@@ -265,8 +267,13 @@ class Induction:
 
     # ------------------------------------------------------------------------------------- folding
 
-    def _folded(self, judge: Judge, failures: Failures) -> tuple[list[Taken], list[Refused]]:
-        """Folds after which the grammar is shorter, accepts no more negatives and reads no less."""
+    def _folded(
+        self, judge: Judge, failures: Failures, *, is_last: bool
+    ) -> tuple[list[Taken], list[Refused]]:
+        """Folds after which the grammar is shorter, accepts no more negatives and reads no less.
+
+        The last ones bound lists, for which all has to be read that will be.
+        """
         recognizer, files = judge.recognizer, self.shown.files
         reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
         lines = CorpusLines(files, recognizer.lexer).lines
@@ -294,6 +301,10 @@ class Induction:
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
             judge = replace(judge, recognizer=narrower)
             found = Folding(narrower, operands, self._prefixes).candidates()
+        if is_last:
+            texts = (file.text for file, wrong in zip(files, failures, strict=True) if not wrong)
+            bounded = bounded_lists(judge.recognizer, self._start, texts)
+            taken += (Taken(b.title, b.edits, Evidence(0, 0, 0, ())) for b in bounded)
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         return taken, [*lost, *refused.values()]
 

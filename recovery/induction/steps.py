@@ -7,7 +7,23 @@ from dataclasses import dataclass
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 
-__all__ = ["Evidence", "Reading", "Refused", "Round", "Taken", "joined"]
+__all__ = ["Evidence", "Inferred", "Reading", "Refused", "Round", "Taken", "joined"]
+
+
+@dataclass(frozen=True, slots=True)
+class Inferred:
+    """Edits, why they were written, and the lines they were written for.
+
+    Those that are ``is_strict`` read so much that they may accept nothing which must be rejected.
+    ``breadth`` is how much more they read than others for the same lines, in symbols of a rule.
+    """
+
+    title: str
+    edits: tuple[Edit, ...]
+    lines: tuple[int, ...]
+    is_strict: bool = False
+    is_block: bool = False
+    breadth: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -120,6 +120,11 @@ class OperandRules:
         return frozenset[str]().union(*self.word_choices.values())
 
     @cached_property
+    def type_kinds(self) -> frozenset[int]:
+        """The kinds of token of `type_words`."""
+        return frozenset(map(self.lexer.kind_of.__getitem__, self.type_words))
+
+    @cached_property
     def within_lines(self) -> frozenset[str]:
         """Rules that read nothing with a line end in it."""
         end = self.lexer.line_end
@@ -309,7 +314,7 @@ class SymbolReader:
         lowest += [n for n in rules.ladder if n not in lowest and rules.gathers(n, lowest)]
         self._atoms = [recognizer.at_rule(n) for n in (*lowest, *names[1:])]
         self._longest: dict[tuple[bool, tuple[int, ...]], int] = {}
-        self._type_words = frozenset(map(self.lexer.kind_of.__getitem__, rules.type_words))
+        self._type_kinds = frozenset(filter(self.lexer.is_keyword, rules.type_kinds))
 
     def symbols(self, tokens: Sequence[Token], *, atoms: bool = False) -> tuple[Symbol, ...]:
         """The symbols of tokens, which are a line or part of one.
@@ -322,7 +327,8 @@ class SymbolReader:
             kind, word = tokens[at]
             if kind == self.rules.recognizer.line_kind:
                 break
-            if at and not word and kind in self._type_words and self.lexer.is_keyword(kind):
+            is_first = not (at or atoms)  # what is in brackets begins no line
+            if not (is_first or word) and kind in self._type_kinds:
                 length = 1
             else:
                 length = 0 if word else self._operand(tokens, at, out, atoms=atoms)
@@ -368,7 +374,7 @@ class SymbolReader:
             # a word that may be a name is one where a name can be
             behind = self.lexer.display[max(tokens[at + 1][0], 0)] if at + 1 < len(tokens) else ""
             is_name = self.rules.matcher.may_be_a_name(kind) and (
-                behind in _BEHIND_NAMES
+                (atoms or behind in _BEHIND_NAMES)
                 if not before
                 else not before[-1].is_operand
                 and (before[-1].text.strip("'"), self.lexer.names[kind]) not in self.rules.beside

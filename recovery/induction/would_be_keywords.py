@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from grammar.parser.failures import Failure
 from grammar.parser.lexer import SKIPPED, Lexer
@@ -219,6 +220,8 @@ class WouldBeKeywords:
                     yield _Use(place, word, ("", "", behind), True)
                 elif behind in _OPENING:  # a call, or a word with an operand behind it
                     yield _Use(place, word, _OPEN, False)
+                elif behind not in _BEHIND_NAMES and self._is_headed_oddly(line, kinds):
+                    yield _Use(place, word, ("", "", behind), False)
                 else:
                     yield _Use(place, word, _PLAIN, False)
                 continue
@@ -239,6 +242,11 @@ class WouldBeKeywords:
                 yield _Use(place, word, surroundings, False)
             else:
                 yield _Use(place, word, _PLAIN, False)
+
+    def _is_headed_oddly(self, line: Sequence[str], kinds: Sequence[int]) -> bool:
+        """Whether two operands are side by side, so that a word of the line is a keyword."""
+        values = [kind in self._values for kind in kinds[1:]]
+        return "{" not in line and any(a and b for a, b in pairwise(values))
 
     def _class(
         self, line: Sequence[str], kinds: Sequence[int], place: int, signs: Sequence[str]

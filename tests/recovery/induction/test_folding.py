@@ -11,7 +11,7 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.induction.folding import Folding
-from recovery.induction.inference import Inferred
+from recovery.induction.steps import Inferred
 
 _GRAMMAR = """grammar Toy;
 

@@ -89,16 +89,25 @@ def test_the_lines_within_a_block_grow(toy: Grammar) -> None:
 
 
 @pytest.mark.parametrize(
-    ("word", "count", "accepted"),
-    [("GLIDE", 2, False), ("GLIDE", 3, True), ("HALT", 1, False), ("HALT", 2, True)],
+    ("word", "count", "wrong", "accepted"),
+    [
+        ("GLIDE", 2, "", False),
+        ("GLIDE", 3, "", True),
+        ("HALT", 1, "", True),
+        ("HALT", 1, "= =\n", False),
+        ("HALT", 2, "= =\n", True),
+    ],
 )
 def test_one_file_shows_what_it_has_often(
-    toy: Grammar, word: str, count: int, accepted: bool
+    toy: Grammar, word: str, count: int, wrong: str, accepted: bool
 ) -> None:
-    """Three different lines of one file are trusted, where the word is known two places are."""
+    """Three different lines of one file are trusted, where the word is known two places are.
+
+    A single line with a known word is where nothing else is wrong in the file.
+    """
     more = "".join(f"{word} {name} {n}\n" for n, name in enumerate("ABC"[:count]))
     files = (
-        CorpusFile("one/a.toy", f"HALT\n{more}", frozenset({"one"})),
+        CorpusFile("one/a.toy", f"HALT\n{more}{wrong}", frozenset({"one"})),
         CorpusFile("two/a.toy", "HALT\n", frozenset({"two"})),
     )
     assert accepted == Recognizer(_grown(toy, files).grammar).accepts(f"{word} D 7\n")
@@ -108,6 +117,20 @@ def _with(toy: Grammar, old: str, new: str) -> Grammar:
     """The start with another text in place of one that it has once."""
     assert 1 == toy.text.count(old)
     return read(toy.text.replace(old, new))
+
+
+def test_words_beside_names(toy: Grammar) -> None:
+    """A reserved word that is a name in two lines of one file is one in that place only."""
+    grown = toy.text.replace("    | halt\n", "    | halt\n    | KIND NAME FAST NAME\n")
+    words = "".join(f"{w} : '{w}' ;\n" for w in ("KIND", "FAST"))
+    start = read(grown.replace("HALT : 'HALT' ;\n", f"HALT : 'HALT' ;\n{words}"))
+    files = (
+        CorpusFile("a/a.toy", "KIND A FAST HALT\nKIND B FAST HALT\n", frozenset({"a"})),
+        CorpusFile("b/b.toy", "KIND B FAST X\n", frozenset({"b"})),
+    )
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = ("KIND C FAST HALT\n", "KIND HALT FAST X\n", "HALT := 1\n")
+    assert [True, False, False] == [recognizer.accepts(text) for text in texts]
 
 
 def test_what_comes_once_or_more_may_be_missing(toy: Grammar) -> None:

@@ -40,3 +40,9 @@ def test_a_word_of_one_origin(toy: Grammar, least: int, found: bool) -> None:
     shown = [CorpusFile(f"a/{n}", f"MOVE A{n}\nX := {n}\n", one) for n in range(2)]
     keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, (), least)
     assert found == ("MOVE" in keywords.words)
+
+
+def test_a_sign_behind_a_keyword(toy: Grammar) -> None:
+    """A word with a sign behind it is one where two operands of the line are side by side."""
+    files = {o: f"LINK * {o} 1\nLABEL * {o}\n" for o in "abc"}
+    assert {"LINK"} == _keywords(toy, files).words & {"LINK", "LABEL"}

@@ -1,0 +1,101 @@
+"""Edits that add blocks of several lines where their first line may stand."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property
+
+from grammar.notation.edits import AddAlternative
+from recovery.induction.blocks import BlockLines
+from recovery.induction.line_hosts import LineHosts
+from recovery.induction.line_symbols import LineSymbols
+from recovery.induction.steps import Inferred
+from recovery.induction.supported_forms import SupportedForms
+from recovery.induction.symbols import Symbol, Token
+
+__all__ = ["BlockEdits"]
+
+
+class BlockEdits:
+    """Infers blocks of the corpus that the grammar does not have."""
+
+    def __init__(
+        self, at: LineSymbols, forms: SupportedForms, hosts: LineHosts, blocks: Sequence[BlockLines]
+    ) -> None:
+        self.at = at
+        self.forms = forms
+        self.hosts = hosts
+        self.blocks = blocks
+
+    def edits(self) -> Iterator[Inferred]:
+        """Blocks of several lines where their first line may stand."""
+        for block in self.blocks:
+            members = self._opening(block)
+            for host in self._hosts_of_block(block):
+                for body in self._bodies(host):
+                    text = self._block_text(block, body)
+                    if text:
+                        added = AddAlternative(host, text + self.hosts.ending(host))
+                        edits = (*self.forms.reserving(text), added)
+                        title = f"{block.opener} to {block.closer} as {host}"
+                        yield Inferred(title, edits, members, is_block=True)
+
+    def _opening(self, block: BlockLines) -> tuple[int, ...]:
+        """The lines that open a block."""
+        return tuple(
+            n
+            for n, symbols in enumerate(self.at.symbols)
+            if symbols and block.opener in [s.text for s in symbols[:2]]
+        )
+
+    def _hosts_of_block(self, block: BlockLines) -> dict[str, None]:
+        """The rules of which a block may be an alternative."""
+        return dict.fromkeys(host for n in self._opening(block) for host in self._block_hosts(n))
+
+    def _block_hosts(self, number: int) -> list[str]:
+        entered = self.hosts.entered(number)
+        found = sorted(entered & self.at.profile.of_lines or entered & self.at.profile.blocks)
+        # where some rules have blocks among their lines the others have none
+        return [host for host in found if self._has_blocks(host)] or found
+
+    def _has_blocks(self, rule: str) -> bool:
+        blocks = self.at.profile.blocks
+        return rule in blocks or not blocks.isdisjoint(self.at.profile.near(rule))
+
+    def _bodies(self, host: str) -> list[str]:
+        """What may be between the lines of a block: what is so in the blocks that a rule has."""
+        texts = [" ".join(body) for body in self.at.profile.bodies] or [
+            f"{rule}*" for rule in sorted(self.at.profile.loops & self.at.profile.of_lines)
+        ]
+        written = " ".join(self.at.grammar.by_name[host].text.split())
+        return [t for t in texts if t in written] or texts[:1]
+
+    def _block_text(self, block: BlockLines, body: str) -> str | None:
+        end = self.at.profile.line_end
+        header, closer = self._line_form(block.headers), self._line_form(block.closers)
+        if not header or not closer:
+            return None
+        parts = [header, end, *([body] if block.has_body else [])]
+        for word, often in block.often.items():
+            middle = self._line_form(block.middles[word])
+            if not middle:
+                return None
+            text = f"{middle} {end} {body}"
+            parts.append(f"({text}){often}" if often else text)
+        return " ".join((*parts, closer))
+
+    def _line_form(self, lines: Mapping[tuple[Token, ...], Collection[str]]) -> str | None:
+        shapes: dict[tuple[Symbol, ...], set[str]] = defaultdict(set)
+        for tokens, origins in lines.items():
+            shapes[self.at.known_groups(self.at.reader.symbols(tokens))].update(origins)
+        return self.forms.writer.form([shape for shape in self.forms.supported(shapes) if shape])
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """The words of the blocks that could be added.
+
+        Where no rule has blocks, or lines in a row that could be within one, each line is its own.
+        """
+        having = [b for b in self.blocks if any(map(self._bodies, self._hosts_of_block(b)))]
+        return frozenset[str]().union(*(block.words for block in having))

@@ -1,0 +1,111 @@
+"""Edits of what stands between the brackets of a rule, from all contents it does not read."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+from grammar.notation.edits import Edit, Insert, Replace
+from grammar.notation.model import Element, Reference, walk
+from recovery.induction.forms import samples_of, split_at_commas
+from recovery.induction.line_symbols import LineSymbols
+from recovery.induction.operand_edits import OperandEdits
+from recovery.induction.steps import Inferred
+from recovery.induction.supported_forms import SupportedForms, optional
+from recovery.induction.symbols import BRACKETS, Symbol, bracket_pairs
+
+__all__ = ["BracketEdits"]
+
+# Elements in a row that may be missing together.
+_LONGEST_RUN = 3
+
+
+class BracketEdits:
+    """Infers contents of brackets, where what is missing is no operator."""
+
+    def __init__(self, at: LineSymbols, forms: SupportedForms, operands: OperandEdits) -> None:
+        self.at = at
+        self.forms = forms
+        self._operands = operands
+
+    def edits(self) -> Iterator[Inferred]:
+        """What stands between the brackets of a rule, from all contents that it does not read."""
+        found: dict[tuple[str, str], dict[tuple[Symbol, ...], list[int]]] = defaultdict(
+            lambda: defaultdict(list)
+        )
+        for number, line in enumerate(self.at.lines):
+            if line.is_enormous:
+                continue
+            for sign, inside in _groups(self.at.symbols[number]):
+                rule = self.at.rules.bracketed.get(sign)
+                if rule and not any(s.text in self._operands.operators for s in inside):
+                    found[rule, sign][self.at.known_groups(inside)].append(number)
+            tokens, index = self.at.tokens[number], line.form.index
+            opened = self.at.opened(tokens, index)
+            if opened is None or number in self._operands.operator_lines:
+                continue
+            sign = self.at.shown(tokens[opened])
+            close = self.at.reader.closer(tokens, opened)
+            rule = self.at.writing(number, sign)
+            bracketed = self.at.rules.bracketed
+            if close is not None and rule is not None and rule not in bracketed.values():
+                inside = self.at.reader.symbols(tokens[opened + 1 : close])
+                if not any(sign in bracketed for sign, _ in _groups(inside)):
+                    found[rule, sign][inside].append(number)
+        for (rule, sign), contents in found.items():
+            members = tuple(dict.fromkeys(n for numbers in contents.values() for n in numbers))
+            title = f"between {sign} and {BRACKETS[sign]} of {rule}"
+            for edits, lost in self._between(rule, sign, contents):
+                yield Inferred(title, edits, members, breadth=lost)
+
+    def _between(
+        self, rule: str, sign: str, contents: dict[tuple[Symbol, ...], list[int]]
+    ) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """Edits for contents of brackets, with their breadth: parts left out, then new forms."""
+        source_of = self.at.grammar.by_name[rule].source_of
+        for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
+            for opening, start, end in bracket_pairs(alternative):
+                if opening != sign:
+                    continue
+                old = alternative.elements[start + 1 : end]
+                for first, count in _runs(len(old)):
+                    text = optional(" ".join(map(source_of, old[first : first + count])))
+                    yield (Replace(rule, (number, start + 2 + first), text, count),), 0
+                yield from self._of_items(old, contents)
+                for text in self.forms.of(contents, samples_of(self.at.rules, old)):
+                    at, count = (number, start + 2), len(old)
+                    edit = Replace(rule, at, text, count) if count else Insert(rule, at, text)
+                    yield (*self.forms.reserving(text), edit), self.forms.lost(old, text)
+
+    def _of_items(
+        self, old: Sequence[Element], contents: dict[tuple[Symbol, ...], list[int]]
+    ) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """Edits of the rule that reads the items of a list and nothing else."""
+        called = {e.name for o in old for e in walk(o) if isinstance(e, Reference)}
+        for name in sorted(called & self.at.rules.reaches.keys()):
+            first, *others = self.at.grammar.by_name[name].alternatives
+            if others or not self.at.rules.is_part(name):
+                continue
+            items: dict[tuple[Symbol, ...], list[int]] = defaultdict(list)
+            for inside, numbers in contents.items():
+                for item in split_at_commas(inside)[1:]:  # ahead of the first one there may be more
+                    items[item] += numbers
+            for text in (
+                self.forms.of(items, samples_of(self.at.rules, first.elements)) if items else ()
+            ):
+                edit = Replace(name, (1, 1), text, len(first.elements))
+                yield (*self.forms.reserving(text), edit), self.forms.lost(first.elements, text)
+
+
+def _groups(symbols: Sequence[Symbol]) -> Iterator[tuple[str, tuple[Symbol, ...]]]:
+    """Groups in brackets at any depth that no rule has read: the opening sign and the inside."""
+    for symbol in symbols:
+        if symbol.inside is not None:
+            yield symbol.text.strip("'"), symbol.inside
+            yield from _groups(symbol.inside)
+
+
+def _runs(count: int) -> Iterator[tuple[int, int]]:
+    """Runs of so many elements, but not all of them: the first one and how many."""
+    for length in range(1, min(_LONGEST_RUN, count - 1) + 1):
+        yield from ((start, length) for start in range(count - length + 1))

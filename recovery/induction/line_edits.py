@@ -1,0 +1,237 @@
+"""Edits that add or change a line of the grammar: statements, declarations and the like."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from grammar.notation.addresses import Address
+from grammar.notation.edits import AddAlternative, Insert, Replace
+from grammar.notation.model import Repeat
+from recovery.induction.forms import samples_of
+from recovery.induction.line_hosts import LineHosts, words_of
+from recovery.induction.line_symbols import WORD, LineSymbols
+from recovery.induction.steps import Inferred
+from recovery.induction.supported_forms import SupportedForms, optional
+from recovery.induction.symbols import Symbol
+from recovery.proposals.edit_site import places_of
+
+__all__ = ["LineEdits"]
+
+# The part of the kinds of line of one word that another has too, for one form to read both.
+_ALIKE = 0.5
+
+
+class LineEdits:
+    """Infers forms of lines by their first word, or first sign where they begin with a name."""
+
+    def __init__(
+        self,
+        at: LineSymbols,
+        forms: SupportedForms,
+        hosts: LineHosts,
+        prefixes: frozenset[str],
+        block_words: frozenset[str],
+    ) -> None:
+        """``prefixes`` are words that may be missing at the head of a line.
+
+        Lines that one of the ``block_words`` begins are left to blocks.
+        """
+        self.at = at
+        self.forms = forms
+        self.hosts = hosts
+        self._prefixes = prefixes
+        self._block_words = block_words
+        self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
+
+    def edits(self) -> Iterator[Inferred]:
+        """Kinds of line where another one is expected, then forms of lines."""
+        yield from self._line_rules()
+        yield from self._statements()
+
+    def _line_rules(self) -> Iterator[Inferred]:
+        """A kind of line where another one is expected."""
+        found: dict[tuple[str, str], list[int]] = defaultdict(list)
+        kinds_of = sorted(self.at.profile.of_lines)
+        for number, line in enumerate(self.at.lines):
+            if line.is_enormous or line.keywords:
+                continue
+            read = self.at.rules.matcher.rules_for(line.form.kinds)
+            # what ends with the line stands for what ends with it too: a second end is a blank line
+            for host in filter(self.at.profile.closing, self.hosts.of(number)):
+                for other in kinds_of:
+                    if other in read and other != host:
+                        found[host, other].append(number)
+        for (host, other), members in found.items():
+            edits = (AddAlternative(host, other),)
+            fresh = {other, *self.at.rules.reaches[other]} - {host, *self.at.rules.reaches[host]}
+            known = self.at.grammar.by_name
+            breadth = sum(len(known[name].alternatives) for name in fresh if name in known)
+            yield Inferred(f"{other} as {host}", edits, tuple(members), breadth=breadth)
+
+    def _statements(self) -> Iterator[Inferred]:
+        """Forms of lines by their first word, or first sign where they begin with a name."""
+        groups: dict[tuple[tuple[str, ...], str], list[int]] = defaultdict(list)
+        for number, line in enumerate(self.at.lines):
+            symbols = self.symbols[number]
+            if line.is_enormous or not symbols or self._opened_in_group(number):
+                continue
+            beside = [a.is_operand and b.is_operand for a, b in pairwise(symbols)]
+            if symbols[0].is_operand and (any(beside) or len(symbols) == 1):
+                continue  # no line is a value, or two without a word that says what they are
+            head = self._head(symbols)
+            if self._block_words.isdisjoint(s.text for s in symbols[:2]):
+                groups[self.hosts.of(number), head].append(number)
+        families = list(_families(groups))
+        for (hosts, head), members in families:
+            yield from self._statement(hosts, head, members)
+        yield from self._of_many_words(families)
+
+    def _of_many_words(
+        self, families: Sequence[tuple[tuple[tuple[str, ...], str], list[int]]]
+    ) -> Iterator[Inferred]:
+        """One form for lines that begin with different words and go on alike."""
+        gathered: dict[tuple[str, ...], list[tuple[str, list[int], set[tuple[str, ...]]]]]
+        gathered = defaultdict(list)
+        for (hosts, head), members in families:
+            known = self.hosts.leading.keys() | self.hosts.inner_words
+            if WORD.fullmatch(head) and head not in known:
+                tails = {
+                    tuple(map(self.forms.sort, self.symbols[n][1:]))
+                    for n in members
+                    if self.symbols[n][0].text == head
+                }
+                gathered[hosts].append((head, members, tails))
+        for hosts, heads in gathered.items():
+            # around each word those that have most kinds of tail in common with it
+            for head, _, tails in heads:
+                alike = [
+                    h for h in heads if len(h[2] & tails) >= _ALIKE * min(len(h[2]), len(tails))
+                ]
+                if len(alike) < 3:
+                    continue
+                every = tuple(n for _, ns, _ in alike for n in ns)
+                shapes = dict.fromkeys(
+                    self.symbols[n][1:] for n in members if self.symbols[n][0].text in _of(alike)
+                )
+                tail = self.forms.writer.form(list(shapes))
+                for host in hosts if tail else ():
+                    text = f"({' | '.join(sorted(_of(alike)))}) {tail}{self.hosts.ending(host)}"
+                    edits = (*self.forms.reserving(text), AddAlternative(host, text))
+                    yield Inferred(
+                        f"{head} and {len(alike) - 1} words as {host}", edits, every, is_strict=True
+                    )
+
+    def _opened_in_group(self, number: int) -> bool:
+        """Whether a line fails within brackets that a rule of the grammar writes."""
+        index = self.at.lines[number].form.index
+        opened = self.at.opened(self.at.tokens[number], index) if index else None
+        if opened is None:
+            return False
+        return self.at.writing(number, self.at.shown(self.at.tokens[number][opened])) is not None
+
+    def _head(self, symbols: Sequence[Symbol]) -> str:
+        """What says which kind of line it is: its first word, behind one that may be missing."""
+        texts = [symbol.text for symbol in symbols[:3]]
+        if symbols[0].is_operand:
+            return " ".join(["_", *texts[1:2]])
+        if len(texts) > 1 and texts[0] in self._prefixes and WORD.fullmatch(texts[1]):
+            texts = texts[1:]
+        # where several alternatives begin alike the second word tells them apart
+        if self.hosts.leading.get(texts[0], 0) > 1 and len(texts) > 1 and WORD.fullmatch(texts[1]):
+            return " ".join(texts[:2])
+        return texts[0]
+
+    def _statement(
+        self, hosts: Sequence[str], head: str, members: Sequence[int]
+    ) -> Iterator[Inferred]:
+        shapes: dict[tuple[Symbol, ...], list[int]] = defaultdict(list)
+        for number in members:
+            shapes[self.symbols[number]].append(number)
+        grown = list(self._grown(head, shapes, members))
+        if grown:
+            yield from grown
+            return
+        title = head.replace("_ ", "name ").strip()
+        for text in self.forms.of(shapes):
+            for host in hosts:
+                added = AddAlternative(host, f"{text}{self.hosts.ending(host)}")
+                edits = (*self.forms.reserving(text), added)
+                yield Inferred(f"{title} … as {host}", edits, tuple(members))
+
+    def _grown(
+        self, head: str, shapes: dict[tuple[Symbol, ...], list[int]], members: Sequence[int]
+    ) -> Iterator[Inferred]:
+        """An alternative that begins with the same words, so that it reads these lines too."""
+        words = head.split()
+        for rule, place, first in self.hosts.all_lines:
+            inside = [e for e in first if not (isinstance(e, Repeat) and e.operator == "?")]
+            leads = [words_of(e) for e in inside[:2]]
+            if not inside or words[0] not in leads[0]:
+                continue
+            if len(words) > 1 and (len(leads) < 2 or words[1] not in leads[1]):
+                continue
+            title = f"{head} … in {rule}"
+            # a word that may be missing at the head of other lines leaves the rest as it is
+            led = {shape[0].text for shape in shapes} & self._prefixes
+            for word in sorted(led.difference(*map(words_of, first[:1]))):
+                edits = (*self.forms.reserving(word), Insert(rule, place, f"{word}?"))
+                yield Inferred(title, edits, tuple(members))
+            for at, tails in self._tails(rule, place, len(first), members).items():
+                # what a comma begins would be taken for a list; some only do so go on with one
+                begun = {tail[0].text for tail in tails}
+                comma = "','" if "','" in begun else ""
+                rests = {tail[1:]: ns for tail, ns in tails.items()} if comma else tails
+                for text in self.forms.of(rests) if not comma or len(begun) == 1 else ():
+                    edits = (
+                        *self.forms.reserving(text),
+                        Insert(rule, at, optional(f"{comma} {text}".strip())),
+                    )
+                    yield Inferred(title, edits, tuple(members))
+            for text in self.forms.of(shapes, samples_of(self.at.rules, first)):
+                edits = (*self.forms.reserving(text), Replace(rule, place, text, len(first)))
+                yield Inferred(title, edits, tuple(members), breadth=self.forms.lost(first, text))
+
+    def _tails(
+        self, rule: str, place: Address, count: int, members: Sequence[int]
+    ) -> dict[Address, dict[tuple[Symbol, ...], list[int]]]:
+        """What lines go on with where elements of a rule may be all of a line, by the place."""
+        *outer, first = place
+        places = {(*outer, first + n) for n in range(1, count + 1)}
+        found: dict[Address, dict[tuple[Symbol, ...], list[int]]] = {}
+        for number in members:
+            if self.at.lexer.line_kind in self.at.expected(number):
+                tokens = self.at.tokens[number][self.at.lines[number].form.index :]
+                tail = self.at.known_groups(self.at.reader.symbols(tokens))
+                for at in sorted(places & self._places(number, rule)) if tail else ():
+                    found.setdefault(at, defaultdict(list))[tail].append(number)
+        return found
+
+    def _places(self, number: int, rule: str) -> set[Address]:
+        """Where in a rule the grammar stands when a line fails."""
+        recognizer = self.at.recognizer
+        sites = recognizer.sites(self.at.state(number))
+        within = (site for site in sites if recognizer.network.rule[site[0]] == rule)
+        return {place for site in within for place in places_of(recognizer, site)}
+
+
+def _families(
+    groups: dict[tuple[tuple[str, ...], str], list[int]],
+) -> Iterator[tuple[tuple[tuple[str, ...], str], list[int]]]:
+    """The groups, those of the same head in one whose lines may be the same rules."""
+    done: list[tuple[set[str], str, list[int]]] = []
+    for (hosts, head), members in groups.items():
+        same = next((d for d in done if d[1] == head and d[0] & set(hosts)), None)
+        if same is None:
+            done.append((set(hosts), head, list(members)))
+        else:
+            same[0].intersection_update(hosts)
+            same[2].extend(members)
+    order = {host: place for hosts, _ in groups for place, host in enumerate(hosts)}
+    for left, head, gathered in done:
+        yield (tuple(sorted(left, key=lambda h: (order[h], h))), head), gathered
+
+
+def _of(heads: Sequence[tuple[str, list[int], set[tuple[str, ...]]]]) -> list[str]:
+    return [head for head, _, _ in heads]

@@ -1,0 +1,136 @@
+"""The lines that a grammar writes, and the rules that a failing line could be."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from functools import cached_property
+
+from grammar.notation.addresses import Address, sequences
+from grammar.notation.model import Element, Group, Reference, Repeat, walk
+from recovery.induction.line_symbols import LineSymbols
+
+__all__ = ["LineHosts", "words_of"]
+
+
+class LineHosts:
+    """Where lines stand in the grammar of some failing lines."""
+
+    def __init__(self, at: LineSymbols) -> None:
+        self.at = at
+
+    @cached_property
+    def leading(self) -> dict[str, int]:
+        """The words that alternatives begin with, lists of words left out, and of how many."""
+        found: dict[str, int] = defaultdict(int)
+        for _, _, first in self._alternatives():
+            for word in words_of(first[0]):
+                found[word] += 1
+        return found
+
+    @cached_property
+    def inner_words(self) -> frozenset[str]:
+        """The words that lines within blocks begin with."""
+        return frozenset[str]().union(*(words_of(e[0]) for _, _, e in self._inner_lines()))
+
+    def _alternatives(self) -> Iterator[tuple[str, int, tuple[Element, ...]]]:
+        """Alternatives that may be a line: rule, number, and the elements of the first line."""
+        end = self.at.profile.line_end
+        for rule in self.at.grammar.rules:
+            if rule.is_lexer or rule.name in self.at.rules.recursive:
+                continue
+            is_choice = len(rule.alternatives) > 1
+            if is_choice and self.at.profile.vocabulary.is_set_of_words(rule.name):
+                continue
+            for number, alternative in enumerate(rule.alternatives, 1):
+                elements = alternative.elements
+                ends = [i for i, e in enumerate(elements) if rule.source_of(e) == end]
+                first = elements[: ends[0]] if ends else elements
+                if len(first) > 1 or (first and len(rule.alternatives) == 1):
+                    yield rule.name, number, first
+
+    @cached_property
+    def all_lines(self) -> list[tuple[str, Address, tuple[Element, ...]]]:
+        """Alternatives that may be a line, then the lines within blocks, with their places."""
+        outer = ((rule, (number, 1), first) for rule, number, first in self._alternatives())
+        return [*outer, *self._inner_lines()]
+
+    def _inner_lines(self) -> Iterator[tuple[str, Address, tuple[Element, ...]]]:
+        """The lines within blocks and at their end: rule, place of the first element, elements."""
+        end = self.at.profile.line_end
+        for rule in self.at.grammar.rules:
+            for address, sequence in () if rule.is_lexer else sequences(rule):
+                elements = sequence.elements
+                ends = [i for i, e in enumerate(elements) if rule.source_of(e) == end]
+                starts = [0] * (len(address) > 1) + [i + 1 for i in ends]
+                for begin in starts if ends else ():
+                    start = begin
+                    stop = next((i for i in ends if i >= start), len(elements))
+                    while start < stop and not self._is_within_line(elements[start]):
+                        start += 1  # the lines of a body come first
+                    if start < stop:
+                        yield rule.name, (*address, start + 1), elements[start:stop]
+
+    def _is_within_line(self, element: Element) -> bool:
+        called = {e.name for e in walk(element) if isinstance(e, Reference) and not e.is_token}
+        return called <= self.at.rules.within_lines
+
+    def of(self, number: int) -> tuple[str, ...]:
+        """Rules that a line could be where it begins, those that end with a line end last."""
+        before = self.at.lines[number].form.before
+        if before not in self._hosts_of:
+            entered = self.entered(number)
+            lines = sorted(entered & self.at.profile.of_lines)
+            self._hosts_of[before] = tuple(sorted(entered & self._whole_lines) + lines)
+        return self._hosts_of[before]
+
+    def ending(self, host: str) -> str:
+        """What an alternative of a rule ends with: a line end, where those of the rule do."""
+        profile = self.at.profile
+        return f" {profile.line_end}" if profile.closing(host) else ""
+
+    def entered(self, number: int) -> frozenset[str]:
+        """Rules that may begin where a line does."""
+        recognizer, network = self.at.recognizer, self.at.recognizer.network
+        sites = recognizer.sites(recognizer.restore(self.at.lines[number].form.before))
+        return frozenset(
+            network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]
+        )
+
+    @cached_property
+    def _hosts_of(self) -> dict[object, tuple[str, ...]]:
+        return {}
+
+    @cached_property
+    def _whole_lines(self) -> frozenset[str]:
+        """Rules that gather alternatives and are somewhere all of a line but its end."""
+        ends = {*self.at.profile.line_ends, self.at.lexer.line_end}
+        found: set[str] = set()
+        for rule in self.at.grammar.rules:
+            for _, sequence in () if rule.is_lexer else sequences(rule):
+                called = [
+                    inner.name if isinstance(inner, Reference) else ""
+                    for e in sequence.elements
+                    for inner in [e.item if isinstance(e, Repeat) else e]
+                ]
+                found.update(
+                    name
+                    for before, name, behind in zip(["", *called], called, called[1:], strict=False)
+                    if behind in ends and (not before or before in ends)
+                )
+        return frozenset(filter(self.at.profile.is_hub, found & self.at.rules.reaches.keys()))
+
+
+def words_of(element: object) -> frozenset[str]:
+    """The words that an element is: one, or a choice of them."""
+    match element:
+        case Reference(name=name) if name.isupper():
+            return frozenset({name})
+        case Group(alternatives=alternatives):
+            return frozenset(
+                w for a in alternatives if len(a.elements) == 1 for w in words_of(a.elements[0])
+            )
+        case Repeat(item=item):
+            return words_of(item)
+        case _:
+            return frozenset()

@@ -1,0 +1,155 @@
+"""Failing lines as symbols, and where the grammar stands when each of them fails."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from grammar.parser.failures import FailureContext
+from grammar.parser.recognizer import Recognizer, State
+from recovery.induction.symbols import (
+    BRACKETS,
+    Operand,
+    OperandRules,
+    Symbol,
+    SymbolReader,
+    Token,
+    bracket_pairs,
+)
+from recovery.proposals.edit_site import LinePattern
+from recovery.proposals.grammar_profile import GrammarProfile
+
+__all__ = ["PREFIXES", "WORD", "LineSymbols"]
+
+#: What is written as a keyword is.
+WORD = re.compile(r"\b[A-Z_][A-Z0-9_]*\b")
+#: Signs that may stand ahead of an operand.
+PREFIXES = frozenset({"+", "-", "NOT"})
+
+
+class LineSymbols:
+    """The failing lines of one grammar, ``tokens[n]`` and ``symbols[n]`` of ``lines[n]``."""
+
+    def __init__(
+        self,
+        recognizer: Recognizer,
+        lines: Sequence[LinePattern],
+        contexts: Sequence[FailureContext],
+    ) -> None:
+        """``contexts[n]`` is what the grammar was doing where line ``n`` fails."""
+        self.recognizer = recognizer
+        self.grammar = recognizer.grammar
+        self.lexer = recognizer.lexer
+        self.lines = lines
+        self.contexts = contexts
+        self.rules = OperandRules(recognizer)
+        self.reader = SymbolReader(self.rules)
+        self.profile = GrammarProfile(recognizer)
+        self.tokens = [tuple(line.words()) for line in lines]
+        self.symbols = [
+            self._listed(() if line.is_enormous else self.reader.symbols(tokens))
+            for line, tokens in zip(lines, self.tokens, strict=True)
+        ]
+
+    def _listed(self, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+        """The symbols with reserved words as operands where they are items of a list of names."""
+        name = Symbol("", Operand((self.lexer.name_kind,)))
+        ends = [i for i, symbol in enumerate(symbols) if symbol.text == "','"] + [len(symbols)]
+        items = {right - 1 for left, right in pairwise(ends) if right == left + 2}
+        if len(items) < len(ends) - 1 or not any(symbols[i] == name for i in items):
+            return symbols
+        # the first item stands behind the name of what the list belongs to
+        first = ends[0] - 1
+        items |= {first} if first > 0 and symbols[first - 1] == name else set()
+        # a word that the grammar does not reserve yet is one of the names
+        kinds = {
+            i: self.lexer.kind_of.get(symbols[i].text, self.lexer.name_kind)
+            for i in items
+            if WORD.fullmatch(symbols[i].text)
+        }
+        return tuple(
+            Symbol("", Operand((kinds[i],))) if i in kinds else symbol
+            for i, symbol in enumerate(symbols)
+        )
+
+    def known_groups(self, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
+        """The symbols with groups, where a rule is such a group, as operands of that rule."""
+        out = []
+        for symbol in symbols:
+            rule = self.rules.bracketed.get(symbol.text.strip("'"))
+            if symbol.inside is not None and rule:
+                # what only follows operands, as an index, is written as its rule
+                follows = rule in self.rules.recursive and rule not in self.rules.ladder
+                out.append(Symbol(rule) if follows else Symbol("", Operand((), rule)))
+            else:
+                out.append(symbol)
+        return tuple(out)
+
+    def shown(self, token: Token) -> str:
+        """The text of a sign or a word, the name of any other kind; empty for no token."""
+        return self.lexer.display[token[0]] if token[0] > 0 else ""
+
+    def text(self, token: Token) -> str | None:
+        """What an edit writes for a word or a sign; ``None`` for what is neither."""
+        kind, word = token
+        if word:
+            return word
+        if kind <= 0 or kind == self.lexer.line_kind:
+            return None
+        shown = self.lexer.display[kind]
+        if self.lexer.is_keyword(kind):
+            return self.lexer.names[kind]
+        return f"'{shown}'" if shown != self.lexer.names[kind] else None
+
+    def ends_operand(self, tokens: Sequence[Token], at: int) -> bool:
+        """Whether an operand may end right before a place."""
+        kind, word = tokens[at - 1]
+        return not word and (
+            (kind > 0 and self.rules.matcher.is_operand(kind))
+            or self.shown(tokens[at - 1]) in BRACKETS.values()
+        )
+
+    def begins_operand(self, tokens: Sequence[Token], at: int) -> bool:
+        """Whether an operand may begin at a place."""
+        kind, word = tokens[at]
+        if word or kind <= 0:
+            return False
+        shown = self.shown(tokens[at])
+        return (
+            (self.rules.matcher.is_operand(kind) and kind != self.lexer.line_kind)
+            or shown in BRACKETS
+            or self.rules.widest in self.rules.matcher.rules_for((kind,))
+            or shown in PREFIXES
+        )
+
+    def state(self, number: int) -> State:
+        """Where the grammar stands when a line fails."""
+        form = self.lines[number].form
+        before = self.recognizer.restore(form.before)
+        return self.recognizer.run(before, form.kinds[: form.index])[0]
+
+    def expected(self, number: int) -> frozenset[int]:
+        """The kinds of token that could come where a line fails."""
+        return self.recognizer.expected(self.state(number))
+
+    def opened(self, tokens: Sequence[Token], index: int) -> int | None:
+        """The place of the innermost bracket that is open at a token."""
+        depth = 0
+        for place in range(min(index, len(tokens)) - 1, -1, -1):
+            shown = self.shown(tokens[place])
+            if shown in BRACKETS.values():
+                depth += 1
+            elif shown in BRACKETS:
+                if not depth:
+                    return place
+                depth -= 1
+        return None
+
+    def writing(self, number: int, sign: str) -> str | None:
+        """The innermost rule at work that writes the bracket."""
+        for rule in reversed(self.contexts[number].rules):
+            for alternative in self.grammar.by_name[rule].alternatives:
+                if any(opening == sign for opening, _, _ in bracket_pairs(alternative)):
+                    return rule
+        return None

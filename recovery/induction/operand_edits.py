@@ -1,0 +1,188 @@
+"""Edits of what operands are: operators, names that are reserved words, what is in brackets."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+from grammar.notation.addresses import Address, sequence_at
+from grammar.notation.edits import AddAlternative, AddRule, Edit, Replace, Widen
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat
+from recovery.induction.line_symbols import PREFIXES, LineSymbols
+from recovery.induction.steps import Inferred
+from recovery.induction.supported_forms import SupportedForms
+from recovery.induction.symbols import BRACKETS
+from recovery.proposals.edit_site import configurations_of, places_of
+
+__all__ = ["OperandEdits"]
+
+# What a level counts by which operators bind weaker than they need, in symbols.
+_LEVEL = 12
+
+
+class OperandEdits:
+    """Infers what may be an operand; ``operators`` and ``operator_lines`` are those it finds."""
+
+    def __init__(self, at: LineSymbols, forms: SupportedForms) -> None:
+        self.at = at
+        self.forms = forms
+        self.operator_lines: set[int] = set()
+        self.operators: set[str] = {f"'{sign}'" for sign in PREFIXES}
+
+    def edits(self) -> Iterator[Inferred]:
+        """All of them; what is between the brackets of a rule is sought behind these."""
+        yield from self._between_operands()
+        yield from self._words_as_names()
+        yield from self._operand_forms()
+
+    def _between_operands(self) -> Iterator[Inferred]:
+        """Words and signs between two operands or ahead of one, at each level there is."""
+        infix: dict[str, list[int]] = defaultdict(list)
+        prefix: dict[str, list[int]] = defaultdict(list)
+        for number, line in enumerate(self.at.lines):
+            if not line.is_enormous and 0 < line.form.index < len(self.at.tokens[number]) - 1:
+                self._note_operator(number, infix, prefix)
+        self.operator_lines = {n for ns in (*infix.values(), *prefix.values()) for n in ns}
+        self.operators |= infix.keys() | prefix.keys()
+        for text, members in infix.items():
+            heads = {self.at.text(self.at.tokens[n][0]) for n in members}
+            if text[0] != "'" and len(heads) == 1 and None not in heads:
+                continue  # a word of one statement, as STEP is
+            for edits, level in self._as_infix(text):
+                breadth = _LEVEL * (len(self.at.rules.ladder) - level)
+                title = f"{text} between operands"
+                yield Inferred(title, edits, tuple(members), breadth=breadth)
+        for text, members in prefix.items():
+            for rule in self.at.rules.ladder:
+                for alternative in self.at.grammar.by_name[rule].alternatives:
+                    if len(alternative.elements) == 2 and _calls(alternative.elements[1], rule):
+                        edits = (
+                            *self.forms.reserving(text),
+                            AddAlternative(rule, f"{text} {rule}"),
+                        )
+                        yield Inferred(f"{text} ahead of an operand", edits, tuple(members))
+
+    def _note_operator(
+        self, number: int, infix: dict[str, list[int]], prefix: dict[str, list[int]]
+    ) -> None:
+        """Enter a line under the operator at which it seems to fail, if there is one."""
+        tokens, index = self.at.tokens[number], self.at.lines[number].form.index
+        ahead = self.at.text(tokens[index - 1])
+        is_sign = ahead is not None and self.at.shown(tokens[index - 1]) in PREFIXES
+        if is_sign and self.at.begins_operand(tokens, index):
+            prefix[str(ahead)].append(number)  # the sign of a number, as it seemed
+        text = self.at.text(tokens[index])
+        if not text or text == "','" or text.strip("'") in (*BRACKETS, *BRACKETS.values()):
+            return
+        if self.at.begins_operand(tokens, index + 1):
+            if self.at.ends_operand(tokens, index):
+                infix[text].append(number)
+            elif self.at.lexer.name_kind in self.at.expected(number):
+                prefix[text].append(number)
+
+    def _as_infix(self, text: str) -> Iterator[tuple[tuple[Edit, ...], int]]:
+        """The edits for each level of operators, and the place of that level on the ladder."""
+        words = self.forms.reserving(text)
+        is_word = text[0] != "'"
+        for level, rule in enumerate(self.at.rules.ladder):
+            for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
+                for place, element in enumerate(alternative.elements, 1):
+                    if isinstance(element, Repeat) and isinstance(element.item, Group):
+                        inner = element.item.alternatives[0].elements
+                        if len(inner) == 2 and self._is_operator(inner[0], is_word=is_word):
+                            yield (*words, Widen(rule, (number, place, 1, 1), text)), level
+        if not is_word and self.at.rules.ladder:
+            # a sign of its own kind binds tighter than all others
+            for level, rule in enumerate(self.at.rules.ladder, 1):
+                for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
+                    single = alternative.elements
+                    if len(single) != 1 or not isinstance(single[0], Reference):
+                        continue
+                    lower = single[0].name
+                    if (
+                        lower in self.at.rules.ladder
+                        and len(self.at.grammar.by_name[rule].alternatives) > 1
+                        and len(self.at.grammar.by_name[lower].alternatives) > 2
+                    ):
+                        new = self._fresh(f"{lower}Chain")
+                        rule_text = f"{new}\n    : {lower} ({text} {lower})*\n    ;"
+                        yield (AddRule(rule, rule_text), Replace(rule, (number, 1), new)), level
+                        return
+
+    def _is_operator(self, element: Element, *, is_word: bool) -> bool:
+        some = element.alternatives[0].elements if isinstance(element, Group) else (element,)
+        first = some[0] if some else None  # an alternative may be empty
+        if isinstance(first, Literal):
+            return not is_word and first.text != ","
+        return isinstance(first, Reference) and is_word and first.is_token
+
+    def _words_as_names(self) -> Iterator[Inferred]:
+        """Reserved words where a name is expected: as any name, or beside the names of a place."""
+        found: dict[str, list[int]] = defaultdict(list)
+        placed: dict[tuple[str, Address], dict[str, list[int]]]
+        placed = defaultdict(lambda: defaultdict(list))
+        lexer = self.at.lexer
+        for number, line in enumerate(self.at.lines):
+            tokens, index = self.at.tokens[number], line.form.index
+            kind = line.form.kinds[index] if index and not line.is_enormous else 0
+            is_word = kind > 0 and lexer.is_keyword(kind)
+            if not is_word or lexer.name_kind not in self.at.expected(number):
+                continue
+            is_led = index + 1 < len(tokens) and (
+                self.at.begins_operand(tokens, index + 1)
+                or tokens[index + 1][0] in self.at.rules.type_kinds
+            )
+            # between signs, as a name is: an operand beside it would make it a word
+            if not is_led and not self.at.ends_operand(tokens, index):
+                found[lexer.names[kind]].append(number)
+            for place in () if is_led else self._name_places(number):
+                placed[place][lexer.names[kind]].append(number)
+        for word, members in found.items():
+            if self.at.rules.names:
+                edits = (AddAlternative(self.at.rules.names, word),)
+                yield Inferred(f"{word} as a name", edits, tuple(members), is_strict=True)
+        for (rule, at), words in placed.items():
+            every = tuple(number for numbers in words.values() for number in numbers)
+            title = f"{', '.join(sorted(words))} beside names in {rule}"
+            yield Inferred(title, tuple(Widen(rule, at, word) for word in sorted(words)), every)
+
+    def _name_places(self, number: int) -> Iterator[tuple[str, Address]]:
+        """The places of names at which the grammar stands when a line fails."""
+        recognizer, names = self.at.recognizer, {self.at.rules.names, self.at.lexer.name}
+        for site in configurations_of(recognizer, self.at.state(number)):
+            rule = self.at.grammar.by_name[recognizer.network.rule[site[0]]]
+            for place in places_of(recognizer, site) if rule.name not in names else ():
+                elements = sequence_at(rule, place[:-1]).elements[place[-1] - 1 : place[-1]]
+                if any(isinstance(e, Reference) and e.name in names for e in elements):
+                    yield rule.name, place
+
+    def _operand_forms(self) -> Iterator[Inferred]:
+        """What stands in brackets of its own where an operand can be."""
+        found: dict[str, list[int]] = defaultdict(list)
+        name = self.at.lexer.name_kind
+        for number, line in enumerate(self.at.lines):
+            tokens, index = self.at.tokens[number], line.form.index
+            if line.is_enormous or index >= len(tokens):
+                continue
+            rule = self.at.rules.bracketed.get((self.at.text(tokens[index]) or "").strip("'"))
+            if rule and rule not in self.at.rules.ladder and name in self.at.expected(number):
+                found[rule].append(number)
+        count = {rule.name: len(rule.alternatives) for rule in self.at.grammar.rules}
+        gathering = max(self.at.rules.ladder, key=count.__getitem__, default=None)
+        levels = [r for r in self.at.rules.ladder if self.at.profile.has_choice(r)]
+        for rule, members in found.items():
+            for level in levels:
+                if level != rule:
+                    edits = (AddAlternative(level, rule),)
+                    breadth = 0 if level == gathering else _LEVEL
+                    yield Inferred(f"{rule} as an operand", edits, tuple(members), breadth=breadth)
+
+    def _fresh(self, wanted: str) -> str:
+        name, count = wanted, 2
+        while name in self.at.grammar.by_name:
+            name, count = f"{wanted}{count}", count + 1
+        return name
+
+
+def _calls(element: object, rule: str) -> bool:
+    return isinstance(element, Reference) and element.name == rule

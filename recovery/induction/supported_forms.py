@@ -1,0 +1,131 @@
+"""Forms that enough origins show, and what they cost a grammar."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import pairwise
+
+from grammar.notation.edits import AddAlternative, AddToken, Edit
+from grammar.notation.model import Element, Reference, walk
+from recovery.induction.forms import FormWriter
+from recovery.induction.line_symbols import WORD, LineSymbols
+from recovery.induction.symbols import BRACKETS, Symbol, operands_of
+
+__all__ = ["SupportedForms", "optional"]
+
+# Alternatives from which on a rule of words is the list of all of them.
+_LONG_LIST = 8
+# What a rule counts that an edit no longer calls, in symbols.
+_LOST = 12
+
+
+class SupportedForms:
+    """Writes forms of failing lines in which all neighbours are such in enough origins."""
+
+    def __init__(self, at: LineSymbols, origins: Sequence[Collection[str]], least: int = 1) -> None:
+        """``origins[n]`` are those that have line ``n``.
+
+        Each pair of neighbours in a form has to be in lines of ``least`` of them.
+        """
+        self.at = at
+        self._origins = origins
+        self._least = least
+        self.writer = FormWriter(at.reader, operands_of(at.symbols))
+
+    def of(
+        self, shapes: dict[tuple[Symbol, ...], list[int]], old: Sequence[tuple[Symbol, ...]] = ()
+    ) -> Iterator[str]:
+        """Forms of ``old`` shapes and these: all, those that recur, those whose words recur.
+
+        One odd line must not spoil the form, nor one origin.
+        """
+        having = {
+            shape: set[str]().union(*(self._origins[n] for n in numbers))
+            for shape, numbers in shapes.items()
+        }
+        shapes = {shape: shapes[shape] for shape in self.supported(having, old)}
+        lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
+        choices = [
+            [shape for shape, numbers in shapes.items() if len(numbers) >= least]
+            for least in (1, 2, 4)
+        ]
+        choices += [
+            [shape for shape in shapes if all(lines[symbol.text] >= least for symbol in shape)]
+            for least in (2, 4)
+        ]
+        texts = [self.writer.form([*old, *chosen]) for chosen in choices if chosen]
+        yield from dict.fromkeys(text for text in texts if text)
+
+    def supported(
+        self,
+        shapes: Mapping[tuple[Symbol, ...], Collection[str]],
+        old: Sequence[tuple[Symbol, ...]] = (),
+    ) -> list[tuple[Symbol, ...]]:
+        """Those in which all neighbours are such in enough origins, or in an ``old`` shape.
+
+        ``shapes`` come with the origins that have them.
+        """
+        pairs = {shape: frozenset(self.pairs(shape)) for shape in shapes}
+        known = {pair for shape in old for pair in self.pairs(shape)}
+        having: dict[tuple[str, ...], set[str]] = defaultdict(set)
+        for shape, origins in shapes.items():
+            for pair in pairs[shape]:
+                having[pair].update(origins)
+        enough = known | {pair for pair, found in having.items() if len(found) >= self._least}
+        return [shape for shape in shapes if pairs[shape] <= enough]
+
+    def pairs(self, symbols: Sequence[Symbol], group: str = "") -> Iterator[tuple[str, ...]]:
+        """What stands beside what, in groups in brackets too; operands by their sort."""
+        for left, right in pairwise(["", *map(self.finer_sort, symbols), ""]):
+            yield group, left, right
+        for symbol in symbols:
+            if symbol.inside is not None:
+                yield from self.pairs(symbol.inside, f"{group}{symbol.text}")
+
+    def sort(self, symbol: Symbol) -> str:
+        """A symbol by its text, an operand by the bracket it ends with."""
+        kinds = symbol.operand.kinds if symbol.operand else ()
+        shown = self.at.shown((kinds[-1], None)) if kinds else ""
+        return symbol.text or (shown if shown in BRACKETS.values() else "_")
+
+    def finer_sort(self, symbol: Symbol) -> str:
+        """The sort of a symbol; operands by their rule, and by whether they begin with a name."""
+        if symbol.operand is None or symbol.operand.rule:
+            return symbol.text or (symbol.operand.rule if symbol.operand else "")
+        first = symbol.operand.kinds[0]
+        is_name = first == self.at.lexer.name_kind or self.at.rules.matcher.may_be_a_name(first)
+        return "name" if is_name else self.sort(symbol)
+
+    def reserving(self, *texts: str) -> tuple[Edit, ...]:
+        """The edits that reserve the words in texts of rules that the grammar lacks."""
+        found = {w for text in texts for w in WORD.findall(re.sub(r"'[^']*'", " ", text))}
+        words = sorted(w for w in found if w not in self.at.grammar.by_name)
+        lists = [
+            rule
+            for rule in self.at.profile.vocabulary.word_lists
+            if len(self.at.grammar.by_name[rule].alternatives) >= _LONG_LIST
+        ]
+        entered = (AddAlternative(rule, word) for word in words for rule in lists)
+        return (*map(AddToken, words), *entered)
+
+    def lost(self, old: Sequence[Element], text: str) -> int:
+        """What a text costs for the rules that the old elements call and it does not."""
+        written = set(re.findall(r"\w+", text))
+        called = {
+            e.name for o in old for e in walk(o) if isinstance(e, Reference) and not e.is_token
+        }
+        return _LOST * sum(
+            not any(self.at.rules.includes(other, name) for other in written)
+            for name in called & self.at.rules.reaches.keys()
+        )
+
+
+def optional(text: str) -> str:
+    """A text that may be missing; what may be already stays as it is."""
+    if not re.fullmatch(r"\S+", text):
+        return f"({text})?"
+    if text[-1] == "+":
+        return f"{text[:-1]}*"
+    return text if text[-1] in "?*" else f"{text}?"

@@ -1,0 +1,38 @@
+"""Lists that are never long are bounded."""
+
+import pytest
+
+from grammar.notation.g4 import read
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.list_lengths import bounded_lists
+
+_START = "grammar Toy;\nprogram : (call NEWLINE)* EOF ;\ncall : NAME '(' NAME ')' ;\n"
+_TOKENS = """NAME : [A-Z] ;
+COMMA : ',' ;
+LPAREN : '(' ;
+RPAREN : ')' ;
+NEWLINE : '\\n' ;
+"""
+_GROWN = _START.replace("NAME ')'", "NAME (',' NAME)* ')'")
+
+
+@pytest.mark.parametrize(
+    ("start", "lists", "found"),
+    [
+        (_START, ["A,B", "A", "A,B"], ["(',' NAME (',' NAME)?)?"]),
+        (_START, ["A", "A"], []),
+        (_START, ["A,B", "A,B,C,D"], []),
+        (_GROWN, ["A,B", "A,B"], []),
+    ],
+)
+def test_short_lists(start: str, lists: list[str], found: list[str]) -> None:
+    """Where many are seen and none is long three items are most; what the start wrote stays."""
+    texts = ["".join(f"F({items})\n" for items in lists)] * 50
+    edits = bounded_lists(Recognizer(read(_GROWN + _TOKENS)), read(start + _TOKENS), texts)
+    assert found == [getattr(edit, "text", "") for bounded in edits for edit in bounded.edits]
+
+
+def test_few_lists() -> None:
+    """Few lists tell nothing of how long lists may be."""
+    edits = bounded_lists(Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), ["F(A,B)\n"])
+    assert [] == list(edits)
