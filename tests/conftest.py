@@ -16,15 +16,21 @@ if TYPE_CHECKING:
     from selenium import webdriver
 
 # No test depends on the clock, nor on chance: who changes nothing sees the same examples again.
-# `HYPOTHESIS_PROFILE=search` looks for new ones.
+# `HYPOTHESIS_PROFILE=search` looks for new ones, and for many.
 settings.register_profile(
     "suite",
-    max_examples=50,
+    max_examples=30,
     derandomize=True,
     deadline=None,
-    suppress_health_check=[HealthCheck.too_slow],
+    suppress_health_check=[
+        HealthCheck.data_too_large,
+        HealthCheck.function_scoped_fixture,
+        HealthCheck.too_slow,
+    ],
 )
-settings.register_profile("search", settings.get_profile("suite"), derandomize=False)
+settings.register_profile(
+    "search", settings.get_profile("suite"), derandomize=False, max_examples=250
+)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 _FLAGS = (

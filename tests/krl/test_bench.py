@@ -6,14 +6,16 @@ from pathlib import Path
 import pytest
 
 from krl.cli import main
+from recovery.bench import survey_speed
 
 PROGRAM = "DEF main()\nDECL INT count\ncount = 1\nfold = = 3\nEND\n"
 
 
 def test_recover_prints_a_table_and_writes_the_record(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """`krl bench recover` measures on the files named, and stdout and record have the figures."""
+    monkeypatch.setattr(survey_speed, "call_isolated", lambda function, *given: function(*given))
     (tmp_path / "main.src").write_text(PROGRAM, encoding="utf-8", newline="\n")
     target = tmp_path / "out" / "speed.json"
     given = ["bench", "recover", str(tmp_path), "--sizes", "0.01", "--json", str(target)]

@@ -129,15 +129,6 @@ def test_the_page_shows_steps(out: Path) -> None:
     assert [] == [name for name in ids if name not in page]
 
 
-def test_the_same_every_time(corpus: Path, out: Path, tmp_path: Path) -> None:
-    """The same files and seed give the same record, times apart."""
-    options = ("--hold-out", "0.33", "--seed", "3", "--target", GRAMMAR)
-    assert auto(corpus, *options, "--out", tmp_path) == 0
-    timed = {"seconds", "generated"}
-    one, other = ({k: v for k, v in record(o).items() if k not in timed} for o in (out, tmp_path))
-    assert one == other
-
-
 def test_a_step_is_struck_out(corpus: Path, tmp_path: Path) -> None:
     """Without its step a construct stays out, also when the run goes on."""
     assert auto(corpus, "--out", tmp_path) == 0
@@ -152,9 +143,9 @@ def test_a_step_is_struck_out(corpus: Path, tmp_path: Path) -> None:
 
 
 def test_an_interrupted_run_keeps_what_was_done(
-    corpus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    corpus: Path, out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Ctrl-C leaves the rounds so far, and --resume ends where a whole run does."""
+    """Ctrl-C leaves the rounds so far, and --resume ends where a whole run does, to the byte."""
     from recovery.induction.rounds import Induction
 
     whole = Induction.rounds
@@ -171,8 +162,7 @@ def test_an_interrupted_run_keeps_what_was_done(
         assert auto(corpus, *options) == 0
     assert (2, False) == (len(record(tmp_path)["rounds"]), record(tmp_path)["finished"])
     assert auto(corpus, *options, "--resume") == 0
-    grown = Recognizer(read_file(tmp_path / "grammar.g4"))
-    assert [] == [file for file in corpus.rglob("*.src") if not grown.accepts(file.read_text())]
+    assert (out / "grammar.g4").read_bytes() == (tmp_path / "grammar.g4").read_bytes()
 
 
 @pytest.mark.parametrize(

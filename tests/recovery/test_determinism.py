@@ -62,7 +62,7 @@ def test_the_order_of_configurations_does_not_matter(monkeypatch: pytest.MonkeyP
 
 
 def test_records_agree_over_hash_seeds_and_processes(tmp_path: Path) -> None:
-    """Three seeds, one process and two: the record of damaged files is the same to the byte."""
+    """Two seeds, one process and two: the record of damaged files is the same to the byte."""
     for name in ("a.dat", "b.dat"):
         text = DAMAGED if name == "a.dat" else DAMAGED.replace("[", "(")
         (tmp_path / name).write_bytes(text.encode("cp1252", "replace"))
@@ -73,6 +73,6 @@ def test_records_agree_over_hash_seeds_and_processes(tmp_path: Path) -> None:
             stdout=subprocess.PIPE,
             check=True,
         ).stdout
-        for seed, jobs in ((0, 1), (1, 2), (2, 1))
+        for seed, jobs in ((0, 1), (4711, 2))
     }
     assert len(records) == 1

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies
+from hypothesis import given, settings, strategies
 from hypothesis.strategies import SearchStrategy
 
 from conformance.differential.campaign import world_seed
@@ -98,12 +98,7 @@ def programs(draw: Callable[[SearchStrategy[int]], int]) -> Sample:
 
 
 @given(programs())
-@settings(
-    max_examples=12,
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+@settings(max_examples=12)
 def test_hypothesis_makes_the_same_language(sample: Sample) -> None:
     """Programs drawn by hypothesis check too, and executors agree on them."""
     try:

@@ -6,7 +6,7 @@ from random import Random
 from typing import get_args
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from grammar.notation.addresses import element_at, sequences
@@ -312,7 +312,6 @@ def result_of(grammar: Grammar, edit: Edit) -> Grammar:
     return changed
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_an_edit_touches_its_rule_only(chance: Random) -> None:
     """All other text stays as it was, and reading the new text gives the edited data."""
@@ -330,7 +329,6 @@ def test_an_edit_touches_its_rule_only(chance: Random) -> None:
     assert old == new or old.text != new.text
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_widening_rejects_nothing(chance: Random) -> None:
     """What a grammar accepts it still accepts after an alternative or an option more."""
@@ -342,7 +340,6 @@ def test_widening_rejects_nothing(chance: Random) -> None:
         assert wider.run(wider.start, kinds)[1] is None
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_narrowing_accepts_nothing_new(chance: Random) -> None:
     """What a grammar accepts without one alternative it accepted with it."""

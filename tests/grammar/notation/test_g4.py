@@ -6,7 +6,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read, read_file, read_rule
@@ -27,7 +27,6 @@ from grammar.notation.model import (
 )
 
 FILES = [GRAMMAR, GRAMMAR.with_name("preliminary.g4")]
-QUICK = settings(max_examples=80, deadline=None)
 NOWHERE = (0, 0)
 TOKENS = "A : 'a' ;\nB : 'b' ;\nIF : 'if' ;\n"
 SMALL = (
@@ -105,7 +104,6 @@ def drawn_grammar(chance: Random) -> tuple[str, tuple[Rule, ...]]:
     return "".join(piece for x in lexemes for piece in (x, chance.choice(LAYOUT))), tuple(rules)
 
 
-@QUICK
 @given(MANY)
 def test_any_layout_is_kept(chance: Random) -> None:
     """Whatever stands between the lexemes, the data is the same and the text comes back."""
@@ -115,7 +113,6 @@ def test_any_layout_is_kept(chance: Random) -> None:
     assert text == grammar.text
 
 
-@QUICK
 @given(MANY)
 def test_spans_say_where_an_element_stands(chance: Random) -> None:
     """The text at an element's span, read on its own, is that element."""
@@ -351,7 +348,6 @@ def test_line_ends_of_a_file_are_kept(tmp_path: Path) -> None:
     assert read(SMALL).rules == grammar.rules
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.data())
 def test_damaged_text_is_read_or_refused(data: st.DataObject) -> None:
     """Whatever is cut out, doubled or put in, the outcome is a grammar or a `GrammarError`."""

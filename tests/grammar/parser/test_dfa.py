@@ -5,7 +5,7 @@ from itertools import pairwise
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read
@@ -169,7 +169,6 @@ def random_rules(chance: Random) -> str:
     return "\n".join(rules)
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.randoms(use_true_random=True))
 def test_the_pattern_matches_what_the_automaton_does(chance: Random) -> None:
     """Where there is a pattern, its match is the automaton's longest match at every place."""

@@ -58,11 +58,11 @@ def test_own_corpus(krl_recognizer: Recognizer, corpus: Mapping[Path, str]) -> N
 def test_random_walks_and_their_mutants(
     krl_recognizer: Recognizer, mutated: Mutated, seed: int
 ) -> None:
-    """Both accept 250 programs found by a random walk, and agree on 500 damaged copies."""
+    """Both accept 100 programs found by a random walk, and agree on 200 damaged copies."""
     chance = Random(seed)
     speller = Speller(krl_recognizer.grammar)
     found = []
-    for _ in range(250):
+    for _ in range(100):
         tokens = walk(krl_recognizer, chance, chance.randint(5, 60))
         text = speller.text(tokens)
         assert krl_recognizer.accepts(text)
@@ -76,11 +76,11 @@ def test_random_walks_and_their_mutants(
 def test_random_sentences_and_their_mutants(
     krl_recognizer: Recognizer, mutated: Mutated, seed: int
 ) -> None:
-    """Both accept 250 random sentences, and agree on 500 damaged copies."""
+    """Both accept 100 random sentences, and agree on 200 damaged copies."""
     chance = Random(seed)
     speller, sentences = Speller(krl_recognizer.grammar), Sentences(krl_recognizer.grammar)
     found = []
-    for _ in range(250):
+    for _ in range(100):
         tokens = sentences.random(chance, 80)
         names = list(speller.samples)
         programs = [tokens, *(mutated(tokens, chance, names) for _ in range(2))]

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import grammar.parser.failures
@@ -98,7 +98,6 @@ BAD = [
 ]
 
 
-@settings(max_examples=100, deadline=None)
 @given(chance=MANY)
 def test_every_bad_line_is_found_and_no_other(chance: Random) -> None:
     """Among lines of nested blocks, under any line ends, the bad ones fail and no other."""
@@ -126,7 +125,6 @@ def test_every_bad_line_is_found_and_no_other(chance: Random) -> None:
 
 
 @pytest.mark.parametrize("name", OWN)
-@settings(max_examples=80, deadline=None)
 @given(chance=MANY)
 def test_what_holds_for_any_text(name: str, chance: Random, mutated: Mutated) -> None:
     """Failures are data that can be replayed, one a line, the first where the recogniser stops."""
@@ -196,7 +194,6 @@ ODD_FINDERS = [
 
 
 @pytest.mark.parametrize("finder", ODD_FINDERS, ids=["plain", "doubled quotes"])
-@settings(max_examples=80, deadline=None)
 @given(chance=MANY)
 def test_line_ends_inside_tokens(finder: FailureFinder, chance: Random) -> None:
     """Lines are counted right where strings and comments run over several of them."""

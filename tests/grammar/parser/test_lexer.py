@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from antlr4 import InputStream, Token
 from antlr4.error.ErrorListener import ErrorListener
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import grammar.parser.lexer
@@ -24,7 +24,6 @@ LexerEnds = Callable[[Grammar, Rule, str, int], frozenset[int]]
 #: Name of the token, its text, its offset.
 Tokens = list[tuple[str, str, int]]
 
-QUICK = settings(max_examples=60, deadline=None)
 NASTY = [
     *("1", ".", "1.", "1.5.2", ".5", "0x", "E3", "1.0E-3", "007"),
     *("'B01", "'", "'B01'", "'HfF'", "'H'", "'b2'", '"', '"a', '""', '"a""b"', '";"', '"\n'),
@@ -88,7 +87,6 @@ def slow_tokens(grammar: Grammar, text: str, lexer_ends: LexerEnds) -> Tokens:
 
 
 @pytest.mark.parametrize("own", GRAMMARS, ids=["KRL", "preliminary"])
-@QUICK
 @given(text=NASTY_TEXT)
 def test_tokens_are_those_of_the_rules(own: Grammar, text: str, lexer_ends: LexerEnds) -> None:
     """On the nastiest text the tokens are the longest matches, the earlier rule first."""
@@ -130,7 +128,6 @@ def random_grammar(chance: Random) -> Grammar:
     return lexer_grammar("\n".join(rules), folded=chance.random() < 0.5)
 
 
-@settings(max_examples=100, deadline=None)
 @given(chance=st.randoms(use_true_random=True))
 def test_tokens_of_random_rules(chance: Random, lexer_ends: LexerEnds) -> None:
     """The same holds for rules put together at random, patterns or not, skipped or not."""
@@ -145,7 +142,6 @@ def test_tokens_of_random_rules(chance: Random, lexer_ends: LexerEnds) -> None:
         assert SKIPPED not in map(lexer.kinds.__getitem__, lexer.lexemes(text))
 
 
-@QUICK
 @given(text=NASTY_TEXT)
 def test_nothing_is_lost(text: str) -> None:
     """Every lexeme stands at its offset, none overlap, and between them is only what is skipped."""
@@ -381,7 +377,6 @@ def test_the_corpus_has_the_tokens_of_antlr(corpus: Mapping[Path, str]) -> None:
         assert antlr_tokens(text) == until_error(tokens_of(lexer, text)), path
 
 
-@QUICK
 @given(NASTY_TEXT)
 def test_nasty_text_has_the_tokens_of_antlr(text: str) -> None:
     """Both lexers agree where no program would ever go."""

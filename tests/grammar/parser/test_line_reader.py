@@ -2,7 +2,7 @@
 
 from random import Random
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.parser.lexer import EOF
@@ -24,7 +24,6 @@ def test_lines_of_a_file(recognizer: Recognizer) -> None:
     assert 5 == len(reader)
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=st.randoms(use_true_random=True))
 def test_lines_put_together_are_the_file(recognizer: Recognizer, chance: Random) -> None:
     """The kinds of all lines in a row are those of the file, whatever is at its end."""
@@ -36,7 +35,6 @@ def test_lines_put_together_are_the_file(recognizer: Recognizer, chance: Random)
     assert len(set(reader.kinds)) == len(reader.kinds)
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=st.randoms(use_true_random=True))
 def test_reading_a_line_is_reading_its_tokens(recognizer: Recognizer, chance: Random) -> None:
     """From one state a line leads to one spot, or to none, also when it is remembered."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.addresses import element_at, sequences
@@ -155,7 +155,6 @@ def test_the_reach_of_every_position(name: str, request: pytest.FixtureRequest) 
         check_reach(network, position)
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_the_reach_in_random_grammars(chance: Random, random_grammar: RandomGrammar) -> None:
     """The same where rules are empty, recursive and call one another in every way."""
@@ -174,7 +173,6 @@ def check_reach(network: Network, position: int) -> None:
     assert reach.rules >= {network.rule[p] for p, _ in sites}
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_positions_that_pass_a_return_on(chance: Random, random_grammar: RandomGrammar) -> None:
     """From these, and from no others, the rule can end and nothing else can be done."""
@@ -184,7 +182,6 @@ def test_positions_that_pass_a_return_on(chance: Random, random_grammar: RandomG
         assert (({(position, ())}, set(), True) == found) == (position in network.passing())
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
     """A network with one rule exchanged reads like one linked anew; other positions stay."""
@@ -216,7 +213,6 @@ def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
 # ------------------------------------------------------------------------ left recursion
 
 
-@settings(max_examples=200, deadline=None)
 @given(chance=MANY)
 def test_left_recursion_is_found(chance: Random, random_grammar: RandomGrammar) -> None:
     """The network has a left-recursive cycle exactly where reading the grammar finds one."""
@@ -228,7 +224,6 @@ def test_left_recursion_is_found(chance: Random, random_grammar: RandomGrammar) 
     assert found == is_left_recursive(network_of(changed))
 
 
-@settings(max_examples=200, deadline=None)
 @given(chance=MANY)
 def test_left_recursion_of_one_change(chance: Random, random_grammar: RandomGrammar) -> None:
     """Looking at the changed rule alone tells what looking at all of them does."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read, read_file
@@ -70,7 +70,6 @@ def agrees(recognizer: Recognizer, tokens: list[str], parse: Parse) -> None:
 # --------------------------------------------------------------------------------- laws
 
 
-@settings(max_examples=250, deadline=None)
 @given(chance=MANY)
 def test_it_reads_as_all_readings_together_do(
     chance: Random, random_grammar: RandomGrammar, mutated: Mutated, parse: Parse
@@ -84,7 +83,6 @@ def test_it_reads_as_all_readings_together_do(
         agrees(recognizer, some_tokens(recognizer.grammar, chance, 14, mutated), parse)
 
 
-@settings(max_examples=150, deadline=None)
 @given(chance=MANY)
 def test_of_frames_that_pass_a_return_on_one_is_enough(
     chance: Random, random_grammar: RandomGrammar, mutated: Mutated, parse: Parse
@@ -98,7 +96,6 @@ def test_of_frames_that_pass_a_return_on_one_is_enough(
 
 
 @pytest.mark.parametrize("name", OWN)
-@settings(max_examples=40, deadline=None)
 @given(chance=MANY)
 def test_it_reads_programs_as_all_readings_together_do(
     name: str, chance: Random, mutated: Mutated, parse: Parse
@@ -109,7 +106,6 @@ def test_it_reads_programs_as_all_readings_together_do(
 
 
 @pytest.mark.parametrize("name", OWN)
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_what_was_read_is_the_start_of_a_program(
     name: str, chance: Random, mutated: Mutated
@@ -133,7 +129,6 @@ def test_what_was_read_is_the_start_of_a_program(
             assert recognizer.run(recognizer.start, whole)[1] is None
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_reading_in_pieces(chance: Random, mutated: Mutated) -> None:
     """Tokens read in pieces, or from a state described as data, are read as in one go."""
@@ -153,7 +148,6 @@ def test_reading_in_pieces(chance: Random, mutated: Mutated) -> None:
     assert recognizer.expected(state) == fresh.expected(last)
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_configurations_are_what_a_state_is_made_of(chance: Random, mutated: Mutated) -> None:
     """What a state expects is what its configurations, each on its own, expect together."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read, read_file
@@ -84,7 +84,6 @@ def test_programs_through_alternatives_and_options() -> None:
 
 
 @pytest.mark.parametrize("name", OWN)
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_random_programs(name: str, chance: Random) -> None:
     """A random program is one, and about as long as was asked."""
@@ -95,7 +94,6 @@ def test_random_programs(name: str, chance: Random) -> None:
     assert len(tokens) < 3 * size + 100
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_random_sentences_of_random_grammars(
     chance: Random, random_grammar: RandomGrammar, parse: Parse
@@ -151,7 +149,6 @@ def test_each_token_has_a_spelling(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", OWN)
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_spelled_programs_read_back(name: str, chance: Random) -> None:
     """The text of a program has its tokens, and both parsers accept it."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read_file
@@ -45,7 +45,6 @@ def test_shortest_sentences_of_every_rule(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", OWN)
-@settings(max_examples=30, deadline=None)
 @given(chance=MANY)
 def test_into_a_configuration_and_out_again(name: str, chance: Random) -> None:
     """The prefix leads to a state with that configuration, and its completion ends a program."""
@@ -66,7 +65,6 @@ def test_into_a_configuration_and_out_again(name: str, chance: Random) -> None:
         assert frames in {(p, *stack.positions()) for p, stack in recognizer.sites(whole)}
 
 
-@settings(max_examples=60, deadline=None)
 @given(chance=MANY)
 def test_ways_through_random_grammars(chance: Random, random_grammar: RandomGrammar) -> None:
     """From every state on the way through a program the shortest completion ends one."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read_file
@@ -295,7 +295,6 @@ COMMENTS = st.sampled_from(
 )
 
 
-@settings(max_examples=80, deadline=None)
 @given(data=st.data(), chance=st.randoms(use_true_random=True))
 def test_random_programs_keep_their_laws(data: st.DataObject, chance: Random) -> None:
     """Any program of the grammar, with any blanks, comments, folds and letters."""

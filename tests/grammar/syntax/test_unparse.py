@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from random import Random
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read_file
@@ -94,7 +94,6 @@ def test_every_alternative_comes_back() -> None:
             comes_back(SPELLER.text(tokens))
 
 
-@settings(max_examples=80, deadline=None)
 @given(chance=st.randoms(use_true_random=True), size=st.integers(10, 150))
 def test_random_programs_come_back(chance: Random, size: int) -> None:
     """Any program of the grammar is the same program after printing."""

@@ -14,9 +14,7 @@ from interp.bench.blends import draw, exact, measure, straight, travel
 from interp.values.faults import Fault
 
 SEEDS = st.integers(0, 10_000_000)
-FEW = settings(
-    max_examples=8, deadline=None, derandomize=True, phases=[Phase.explicit, Phase.generate]
-)
+FEW = settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
 _DIFFERENCES = 1e-3  # what differences of samples miss of derivatives
 
 

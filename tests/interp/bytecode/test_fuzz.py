@@ -7,7 +7,7 @@ import zlib
 from contextlib import suppress
 from typing import Any
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.semantics.predefined import System
@@ -110,11 +110,7 @@ def test_programs_run_to_an_end(everything: str) -> None:
     assert _checked(write_image(assemble(everything))) is not None
 
 
-@settings(
-    max_examples=150,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_mutated_images_do_no_harm(everything: str, data: st.DataObject) -> None:
     """A few words changed and the checksum made right: refused, or run to an end."""
@@ -127,11 +123,7 @@ def test_mutated_images_do_no_harm(everything: str, data: st.DataObject) -> None
         assert program == assemble(disassemble(program))
 
 
-@settings(
-    max_examples=150,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_mutated_instructions_do_no_harm(everything: str, data: st.DataObject) -> None:
     """The same among the instructions, where most of what is changed is still an image."""

@@ -74,7 +74,6 @@ def test_primitives_are_the_same(primitive: Primitive) -> None:
     """Every operator on scalars gives the same value, of the same kind, or the same fault."""
 
     @given(st.tuples(*(_VALUES[kind] for kind in primitive.operands)))
-    @settings(max_examples=30)
     def agree(values: Any) -> None:
         values = tuple(
             _as_kept(kind, value) for kind, value in zip(primitive.operands, values, strict=True)

@@ -36,7 +36,7 @@ def pulses(times: list[tuple[int, float]]) -> str:
 EVENTS = st.lists(st.tuples(st.integers(1, 3), TIMES), max_size=8)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(EVENTS)
 def test_one_trace(go: Go, events: list[tuple[int, float]]) -> None:
     """The same program in the same world has the same trace, and time never goes back."""
@@ -46,7 +46,7 @@ def test_one_trace(go: Go, events: list[tuple[int, float]]) -> None:
     assert sorted(times) == times
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(EVENTS)
 def test_nesting(go: Go, events: list[tuple[int, float]]) -> None:
     """Routines nest by rising priority and unwind to the state before."""
@@ -73,7 +73,7 @@ STOPPING = (
 )
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.lists(TIMES, max_size=4))
 def test_brakes_cost_time_only(go: Go, times: list[float]) -> None:
     """However often the arm is stopped, it comes to the same place, later by the stops."""
@@ -84,7 +84,7 @@ def test_brakes_cost_time_only(go: Go, times: list[float]) -> None:
     assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(EVENTS, st.integers(2, 400))
 def test_in_pieces(go: Go, events: list[tuple[int, float]], pieces: int) -> None:
     """A run that is stopped and taken up again at any time has the trace of one run."""

@@ -121,7 +121,7 @@ def plain() -> list[str]:
     return trace(run_program(PREPARED, RunSetup(submit="SPS", script=SCRIPT)))
 
 
-@settings(deadline=None, max_examples=5)
+@settings(max_examples=5)
 @given(there=st.integers(0, 40), back=st.integers(1, 4), executor=st.sampled_from(available()))
 def test_back_and_forward_is_nowhere(
     there: int, back: int, executor: str, plain: list[str]

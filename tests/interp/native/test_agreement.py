@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 Compare = Callable[[str], list[Any]]
@@ -311,11 +311,6 @@ class _Writer:
         self._lines += text.replace("{label}", f"J{self._labels}").split("\n")
 
 
-@settings(
-    max_examples=60,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
 @given(data=st.data(), random=st.randoms(use_true_random=False))
 def test_any_instructions(agreed: Compare, data: st.DataObject, random: Any) -> None:
     """Requests, replies, the trace, faults and the data lists are the same on both machines."""

@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from interp.bytecode.assembly.assembler import assemble
@@ -131,11 +131,7 @@ def _changes(size: int) -> st.SearchStrategy[list[tuple[int, int]]]:
     return st.lists(st.tuples(place, word), min_size=1, max_size=2)
 
 
-@settings(
-    max_examples=120,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_damaged_images(core: type[Core], data: st.DataObject) -> None:
     """What Python takes, C takes; what C takes runs on without harm, whatever Python says of it."""

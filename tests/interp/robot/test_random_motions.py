@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from interp.robot.arm import Approximation, Place, SplinePart
@@ -123,11 +123,7 @@ def move(driver: Driver, step: dict[str, Any]) -> None:
 
 
 @settings(
-    max_examples=40,
-    deadline=None,
-    derandomize=True,
     phases=[Phase.explicit, Phase.generate],
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(steps=st.lists(STEPS, min_size=2, max_size=9))
 def test_limits_are_never_exceeded(machine: MachineData, driver: Driver, steps: list[Any]) -> None:

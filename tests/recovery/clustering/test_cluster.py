@@ -1,11 +1,6 @@
 """Failures are grouped by cause, and what mending them brings is what counting brings."""
 
-import json
-import os
-import subprocess
-import sys
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 from random import Random
 
@@ -213,50 +208,3 @@ def test_copies_count() -> None:
 
 
 # --------------------------------------------------------------------------- the same result
-
-TELL = """
-import json, sys
-from grammar.notation.g4 import read_file
-from grammar.notation.generate import GRAMMAR
-from recovery.clustering.cluster import cluster
-from recovery.survey.survey import survey_texts
-
-grammar = read_file(GRAMMAR.with_name("preliminary.g4"))
-found = survey_texts([tuple(pair) for pair in json.load(sys.stdin)], grammar)
-clusters = cluster(found)
-print(json.dumps([
-    [
-        [c.id, c.title, c.unlocks, len(c.members), [repr(p.edits) for p in c.proposals]]
-        for c in clusters.ranked
-    ],
-    [[c.id, parsed] for c, parsed in clusters.order],
-]))
-"""
-
-
-def told(clusters: Clusters) -> object:
-    """What a program in another process tells of clusters."""
-    ranked = []
-    for c in clusters.ranked:
-        edits = [repr(p.edits) for p in c.proposals]
-        ranked.append([c.id, c.title, c.unlocks, len(c.members), edits])
-    return [ranked, [[c.id, parsed] for c, parsed in clusters.order]]
-
-
-def varied() -> Sequence[tuple[str, str]]:
-    chance = Random(11)
-    return [(f"{n}.src", program(*chance.choices(PIECES, k=2))) for n in range(7)]
-
-
-def test_hashing_does_not_matter() -> None:
-    """Python's hashing is another in every process; clusters, proposals and order are not."""
-    done = subprocess.run(
-        [sys.executable, "-c", TELL],
-        input=json.dumps(varied()),
-        env=os.environ | {"PYTHONHASHSEED": "4711"},
-        capture_output=True,
-        text=True,
-        check=True,
-        encoding="utf-8",
-    )
-    assert told(cluster(survey_texts(varied(), PRELIMINARY))) == json.loads(done.stdout)

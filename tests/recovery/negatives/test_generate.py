@@ -34,7 +34,7 @@ def own_programs() -> list[str]:
 
 @pytest.fixture(scope="module")
 def negatives() -> tuple[Negative, ...]:
-    return tuple(generate(own_programs(), count=10_000, seed=1))
+    return tuple(generate(own_programs(), count=5_000, seed=1))
 
 
 @pytest.fixture(scope="module")
@@ -43,13 +43,13 @@ def permissive() -> Recognizer:
 
 
 def test_there_are_as_many_as_wanted_and_all_differ(negatives: tuple[Negative, ...]) -> None:
-    """10,000 programs come, no two with the same tokens, none longer than 15 lines."""
+    """5,000 programs come, no two with the same tokens, none longer than 15 lines."""
     tokens = {
         tuple(tuple(token.word for token in line.tokens) for line in lines(negative.text))
         for negative in negatives
     }
-    assert 10_000 == len(negatives)
-    assert 10_000 == len(tokens)
+    assert 5_000 == len(negatives)
+    assert 5_000 == len(tokens)
     assert max(negative.text.count("\n") for negative in negatives) <= 15
 
 
@@ -70,19 +70,16 @@ def test_a_generous_grammar_takes_every_program_and_no_negative(
     assert [] == NegativeSet(negatives).accepted(permissive)
 
 
-def test_grammar_in_force_accepts_only_keywords_it_lacks(negatives: tuple[Negative, ...]) -> None:
-    """What the grammar in force accepts misuses a reserved word that it does not know yet."""
+def test_the_grammar_in_force_accepts_none(negatives: tuple[Negative, ...]) -> None:
+    """What is invalid under any grammar is invalid under ours."""
     recognizer = Recognizer(read_file(ROOT / "grammar" / "KRL.g4"))
-    known = set(recognizer.grammar.literal_tokens)
-    for negative in NegativeSet(negatives).accepted(recognizer):
-        kinds = {kind for line in lines(negative.text) for kind in line.kinds if kind.isupper()}
-        assert kinds - known, negative
+    assert [] == NegativeSet(negatives).accepted(recognizer)
 
 
 def test_reasons_are_spread(negatives: tuple[Negative, ...]) -> None:
     """No reason stands for more than a fifth, and those the grammar's growth hangs on all occur."""
     reasons = Counter(negative.reason for negative in negatives)
-    assert max(reasons.values()) < 2_000
+    assert max(reasons.values()) < 1_000
     wanted = """THEN ends the line of IF
 FOR has TO
 FOR or SEC follows WAIT
@@ -115,7 +112,7 @@ def test_reasons_are_drawn_evenly(negatives: tuple[Negative, ...]) -> None:
     assert [] == [r for r in every if drawn[r] < min(every[r], most - 1)]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seed=st.integers(0, 2**32), count=st.integers(0, 60))
 def test_a_seed_gives_the_same_programs(seed: int, count: int) -> None:
     """The same seed gives the same programs; fewer are the beginning of more."""

@@ -6,7 +6,6 @@ import pytest
 
 from grammar.notation.g4 import read, read_file
 from grammar.parser.recognizer import Recognizer
-from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeError, NegativeSet, load
 
 ROOT = Path(__file__).parents[3]
@@ -160,10 +159,3 @@ def test_what_was_rejected_before_can_be_asked_for() -> None:
     narrow = found.rejected_by(toy("WORD* NEWLINE", "WORD NEWLINE"))
     assert ["A B\n", "?\n"] == [n.text for n in narrow.negatives]
     assert ["A B\n"] == [n.text for n in narrow.accepted(toy())]
-
-
-def test_ten_thousand_are_tried_and_none_accepted() -> None:
-    """A grammar never seen before is tried on 10,000 negatives, and ours accepts none."""
-    found = NegativeSet(generate(count=10_000, seed=6))
-    recognizer = Recognizer(read_file(ROOT / "grammar" / "KRL.g4"))
-    assert not found.accepted(recognizer)

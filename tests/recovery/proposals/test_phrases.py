@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.edits import AddRule, AddToken, apply
@@ -83,7 +83,6 @@ def test_no_words_have_no_phrase() -> None:
     assert [] == phrases("= " * 400)
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.lists(st.sampled_from([*TOKENS, "STEP"]), min_size=1, max_size=7))
 def test_every_phrase_reads_the_words_it_was_made_for(tokens: list[str]) -> None:
     """A rule of the phrase is the words, whatever they are."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.g4 import read_file
@@ -335,7 +335,6 @@ def test_lines_come_from_archives_too(tmp_path: Path) -> None:
 PROGRAMS = st.lists(st.tuples(st.sampled_from(LINES), st.sampled_from(LINE_ENDS)), max_size=12)
 
 
-@settings(max_examples=100, deadline=None)
 @given(PROGRAMS)
 def test_failures_lie_where_they_say(lines: list[tuple[str, str]]) -> None:
     """At most one failure a line, in order, each token at its line and column."""
@@ -355,7 +354,6 @@ def test_failures_lie_where_they_say(lines: list[tuple[str, str]]) -> None:
             assert RECOGNIZER.kinds(rest)[:-1] == []
 
 
-@settings(max_examples=100, deadline=None)
 @given(PROGRAMS)
 def test_a_file_fails_exactly_where_it_is_no_program(lines: list[tuple[str, str]]) -> None:
     """Files without failures are the programs of the grammar, and the first failure is direct."""
@@ -365,7 +363,6 @@ def test_a_file_fails_exactly_where_it_is_no_program(lines: list[tuple[str, str]
     assert not any(failed.follows for failed in file.failures[:1])
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.binary(max_size=200), st.sampled_from([b"", b"DEF A()\n", b"\xff\xfe", b"PK\x03\x04"]))
 def test_junk_is_a_result_and_no_error(
     tmp_path_factory: pytest.TempPathFactory, data: bytes, head: bytes

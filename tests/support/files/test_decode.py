@@ -1,16 +1,14 @@
 """Bytes become KRL text, or a reason why they are not."""
 
 import hashlib
-import time
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from support.files.decode import Source, decode, digest
 
 PROGRAM = "&ACCESS RVP\r\nDEF CELL1 ( )\r\n;FOLD INI\r\n  $OUT[1]=TRUE\r\n;ENDFOLD\r\nEND\r\n"
-QUICK = settings(max_examples=60, deadline=None)
 BOMS = {"utf-16-le": b"\xff\xfe", "utf-16-be": b"\xfe\xff"}
 BOMS |= {"utf-32-le": b"\xff\xfe\0\0", "utf-32-be": b"\0\0\xfe\xff"}
 
@@ -49,7 +47,6 @@ def test_the_encoding_is_found_by_what_is_valid(data: bytes, encoding: str) -> N
 
 
 @pytest.mark.parametrize("encoding", BOMS)
-@QUICK
 @given(tail=st.text(st.characters(exclude_categories=["Cc", "Cs"])))
 def test_wide_text_is_read_by_its_mark(encoding: str, tail: str) -> None:
     """UTF-16 and UTF-32 with a byte order mark give back the text, without the mark."""
@@ -58,7 +55,6 @@ def test_wide_text_is_read_by_its_mark(encoding: str, tail: str) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
-@QUICK
 @given(tail=st.text(st.characters(exclude_categories=["Cc", "Cs"])))
 def test_utf8_round_trip(encoding: str, tail: str) -> None:
     """Whatever is written in UTF-8 is read as it was, with a byte order mark or without."""
@@ -67,18 +63,16 @@ def test_utf8_round_trip(encoding: str, tail: str) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1"])
-@QUICK
 @given(tail=st.data())
 def test_single_byte_round_trip(encoding: str, tail: st.DataObject) -> None:
     """Single-byte text that is no valid UTF-8 is read as it was written."""
     # An umlaut before a letter is never UTF-8, and 0x9d is one of the five bytes without cp1252.
     start = f"{PROGRAM}; Ünn" + ("\x9d" if encoding == "latin-1" else "")
-    allowed = st.characters(codec=encoding, exclude_categories=["Cc"])
-    text = f"{start}{tail.draw(st.text(allowed))}."
+    allowed = [sign for sign in bytes(range(256)).decode(encoding, "ignore") if sign.isprintable()]
+    text = f"{start}{tail.draw(st.text(st.sampled_from(allowed)))}."
     assert Source(text, encoding) == decode(text.encode(encoding))
 
 
-@QUICK
 @given(st.binary() | st.binary().map(lambda junk: b"DEF A()\n" + junk))
 def test_any_bytes_give_text_or_one_line(data: bytes) -> None:
     """`decode` never raises, its reasons are one line, and its text gives the bytes back."""
@@ -251,12 +245,3 @@ def test_binary_data_is_named(data: bytes, expected: str) -> None:
 def test_a_few_control_characters_are_no_reason() -> None:
     """Real programs hold stray control characters; those are for the survey to report."""
     assert text_of(b"DEF A()\n;\x05\x1c\x1d\nEND") == "DEF A()\n;\x05\x1c\x1d\nEND"
-
-
-def test_enormous_lines_are_looked_at_in_linear_time() -> None:
-    """Megabytes without a newline are decided in a moment, where squared time would take hours."""
-    start = time.process_time()
-    for unit in (b" ", b"\t", b"(", b"[", b"{", b"A ", b"DEF ", b"GLOBAL ", b"1 ", b"a=", b"\r"):
-        decode(unit * (1_000_000 // len(unit)))
-        decode((b"DEF " + unit * 1000 + b"\n") * (1_000_000 // (5 + 1000 * len(unit))))
-    assert time.process_time() - start < 20

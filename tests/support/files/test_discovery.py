@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from support.files import archives
@@ -181,7 +181,6 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return lay(tmp_path_factory.mktemp("tree"), *TREE)
 
 
-@settings(max_examples=40, deadline=None)
 @given(order=st.lists(st.sampled_from(PLACES), min_size=1).flatmap(
     lambda places: st.tuples(st.just(places), st.permutations(places))
 ))  # fmt: skip
@@ -196,7 +195,6 @@ def test_the_order_of_roots_does_not_matter(tree: Path, order: tuple[list[str], 
 NAMES = st.text("ab.üX$ -", min_size=1, max_size=6).filter(lambda name: name.strip(" .") == name)
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.sets(st.tuples(NAMES, NAMES, st.sampled_from([".src", ".DAT", ".sub", ".txt"]))))
 def test_every_candidate_is_found_exactly_once(names: set[tuple[str, str, str]]) -> None:
     """Whatever the names, each candidate is found once and no other file is."""

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.image.reader import ImageError, read_image
 from interp.bytecode.image.writer import write_image
+from interp.bytecode.instruction_set.table import FORMAT
 
 SMALL = 'bytecode 3\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
 
@@ -34,7 +35,7 @@ def test_program_survives_its_image(everything: str) -> None:
 def test_image_begins_with_its_name_and_version() -> None:
     """Four letters, the version, and the length stand first."""
     image = write_image(assemble(SMALL))
-    assert (b"KRLI", 3, len(image)) == struct.unpack_from("<4sII", image)
+    assert (b"KRLI", FORMAT, len(image)) == struct.unpack_from("<4sII", image)
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def travelled(
     return axes, np.array(points)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(
     slide=st.integers(-400, 400),
     x=st.integers(-60, 60),

@@ -72,7 +72,6 @@ def nearest(ways: Array, axes: Array) -> float:
 
 
 @pytest.mark.parametrize("held", Palletising)
-@settings(max_examples=60)
 @given(shape=shapes(), axes=axes_at_random)
 def test_palletisers_there_and_back(
     arm: Kinematics, held: Palletising, shape: dict[str, Any], axes: Array
@@ -88,7 +87,6 @@ def test_palletisers_there_and_back(
     assert nearest(ways, axes) < 1e-6
 
 
-@settings(max_examples=60)
 @given(shape=shapes(), axes=axes_at_random)
 def test_a_parallelogram_keeps_the_flange_level(
     arm: Kinematics, shape: dict[str, Any], axes: Array
@@ -98,7 +96,6 @@ def test_a_parallelogram_keeps_the_flange_level(
     np.testing.assert_allclose(arm.forward(axes)[:3, 2], [0, 0, -1], atol=1e-12)
 
 
-@settings(max_examples=60)
 @given(axes=axes_at_random, turn=st.tuples(*(st.floats(-30, 30),) * 3))
 def test_five_axes_reach_every_place(
     arm: Kinematics, axes: Array, turn: tuple[float, float, float]

@@ -45,7 +45,7 @@ def flange(axes: Sequence[float]) -> Pose:
     return Pose.from_matrix(kinematics_of(default_machine()).forward(axes).tolist())
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(angle=st.floats(20.0, 160.0), count=st.integers(2, 60))
 def test_nothing_is_passed_through(angle: float, count: int) -> None:
     """However far apart set-points are, a thin wall in the way is touched where it stands."""
@@ -100,7 +100,7 @@ def torques(loads: dict[str, Load], axes: Sequence[float] = HOME) -> Array:
     return found
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(mass=st.floats(0.5, 20.0), x=st.integers(-200, 200), z=st.integers(0, 300))
 def test_a_load_weighs_on_the_axes(mass: float, x: int, z: int) -> None:
     """Held still, each axis bears more by weight times arm: the work of lifting the load."""

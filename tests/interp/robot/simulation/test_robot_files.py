@@ -65,7 +65,6 @@ def read(folder: Path, text: str, name: str = "arm.urdf") -> RobotFile:
     return read_robot(path)
 
 
-@settings(max_examples=25, deadline=None)
 @given(chain=st.lists(steps, min_size=1, max_size=6), seed=st.integers(0, 1000))
 def test_the_chain_of_a_urdf(
     tmp_path_factory: pytest.TempPathFactory, chain: list[Step], seed: int
@@ -101,7 +100,7 @@ def cobot(tmp_path_factory: pytest.TempPathFactory) -> RobotFile:
     return read(tmp_path_factory.mktemp("cobot"), urdf(COBOT))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(axes=st.tuples(*(st.floats(-165.0, 165.0),) * 6))
 def test_there_and_back(cobot: RobotFile, axes: tuple[float, ...]) -> None:
     """Every way to a pose reaches it to 10 nm, and one at least is found."""
