@@ -22,7 +22,7 @@ __all__ = ["call"]
 def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
     """The type of the value of a call, `UNKNOWN` where there is none; its arguments are checked."""
     found = checker.context.found(node.name)
-    if found is None or not isinstance(found.symbol, RoutineSymbol):
+    if found is None or not isinstance(found.symbol, RoutineSymbol) or _is_unread(found):
         for argument in node.arguments:
             if argument is not None:
                 checker.infer(argument)
@@ -32,6 +32,11 @@ def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
         value = _value(checker, node, found, is_value=is_value)
     checker.context.types[node] = value
     return value
+
+
+def _is_unread(found: Found) -> bool:
+    """Whether the line that names the parameters cannot be read."""
+    return found.module is not None and found.module.is_head_unread(found.symbol.key)
 
 
 def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:

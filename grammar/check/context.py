@@ -56,7 +56,8 @@ class Context:
     the first check, `grammar.check.statements`: the type of each expression but literals, the
     enumeration of each constant, the values of expressions that have to be constant, and the
     ``constants`` that names without a declaration would be with a #. ``accesses`` are those that
-    `grammar.check.accesses` has worked out.
+    `grammar.check.accesses` has worked out. ``is_lacking``: the data list of the program is not at
+    hand, and may declare what is found in other files.
     """
 
     project: Project
@@ -69,6 +70,7 @@ class Context:
     values: dict[Node, Any] = field(default_factory=dict)
     constants: dict[ast.Name, str] = field(default_factory=dict)
     accesses: dict[Node, Any] = field(default_factory=dict)
+    is_lacking: bool = False
     suggestions: NameSuggestions = field(default_factory=NameSuggestions)
 
     # ----------------------------------------------------------------------- the file
@@ -106,6 +108,10 @@ class Context:
             RoutineBody(node, table, self.project.scope(self.module, table), placed(node.body))
             for node, table in zip(content.routines, self.table.routines, strict=True)
         )
+
+    def is_cut(self, routine: RoutineBody) -> bool:
+        """Whether the end of a routine is missing with that of the file."""
+        return self.module.is_cut and routine is self.routines[-1]
 
     def found(self, name: ast.Name) -> Found | None:
         """What a name means, if that is known."""

@@ -105,6 +105,8 @@ def _gotos(
         if not isinstance(goto, ast.Goto):
             continue
         targets = own.get(goto.label.key)
+        if targets is None and context.is_cut(routine):
+            continue
         if targets is None:
             guess = did_you_mean(goto.label.text, own) if guesses > 0 else None
             guesses -= 1

@@ -88,7 +88,11 @@ class _DataFlow:
         told = context.module.words or frozenset()
         symbols = routine.table.table.spaces[Space.VALUE].values()
         asked = _names_in_texts(context, routine)
-        followed = {one.key: one for one in symbols if one.key not in told and one.key not in asked}
+        followed = {
+            one.key: one
+            for one in symbols
+            if one.key not in told and one.key not in asked and not context.is_cut(routine)
+        }
         self.parameters = frozenset(
             key for key, one in followed.items() if one.kind is Kind.PARAMETER
         )

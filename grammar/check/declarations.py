@@ -70,7 +70,8 @@ def _check_item(checker: TypeChecker, data: ast.DataList, node: ast.Item) -> Non
     if isinstance(node, ast.Assignment):
         return
     is_global = getattr(node, "is_global", False)
-    if is_global and not data.is_public and not checker.context.table.is_system:
+    is_public = data.is_public or checker.context.module.is_head_unread(data.name.key)
+    if is_global and not is_public and not checker.context.table.is_system:
         message = f"GLOBAL needs DEFDAT {data.name.text} PUBLIC"
         checker.report("global-not-public", _name_of(node), message)
     _check_definition(checker, node, open_sizes=frozenset())
@@ -156,7 +157,8 @@ def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
     symbols = routine.table.routine.parameters
     undeclared: list[ast.Parameter] = []
     for node, parameter in zip(routine.node.parameters, symbols, strict=True):
-        is_unread = parameter.key in (checker.context.module.words or ())
+        context = checker.context
+        is_unread = parameter.key in (context.module.words or ()) or context.is_cut(routine)
         if parameter.type is None and not is_unread:
             undeclared.append(node)
         type_ = checker.type_of_symbol(parameter, routine.scope)

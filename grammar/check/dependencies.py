@@ -87,7 +87,12 @@ def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> 
 def _whole(project: Project) -> str:
     """The project as a whole: what a check may ask of it besides names."""
     modules = [
-        (one.path, one.table and (one.table.name, one.table.is_public), one.words is None)
+        (
+            one.path,
+            one.table and (one.table.name, one.table.is_public),
+            one.words is None,
+            one.is_cut,
+        )
         for one in project.modules
     ]
     kind = project.is_controller, project.is_complete, project.has_config

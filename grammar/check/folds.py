@@ -13,7 +13,8 @@ __all__ = ["check"]
 def check(context: Context) -> Iterator[Diagnostic]:
     """Where ;FOLD and ;ENDFOLD do not belong together."""
     source = context.source
-    unclosed = [fold.first for fold in source.folds if fold.last is None]
+    is_cut = context.module.is_cut
+    unclosed = [fold.first for fold in source.folds if fold.last is None and not is_cut]
     for line, message in (
         *((line, ";FOLD without ;ENDFOLD") for line in unclosed),
         *((line, ";ENDFOLD without ;FOLD") for line in source.stray_fold_ends),

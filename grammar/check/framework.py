@@ -122,7 +122,9 @@ def typed_module(project: Project, module: Module, source: Source) -> Checked:
 
 def check_module(project: Project, module: Module, source: Source) -> Checked:
     """Check one file that can be read; ``source`` is its text."""
-    context = Context(project, module, source, resolve(project, module), System.load())
+    resolution = resolve(project, module)
+    is_lacking = undeclared_names.lacks_data_list(project, module, resolution)
+    context = Context(project, module, source, resolution, System.load(), is_lacking=is_lacking)
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
     return Checked(
         module,

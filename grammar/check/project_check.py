@@ -21,7 +21,7 @@ from grammar.diagnostics.error_recovery import recover
 from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, link, words_of
 from grammar.semantics.predefined import System
-from grammar.semantics.scopes import Module
+from grammar.semantics.scopes import REST, Module
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
 from grammar.syntax import ast
@@ -153,7 +153,8 @@ def read_source(source: Source) -> Reading:
         return Reading(None, tuple(syntax_findings(tree, source)), words_of(source.text))
     recovered = recover(source.text, source.path)
     found = tuple(syntax_findings(recovered.failures, source))
-    return Reading(recovered.syntax, found, words_of(recovered.dropped), recovered.exchanged)
+    words = words_of(recovered.dropped) | ({REST} if recovered.is_cut else set())
+    return Reading(recovered.syntax, found, words, recovered.exchanged)
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,7 +86,7 @@ class TypeChecker:
         """The type of what a name means.
 
         Data of $CONFIG that no file declares have no certain type: another one may declare them
-        otherwise.
+        otherwise. So may the data list of a program, where it is missing.
         """
         known = self._type_of.get(found)
         if known is None:
@@ -94,6 +94,8 @@ class TypeChecker:
             if isinstance(found.scope, SystemScope) and found.symbol.kind is Kind.VARIABLE:
                 entry = found.scope.system.variables[found.symbol.name]
                 known = UNKNOWN if entry.file else known
+            elif self.context.is_lacking and found.symbol.kind is Kind.VARIABLE:
+                known = known if found.module in (None, self.context.module) else UNKNOWN
             self._type_of[found] = known
         return known
 

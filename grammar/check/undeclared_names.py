@@ -14,16 +14,17 @@ from grammar.check.context import Context
 from grammar.check.unresolved_names import SLUGS, WORDS, UnresolvedName
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.diagnostics.typos import Series, Typos
+from grammar.semantics.link import Project
 from grammar.semantics.predefined import System
-from grammar.semantics.resolve import Use
-from grammar.semantics.scopes import Found, MaybeElsewhere, NotFound, Reason
+from grammar.semantics.resolve import Resolution, Use
+from grammar.semantics.scopes import Found, MaybeElsewhere, Module, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Symbol, Table
 from grammar.semantics.types import SCALARS, Structure
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
-__all__ = ["check", "references"]
+__all__ = ["check", "lacks_data_list", "references"]
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -45,8 +46,9 @@ def check(context: Context) -> Iterator[Diagnostic]:
             reported.add(key)
             yield _unknown(context, use)
     yield from _near_system_names(context)
-    if context.module.suffix != ".dat" and context.project.data_of(context.module) is None:
-        yield from _data_missing(context)
+    if lacks_data_list(context.project, context.module, context.resolution):
+        message = f"{context.module.name} may have a data list that is not at hand"
+        yield context.finding("data-list-missing", context.table.span, message)
 
 
 def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]]:
@@ -128,14 +130,16 @@ def _system_typos() -> Typos:
     return Typos(names, 3, series=Series.DIGITS)
 
 
-def _data_missing(context: Context) -> Iterator[Diagnostic]:
-    """The data list of a program is not at hand, and the program uses unknown variables."""
-    for use in context.resolution.open_uses:
-        is_open = isinstance(use.answer, MaybeElsewhere)
-        if use.space is Space.VALUE and is_open and not use.name.text.startswith("$"):
-            message = f"{context.module.name} may have a data list that is not at hand"
-            yield context.finding("data-list-missing", context.table.span, message)
-            return
+def lacks_data_list(project: Project, module: Module, resolution: Resolution) -> bool:
+    """Whether the data list of a program is not at hand, and the program uses unknown variables."""
+    if module.suffix == ".dat" or project.data_of(module) is not None:
+        return False
+    return any(
+        use.space is Space.VALUE
+        and isinstance(use.answer, MaybeElsewhere)
+        and not use.name.text.startswith("$")
+        for use in resolution.open_uses
+    )
 
 
 def _unknown(context: Context, use: Use) -> Diagnostic:

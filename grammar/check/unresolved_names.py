@@ -40,7 +40,8 @@ _MOST_SLIPS = 2
 _SERIES = 3
 # Two names of so many letters that are one slip apart and used once each are one.
 _LONG = 6
-# So many names that nothing declares are mistakes; of more, what declares them is missing.
+# So many names that nothing declares are mistakes; of more, what declares them is missing. So it is
+# where two of a program without a data list are declared nowhere.
 _MOST_LOST = 3
 # Data that more modules use were declared in a file that has gone, rather than nowhere.
 _MOST_MODULES = 2
@@ -105,7 +106,13 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
             slips[key] = near
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
             lost[all(one.is_certain for one in some)].append(key)
-    told = slips | {key: () for keys in lost.values() if len(keys) <= _MOST_LOST for key in keys}
+    programs = Counter(uses[key][0].path for key in lost[False])
+    told = slips | {
+        key: ()
+        for is_certain, keys in lost.items()
+        for key in keys
+        if len(keys) <= _MOST_LOST and (is_certain or programs[uses[key][0].path] == 1)
+    }
     for key, some in uses.items():
         if key in told:
             for reference in some:

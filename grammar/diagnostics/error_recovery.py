@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from grammar.blocks import BRANCHES, CLOSERS
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
 from grammar.parser.tree import Tree
 from grammar.syntax import ast
@@ -39,7 +39,8 @@ class Recovered:
     of these or no routine is left. ``failures`` are in the order of the text, those marked that
     only follow from others. ``dropped`` is the text of the lines that were left out, ``exchanged``
     the numbers of all that were read as something else: what is found in these is none of theirs.
-    ``text`` is what was read in the end, ``left_out`` are the numbers of the lines left out.
+    ``text`` is what was read in the end, ``left_out`` are the numbers of the lines left out. It
+    ``is_cut`` where the last routine or data list has no end.
     """
 
     syntax: ast.Module | None
@@ -48,12 +49,14 @@ class Recovered:
     exchanged: frozenset[int] = frozenset()
     text: str = ""
     left_out: frozenset[int] = frozenset()
+    is_cut: bool = False
 
 
 def recover(text: str, path: str = "") -> Recovered:
     """Read a text that has failures; ``path`` is where it comes from."""
     if len(text) <= _LARGEST:
-        found = _Recovery(text, path).run()
+        # the last line of a file that is cut may be whole
+        found = _Recovery(text if text.endswith("\n") else f"{text}\n", path).run()
         if found is not None:
             return found
     failures = builder().read(text, path)
@@ -71,6 +74,8 @@ class _Recovery:
         self._dropped: set[int] = set()
         self._exchanged: dict[int, str] = {}
         self._failures: list[SyntaxFailure] = []
+        self._shortened: set[int] = set()
+        self._is_cut = False
 
     def run(self) -> Recovered | None:
         """The tree and the failures; ``None`` where this leads to nothing."""
@@ -88,23 +93,31 @@ class _Recovery:
             cause = _unclosed(source.line(tree.line), tree.text, block)
             is_structural = cause is not None or block is None or self._is_orphan(tree.line)
             follows = bool(self._failures) and is_structural
-            self._failures.append(
-                SyntaxFailure(
-                    self._path,
-                    tree.line,
-                    tree.column,
-                    tree.offset,
-                    tree.text,
-                    context.expected,
-                    context.rule,
-                    follows,
+            is_case = "CASE" in context.expected and cause is None
+            if tree.line in self._shortened:  # its beginning alone cannot be read either
+                self._shortened.remove(tree.line)
+                self._dropped.remove(tree.line)
+                del self._exchanged[tree.line]
+                is_case |= lead(self._written.line(tree.line)) == "CASE"
+            else:
+                self._failures.append(
+                    SyntaxFailure(
+                        self._path,
+                        tree.line,
+                        tree.column,
+                        tree.offset,
+                        tree.text,
+                        context.expected,
+                        context.rule,
+                        follows,
+                    )
                 )
-            )
-            is_case = "CASE" in self._failures[-1].expected and cause is None
+                if cause is None and self._shorten(tree.line, tree.column):
+                    continue
             if not (
                 (is_case and self._write(tree.line, "CASE 0"))
                 or self._open(tree.line, block)
-                or self._mend(cause, tree.line)
+                or self._mend(cause, tree.line, is_at_end=not source.line(tree.line).strip())
             ):
                 return None
         return None
@@ -119,12 +132,22 @@ class _Recovery:
             frozenset(self._exchanged),
             self._text,
             frozenset(self._dropped),
+            self._is_cut,
         )
 
     def _is_orphan(self, line: int) -> bool:
         """Whether a line closes or continues a block."""
         word = lead(self._written.line(line))
         return word in CLOSERS or word in BRANCHES
+
+    def _shorten(self, line: int, column: int) -> bool:
+        """Read a line that opens or divides a block only up to where it fails."""
+        beginning = self._written.line(line)[: column - 1].rstrip()
+        word = lead(beginning)
+        if (word not in BLOCKS and word not in BRANCHES) or not self._write(line, beginning):
+            return False
+        self._shortened.add(line)
+        return True
 
     def _open(self, line: int, block: OpenBlock | None) -> bool:
         """Read a line outside all routines as the beginning of the one that ends below it."""
@@ -139,18 +162,27 @@ class _Recovery:
             return False
         return self._write(line, head.format(names[0])) or self._write(line, head.format("A"))
 
-    def _mend(self, cause: OpenBlock | None, line: int) -> bool:
+    def _mend(self, cause: OpenBlock | None, line: int, *, is_at_end: bool) -> bool:
         """Leave out a line; or close a block before it, or leave out what opens that."""
         if cause is None:
             return self._write(line, "")
+        if is_at_end:
+            self._close_all(cause)
+            return True
         if any(self._write(free, cause.closer) for free in self._free_lines(cause.line + 1, line)):
             return True
         if cause.word not in _ROUTINES:
             return self._write(cause.line, "")
-        if self._written.line(line).strip():
-            return False
-        self._text = f"{self._text.rstrip()}\n{cause.closer}\n"
-        return True
+        return False
+
+    def _close_all(self, block: OpenBlock | None) -> None:
+        """Close the blocks that are open at the end."""
+        self._is_cut = True
+        self._text = self._text.rstrip()
+        while block is not None:
+            self._text += f"\n{block.closer}"
+            block = block.outer
+        self._text += "\n"
 
     def _free_lines(self, first: int, end: int) -> Iterator[int]:
         """Lines that a closer can be written on: those left out, then comments, the last first."""

@@ -28,6 +28,7 @@ from grammar.semantics.declared_types import DeclaredTypes
 from grammar.semantics.package_scope import PackageScope, called_packages
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import (
+    REST,
     Answer,
     Found,
     Globals,
@@ -83,7 +84,8 @@ class Project:
     ``is_controller``: whether it is laid out like a controller's drive. ``is_complete``: whether
     what is declared nowhere is certain to be missing. ``clashes`` are names that several modules
     declare for everybody; outside a controller's drive these may just be copies. ``types`` are the
-    types of what is declared. ``has_config``: whether its $CONFIG list is at hand and can be read.
+    types of what is declared. ``has_config``: whether its $CONFIG list is at hand, can be read to
+    its end, and more than the folder it lies in.
     """
 
     def __init__(
@@ -120,7 +122,7 @@ class Project:
             self._add_packages(self.packages)
         self._gap.update(_gap(modules, is_complete))
         self.types = DeclaredTypes()
-        self.has_config = any(_is_config(module) and module.table for module in modules)
+        self.has_config = any(map(_has_read, modules)) and not all(map(_is_in_system, modules))
         self.clashes = tuple(
             Clash(space, tuple(found))
             for space, names in self._names.items()
@@ -314,6 +316,15 @@ def _is_config(module: Module) -> bool:
     return module.name == "$CONFIG" and module.suffix == ".dat"
 
 
+def _has_read(module: Module) -> bool:
+    """Whether a file is the $CONFIG list and can be read to its end."""
+    return _is_config(module) and module.table is not None and not module.is_cut
+
+
+def _is_in_system(module: Module) -> bool:
+    return module.folder.casefold().rpartition("/")[2] == "system"
+
+
 def _is_public(found: Found) -> bool:
     table = found.module.table if found.module else None
     return table is not None and (table.is_public or table.is_system)
@@ -333,9 +344,15 @@ def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
 def _words_in_unread(modules: Sequence[Module], space: Space) -> frozenset[str]:
     """The words of files that cannot be read and may declare names of a space for everybody."""
     is_data = space is not Space.ROUTINE
-    return frozenset().union(
-        *(module.words or () for module in modules if not is_data or module.suffix == ".dat")
-    )
+    some = [one for one in modules if one.words and (not is_data or one.suffix == ".dat")]
+    words = frozenset[str]().union(*(one.words or () for one in some)) - {REST}
+    is_cut = any(one.is_cut and (not is_data or _may_be_public(one)) for one in some)
+    return words | {REST} if is_cut else words
+
+
+def _may_be_public(module: Module) -> bool:
+    table = module.table
+    return table is None or table.is_public or table.is_system or module.is_head_unread(table.key)
 
 
 def _has_all(modules: Sequence[Module]) -> bool:

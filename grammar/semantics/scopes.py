@@ -35,6 +35,7 @@ from grammar.syntax.references import Space
 from support.lazy_dataclass import dataclass
 
 __all__ = [
+    "REST",
     "Answer",
     "Found",
     "Globals",
@@ -48,6 +49,10 @@ __all__ = [
     "SystemScope",
     "nearest",
 ]
+
+
+#: Among the words of a file: its end is missing, so that it may have declared any name.
+REST = "*"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +72,18 @@ class Module:
     table: ModuleTable | None
     syntax: ast.Module | None
     words: frozenset[str] | None = None
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether the end of the file is missing."""
+        return self.words is not None and REST in self.words
+
+    def is_head_unread(self, key: str) -> bool:
+        """Whether the line that begins a routine of the file, or its data list, is not read.
+
+        It may say PUBLIC then, or name other parameters.
+        """
+        return self.words is not None and key in self.words
 
     @property
     def is_misnamed(self) -> bool:
@@ -338,7 +355,11 @@ class Globals:
         if key.startswith("$"):
             return MaybeElsewhere(Reason.SYSTEM)
         hidden = self.hidden[space].get(key)
-        reason = Reason.UNREADABLE if key in self.unread[space] else self.gap.get(space)
+        unread = self.unread[space]
+        reason = Reason.UNREADABLE if key in unread or REST in unread else self.gap.get(space)
+        if hidden and hidden.module and hidden.module.table:
+            is_head_unread = hidden.module.is_head_unread(hidden.module.table.key)
+            reason = Reason.UNREADABLE if is_head_unread else reason
         if reason is None:
             return NotFound(hidden)
         return MaybeElsewhere(reason, (hidden,) if hidden else ())
@@ -367,7 +388,7 @@ class PartlyRead:
         answer = self.outer.find(space, key)
         if space is Space.ROUTINE or key.startswith("$"):
             return answer
-        if self.words is not None and key not in self.words:
+        if self.words is not None and key not in self.words and REST not in self.words:
             return answer
         if isinstance(answer, Found) and answer.module is None:  # what every program is made of
             return answer

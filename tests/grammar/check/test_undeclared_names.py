@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from grammar.check.framework import check
+from grammar.check.framework import check, check_project
+from grammar.check.project_check import CheckOptions, Content, recheck
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link, words_of
 from grammar.syntax.build import read_module
@@ -205,3 +206,43 @@ def test_a_slip_in_the_data_list(agrees: Agrees) -> None:
     data = "DEFDAT CELL\nDECL INT RECIEVED=0\nENDDAT\n"
     lines = ["DEF CELL()", "RECEIVED = 1 ;> KRL101?", *["RECEIVED = 2"] * 4, "END"]
     agrees({"cell.dat": data, "cell.src": "\n".join(lines)}, is_complete=None)
+
+
+def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
+    """The errors and warnings in files that need not be readable."""
+    contents = [Content(path, "", text.encode()) for path, text in files.items()]
+    known = recheck(contents, CheckOptions(), {})
+    found = check_project(one.checked.findings for one in known)
+    return [(one.path, one.region.line, one.code) for one in found if one.severity != "note"]
+
+
+CUT = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nDECL GLOBAL IN"
+UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
+MAIN = "DEF MAIN()\n  GRIPPED = 1\n  PARTS = OTHERS\n  CELL(1)\nEND\n"
+
+
+@pytest.mark.parametrize(
+    ("files", "expected"),
+    [
+        ({"R1/System/$config.dat": CUT, "R1/main.src": MAIN}, [("R1/System/$config.dat", 3)]),
+        ({"cell.dat": UNREAD, "main.src": MAIN}, [("cell.dat", 1)]),
+        ({"cell.src": "DEF CELL(A:IN =)\nEND\n", "main.src": MAIN}, [("cell.src", 1)]),
+        ({"a.src": "DEF A()\nGOTO FAR\nX = 1\n;FOLD\n"}, [("a.src", 4)]),
+    ],
+)
+def test_what_is_damaged_is_told_alone(
+    files: dict[str, str], expected: list[tuple[str, int]]
+) -> None:
+    """What a damaged line or a cut file may have declared is missed nowhere else."""
+    assert expected == [(path, line) for path, line, _ in told(files)]
+
+
+def test_a_missing_data_list_may_hide_what_is_global() -> None:
+    """Where a program lacks its own data, those of others with such names have no certain type."""
+    config = "DEFDAT $CONFIG\nDECL GLOBAL INT I[20]\nENDDAT\n"
+    main = "DEF MAIN()\n  UNKNOWN_A = UNKNOWN_B\n  I = 1\nEND\n"
+    files = {"R1/System/$config.dat": config, "R1/main.src": main}
+    assert [] == told(files)
+    assert [("R1/main.src", 3, "KSS2052")] == told(
+        {**files, "R1/main.dat": "DEFDAT MAIN\nDECL INT UNKNOWN_A\nDECL INT UNKNOWN_B=0\nENDDAT\n"}
+    )

@@ -54,6 +54,10 @@ def routines(module: ast.Module | None) -> list[str]:
         ("END\n\nDEF", "EEND\n\nDEF", 18),
         ("DEF CELL()", "DFE CELL()", 2),
         ("DEF WORK(A:IN)", "DEF WORK(A:IN", 20),
+        ("DEF WORK(A:IN)", "DEF WORK(A:IN) =", 20),
+        ("CASE 1", "CASE 1 )", 13),
+        ("CASE 1", "CASE ) 1", 13),
+        ("FOR COUNT = 1 TO 3", "FOR COUNT = 1 TO 3 )", 5),
     ],
 )
 def test_one_mistake_is_one_failure_and_keeps_all_routines(
@@ -69,6 +73,13 @@ def test_what_was_left_out_is_known() -> None:
     """The text of the lines that cannot be read is kept: they may declare something."""
     found = recover(CELL.replace("DECL INT A\n", "DECL INT A B\n"))
     assert "DECL INT A B" == found.dropped.strip()
+
+
+@pytest.mark.parametrize("lost", [0, 4, 10, 30, 62, 130, 200])
+def test_a_file_without_its_end_is_cut(lost: int) -> None:
+    """What ends too early may have declared anything; a line that cannot be read ends nothing."""
+    text = CELL.replace("WORK(1)", "WORK(1").rstrip()
+    assert (lost > 0) == recover(text[: len(text) - lost]).is_cut
 
 
 def test_places_stay() -> None:
