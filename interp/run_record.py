@@ -71,6 +71,13 @@ class PointRecord(TypedDict):
     blended: bool
 
 
+class SkippedRecord(TypedDict):
+    """A line that failed and was skipped, ``file:line``, and why it did at first."""
+
+    at: str
+    text: str
+
+
 class ShapeRecord(TypedDict):
     """A rod with round ends from one point of its link to another; a ball where they are one."""
 
@@ -174,6 +181,7 @@ class RunRecord(TypedDict):
     limits: LimitsRecord
     arm: ArmRecord
     points: list[PointRecord]
+    skipped: list[SkippedRecord]
     observations: list[ObservationRecord]
     path: NotRequired[PathSamples]
     deviation: NotRequired[DeviationRecord | None]
@@ -207,6 +215,10 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
         ),
         "limits": _limits(run.machine),
         "arm": _arm(run.machine, run.path, setup.scene or Scene()),
+        "skipped": [
+            {"at": f"{file}:{line}", "text": str(error)}
+            for (file, line), error in run.controller.skipped.items()
+        ],
         "observations": [one.record() for one in run.observations],
         "points": [
             {

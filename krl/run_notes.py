@@ -26,7 +26,7 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     for (file, number), error in islice(skipped.items(), _MOST_TOLD):
         yield f"skipped: {file}:{number}: {error}"
     if len(skipped) > _MOST_TOLD:
-        yield f"skipped: {len(skipped) - _MOST_TOLD} more lines"
+        yield f"skipped: {len(skipped) - _MOST_TOLD} more lines, which --trace and --html tell"
     yield from _seen(done)
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"

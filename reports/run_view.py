@@ -81,6 +81,11 @@ def _figures(record: Mapping[str, Any], outcome: Record) -> list[Figure]:
         ),
         Figure("messages and faults", f"{found('message', 'fault'):,}"),
     ]
+    skipped = len(records(record, "skipped"))
+    if skipped:
+        figures.append(
+            Figure("lines that failed", f"{skipped:,}", "skipped; their messages say why")
+        )
     seen = [text(one, "kind") for one in records(record, "observations")]
     if seen:
         figures.append(

@@ -93,8 +93,8 @@ class Ran:
 
     ``at`` is where it was when its time was over. ``inputs``: how many changes of inputs it
     took to fulfil its waits. ``skipped`` are lines that failed where something
-    stood in for what the backup lacks, ``stood_in`` what did. ``is_own_fault``: it
-    stopped at a line of the backup that names nothing that stood in, or skipped one.
+    stood in for what the backup lacks, ``stood_in`` what did. ``own_faults`` tell file, line and
+    why of lines that failed and name nothing that stood in; ``is_own_fault``: there are such.
     """
 
     result: Result
@@ -107,6 +107,7 @@ class Ran:
     skipped: int = 0
     stood_in: tuple[str, ...] = ()
     is_own_fault: bool = False
+    own_faults: tuple[str, ...] = ()
 
 
 def main_programs(
@@ -244,6 +245,7 @@ def run_main(
     stood_in = tuple(one.name for one in program.used_stand_ins(*starts))
     if run.machine_note:
         stood_in = (*stood_in, run.machine_note)
+    own_faults = tuple(_own_faults(program, run, stood_in))
     place = "" if outcome.at is None else f"{outcome.at.file}:{outcome.at.line}"
     result: Result
     if outcome.ending == "time":
@@ -268,13 +270,12 @@ def run_main(
         run.controller.automatic_inputs.count,
         len(run.controller.skipped),
         stood_in,
-        any(_own_faults(program, run, stood_in)),
+        bool(own_faults),
+        own_faults,
     )
 
 
-def _own_faults(
-    program: CheckedProgram, run: RunResult, stood_in: Iterable[str]
-) -> Iterator[tuple[str, int]]:
+def _own_faults(program: CheckedProgram, run: RunResult, stood_in: Iterable[str]) -> Iterator[str]:
     """The lines of the backup that failed and name nothing that stood in.
 
     A motion that another arm than its own cannot make is none.
@@ -290,7 +291,7 @@ def _own_faults(
         if is_of_arm or file not in texts or file.startswith(FOLDER):
             continue
         if names.isdisjoint(words_of(texts[file].line(line))):
-            yield file, line
+            yield f"{file}:{line}: {error}"
 
 
 @dataclass(slots=True)

@@ -375,7 +375,7 @@ class Uses:
             self._expect(node.operand, type_)
         use = self._use(node)
         if use is None or type_ == UNKNOWN:
-            if isinstance(node, ast.Binary) and type_ in (INT, REAL):
+            if type_ in (INT, REAL):
                 self._expect_number(node, type_)
             return
         match type_:
@@ -394,16 +394,17 @@ class Uses:
             case Scalar() | Structure() | Enumeration():
                 use.types.append(type_)
 
-    def _expect_number(self, node: ast.Binary, type_: Type) -> None:
+    def _expect_number(self, node: ast.Expression, type_: Type) -> None:
         """Operands of what is a number are; those of a long sum are asked about but once."""
-        operand: ast.Expression = node
+        operand = node
         while isinstance(operand, ast.Binary) and operand.operator in "+-*/":
             if (operand, type_) in self._numbers:
                 return
             self._numbers.add((operand, type_))
             self._expect(operand.right, type_)
             operand = operand.left
-        self._expect(operand, type_)
+        if operand is not node:
+            self._expect(operand, type_)
 
 
 _PLAIN = (Kind.VARIABLE, Kind.PARAMETER)

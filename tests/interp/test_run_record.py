@@ -63,3 +63,14 @@ def _moved(axis: list[float], degrees: float) -> Array:
     turn = np.eye(4)
     turn[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     return turn
+
+
+def test_lines_that_were_skipped() -> None:
+    """A line that failed and was skipped stands in the record with its place and why."""
+    text = "DEF CELL()\nREAL X\nMISSING()\nX = X + 1.0\nX = X + 2.0\nEND\n"
+    program = load([Source(text, "cell.src")], "cell.src", strict=False, stands_in=True)
+    setup = RunSetup(is_tolerant=True, skips_failures=True)
+    record = record_of(run_program(program, setup), program, setup)
+    why = "a value is used that was never set"
+    skipped = [(one["at"], one["text"]) for one in record["skipped"]]
+    assert [("cell.src:4", why), ("cell.src:5", why)] == skipped

@@ -93,7 +93,7 @@ def test_what_stands_in(found: dict[str, dict[str, Any]]) -> None:
 
 
 def test_whose_fault_it_is(tmp_path: Path) -> None:
-    """A fault that is skipped is not the program's own where its line names what stood in."""
+    """A fault that is skipped is the program's own unless its line names what stood in."""
     texts = {
         "own": f"own ( )\nREAL X\n{MOVE}nothing ( )\nX=X+1.0\n",
         "ours": f"ours ( )\n{MOVE}$VEL.CP=other[999]\n$VEL.CP=-other[1]\n",
@@ -103,6 +103,8 @@ def test_whose_fault_it_is(tmp_path: Path) -> None:
     assert {"own": ("end", True), "ours": ("end", False)} == {
         name: (found[name]["result"], found[name]["is_own_fault"]) for name in texts
     }
+    places = [fault.rpartition("/")[2] for fault in found["own"]["own_faults"]]
+    assert ["own.src:5: a value is used that was never set"] == places
 
 
 def test_where_and_why(found: dict[str, dict[str, Any]]) -> None:

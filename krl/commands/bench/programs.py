@@ -44,6 +44,8 @@ _RESULTS = {
     "crash": "a defect of ours",
 }
 
+#: Lines with faults of their own that are shown of an origin; the record has all.
+_MOST_FAULTS = 5
 #: What a program does that has nothing left to do.
 _SERVED = ("end", "halt", "waits", "goes on")
 
@@ -239,6 +241,11 @@ def _print_origin(console: Console, done: "Surveyed") -> None:
             one_line(where + row["reason"]),
         )
     console.print(table)
+    faults = list(dict.fromkeys(fault for row in done.rows for fault in row["own_faults"]))
+    for fault in faults[:_MOST_FAULTS]:
+        console.print(f"own fault: {one_line(fault)}", soft_wrap=True, markup=False)
+    if len(faults) > _MOST_FAULTS:
+        console.print(f"own fault: {len(faults) - _MOST_FAULTS:,} more lines")
 
 
 def _print_summary(console: Console, record: Mapping[str, Any]) -> None:

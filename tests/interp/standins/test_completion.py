@@ -464,3 +464,10 @@ def test_file_names_that_are_no_names() -> None:
         "a/other.src": "DEF other ( )\nFLAG=5\nEND\n",
     }
     assert [] == _skipped(files)
+
+
+@pytest.mark.parametrize("value", ["A B_AND B", "5 - (A B_EXOR B)", "(A + B) * 2 + (A B_OR B)"])
+def test_numbers_of_other_operators(value: str) -> None:
+    """What a number is worked out from may be any operation."""
+    body = f"DEF main ( )\nINT N\nN={value}\n{HOME}END\n"
+    assert (("end", ""), ["PTP"]) == _moves_and_ends({"main.src": body})
