@@ -125,3 +125,21 @@ def test_a_list_may_hold_itself() -> None:
     elements = rules.grammar.by_name["set"].alternatives[0].elements
     operands = {s.operand for sample in samples_of(rules, elements) for s in sample[0].inside or ()}
     assert "set" in {operand.rule for operand in operands if operand}
+
+
+@pytest.mark.parametrize(
+    ("text", "form"),
+    [
+        ("INSIDE (INT A, REAL B, T C)", "INSIDE '(' kind NAME (',' kind NAME)* ')'"),
+        ("PAIR (INT A:LEFT, T B:RIGHT)", "PAIR '(' kind NAME ':' (RIGHT | LEFT) (',' "),
+    ],
+)
+def test_types_in_brackets(text: str, form: str) -> None:
+    """What is in brackets begins no line: a type is one there, and the first item one of all."""
+    typed = _GRAMMAR.replace(
+        "NAME index? ':' NAME ')' ;", "kind ')' ;\n\nkind : INT | REAL | NAME ;"
+    )
+    words = "".join(f"{w} : '{w}' ;\n" for w in ("INT", "REAL"))
+    grammar = read(typed.replace("LIST : 'LIST' ;\n", f"LIST : 'LIST' ;\n{words}"))
+    writer = FormWriter(SymbolReader(OperandRules(Recognizer(grammar))), [])
+    assert (writer.form([_symbols(writer, text)]) or "").startswith(form)

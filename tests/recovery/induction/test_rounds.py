@@ -133,6 +133,17 @@ def test_words_beside_names(toy: Grammar) -> None:
     assert [True, False, False] == [recognizer.accepts(text) for text in texts]
 
 
+def test_a_word_ahead_of_a_form(toy: Grammar) -> None:
+    """A word that may be missing at the head of other lines leaves the rest of a form as it is."""
+    kinds = "    | halt\n    | OPEN NAME (NAME | OPEN)\n    | SHUT NAME\n"
+    grown = toy.text.replace("    | halt\n", kinds)
+    words = "".join(f"{w} : '{w}' ;\n" for w in ("OPEN", "SHUT"))
+    start = read(grown.replace("HALT : 'HALT' ;\n", f"HALT : 'HALT' ;\n{words}"))
+    text = "OPEN P{0} Q{0}\nOPEN R{0} OPEN\nWIDE OPEN S{0} T{0}\nSHUT U{0}\nWIDE SHUT V{0}\n"
+    files = tuple(CorpusFile(o, text.format(o), frozenset({o})) for o in "ABCDE")
+    assert "WIDE? OPEN NAME (NAME | OPEN)" in _grown(start, files).grammar.text
+
+
 def test_what_comes_once_or_more_may_be_missing(toy: Grammar) -> None:
     """It may come as often as before then."""
     start = _with(toy, "'(' arguments? ')'", "'(' NAME '+' primary+ ')'")
