@@ -17,7 +17,7 @@ from conformance.evaluation.execution import PROFILES
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.suite.expectations import KINDS
-from conformance.suite.registry import Rule, registry
+from conformance.suite.registry import Rule, basis, registry
 from grammar.syntax.build import read_module
 from interp.controller.input_script import Script, ScriptError
 
@@ -45,6 +45,13 @@ SUITES: Final = (
 _ROBOTS: Final = ("none", "kinematic", "mujoco")
 _STEM: Final = re.compile(r"[a-z][a-z0-9_]{0,23}")
 _LONGEST: Final = 100
+#: Words of which the clause that a hard expectation rests on has one, by how it begins.
+_SPOKEN_OF: Final = {
+    "path line": "line",
+    "path circle": "circle CIRC",
+    "path joint": "axes",
+    "speed": "velocity speed acceleration VEL Parameters",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +126,7 @@ def _faults(case: Case) -> Iterator[str]:
         yield str(error)
     yield from _of_text(case)
     yield from _of_expectations(case)
+    yield from _of_clauses(case)
 
 
 def _of_text(case: Case) -> Iterator[str]:
@@ -151,6 +159,20 @@ def _of_expectations(case: Case) -> Iterator[str]:
     is_accepted = any(one.kind == "accepted" for one in case.expectations)
     if is_accepted and case.is_negative:
         yield "it is accepted and refused"
+
+
+def _of_clauses(case: Case) -> Iterator[str]:
+    """What an expectation that may fail the case says, and its clause does not."""
+    for one in case.expectations:
+        clause = basis(one.basis or case.basis or case.rules[0])
+        if case.unconfirmed or not clause.may_fail:
+            continue
+        for begins, words in _SPOKEN_OF.items():
+            is_meant = one.text.startswith(begins)
+            if is_meant and not any(word in clause.statement for word in words.split()):
+                yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
+        if clause.id.startswith("SUB-") and one.when and one.when.relation == "at":
+            yield f"line {one.line}: a submit program has no period for {one.text!r} [SUB-03]"
 
 
 def _repeated(cases: Sequence[Case]) -> Iterator[str]:

@@ -37,14 +37,12 @@ class Reach:
     """What a case runs: lines by module, negative in lambdas, and how many in all, one by one.
 
     ``cost`` is that number. ``seen`` tells what was seen of it from anything else (`seen_digest`).
-    ``shared`` is the number of cases that run its rarest line, the one that fewest cases run.
     """
 
     case: Case
     lines: Mapping[str, frozenset[int]]
     cost: int
     seen: str = ""
-    shared: int = 0
 
     def has(self, module: str, lines: frozenset[int]) -> bool:
         """Whether the case runs one of these lines of a module."""

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.util import find_spec
+from itertools import islice
 from operator import itemgetter
 from pathlib import Path
 from typing import Final, Literal, NoReturn
@@ -29,6 +30,7 @@ from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, reach_of, se
 from conformance.sensitivity.mutants import (
     InvalidMutant,
     Mutant,
+    around,
     load,
     put_in_place,
     uses_of,
@@ -116,22 +118,11 @@ def reaches_of(
     running = [case for case in cases if case.phase == "run"]
     places: Counter[tuple[bool, str]] = Counter()
     keyed = []
-    found = reach_of(running, _SETUP, jobs, on_done, store)
-    for one in sorted(found, key=_price):
+    for one in sorted(reach_of(running, _SETUP, jobs, on_done, store), key=_price):
         kind = not one.case.may_fail, one.case.suite
         places[kind] += 1
         keyed.append(((kind[0], places[kind], *_price(one)), one))
-    running_it = Counter(
-        (module, line) for one in found for module, lines in one.lines.items() for line in lines
-    )
-    return [
-        replace(one, shared=_shared(one, running_it)) for _, one in sorted(keyed, key=itemgetter(0))
-    ]
-
-
-def _shared(reach: Reach, running_it: Mapping[tuple[str, int], int]) -> int:
-    every = ((module, line) for module, lines in reach.lines.items() for line in lines)
-    return min(map(running_it.__getitem__, every), default=0)
+    return [one for _, one in sorted(keyed, key=itemgetter(0))]
 
 
 def _price(reach: Reach) -> tuple[float, str]:
@@ -163,7 +154,7 @@ def try_mutants(
             found[one] = Trial(one, **row)
     on_done(len(found))
     new = [one for one in keys if one not in found]
-    tasks = ((mutant, _that_may_notice(mutant, reaches), most) for mutant in new)
+    tasks = ((mutant, _candidates(mutant, reaches, most)) for mutant in new)
     for trial in ordered_map(_tried, tasks, jobs=jobs):
         found[trial.mutant] = trial
         row = {each: getattr(trial, each) for each in OF_TRIAL}
@@ -187,39 +178,80 @@ def equivalent() -> Mapping[tuple[str, ...], str]:
     return {tuple(row[key] for key in keys): row["reason"] for row in rows}
 
 
-def _that_may_notice(mutant: Mutant, reaches: Sequence[Reach]) -> tuple[Reach, ...]:
-    """The cases that run its lines: first one of each way through its module, then a second.
+@dataclass(frozen=True, slots=True)
+class _Candidates:
+    """The cases to try on a mutant; ``reached`` and ``sure`` as in `Trial`."""
 
-    Cases that run the same lines of a module mostly notice the same there.
+    tried: tuple[Reach, ...]
+    reached: int
+    sure: int
+
+
+def _candidates(mutant: Mutant, reaches: Sequence[Reach], most: int) -> _Candidates:
+    """Of the cases that run its lines ``most`` that may fail, and a tenth as many of the others.
+
+    First one for each line around it, the rarest first; then one of each way through its module, as
+    cases that run the same lines there mostly notice the same; then every so many of what is left,
+    so that long ones are among them.
     """
     uses = uses_of(mutant)
+    reaching = [one for one in reaches if any(one.has(*lines) for lines in uses.items())]
+    hard = [one for one in reaching if one.case.may_fail]
+    soft = [one for one in reaching if not one.case.may_fail]
+    chosen: dict[str, Reach] = {}
+    for way in (_of_rarest(mutant, hard), _of_ways(mutant, hard)):
+        new = (one for one in way if one.case.name not in chosen)
+        chosen.update((one.case.name, one) for one in islice(new, most // 3))
+    left = [one for one in hard if one.case.name not in chosen]
+    room = most - len(chosen)
+    tried = [*chosen.values(), *left[:: -(-len(left) // room) or 1]] if room else [*chosen.values()]
+    tried += soft[: max(1, most // 10)]
+    # the lines are large, and no longer needed
+    return _Candidates(tuple(replace(one, lines={}) for one in tried), len(reaching), len(hard))
+
+
+def _of_rarest(mutant: Mutant, cases: Sequence[Reach]) -> Iterator[Reach]:
+    """For each line around a mutant the first case that runs it, the rarest lines first."""
+    near = around(mutant)
+    running_it: dict[tuple[str, int], list[Reach]] = {}
+    for one in cases:
+        for module, lines in near.items():
+            for line in lines.intersection(one.lines.get(module, ())):
+                running_it.setdefault((module, line), []).append(one)
+    found: set[str] = set()
+    for _, those in sorted(running_it.items(), key=lambda item: (len(item[1]), item[0])):
+        if those[0].case.name not in found:
+            found.add(those[0].case.name)
+            yield those[0]
+
+
+def _of_ways(mutant: Mutant, cases: Sequence[Reach]) -> list[Reach]:
+    """One case of each way through a mutant's module, then a second."""
     turns: Counter[frozenset[int]] = Counter()
     found = []
-    for one in reaches:
-        if any(one.has(module, lines) for module, lines in uses.items()):
-            way = one.lines.get(mutant.module, frozenset())
-            turns[way] += 1
-            # the lines are large, and no longer needed
-            found.append((turns[way], replace(one, lines={})))
-    return tuple(one for _, one in sorted(found, key=itemgetter(0)))
+    for one in cases:
+        way = one.lines.get(mutant.module, frozenset())
+        turns[way] += 1
+        found.append((turns[way], one))
+    return [one for _, one in sorted(found, key=itemgetter(0))]
 
 
 # ------------------------------------------------------------------------- one mutant, one process
 
 
-def _tried(mutant: Mutant, cases: tuple[Reach, ...], most: int) -> Trial:
+def _tried(mutant: Mutant, cases: _Candidates) -> Trial:
     """Try a mutant in a copy of this process; what it told last is what became of it."""
     trial = Trial(mutant, "survived")
     if not any(uses_of(mutant).values()):
         return replace(trial, fate="invalid", why="it is used only while modules are loaded")
-    if not cases:
+    if not cases.tried:
         return trial
-    _load(cases[0].case)
+    _load(cases.tried[0].case)
     reading, writing = os.pipe()
     child = os.fork()
     if not child:
         os.close(reading)
-        _in_copy(mutant, cases, most, writing)
+        _in_copy(mutant, cases, writing)
     os.close(writing)
     with os.fdopen(reading, "rb") as heard:
         while heard.peek(1):
@@ -240,34 +272,33 @@ def _load(case: Case) -> None:
         _loaded().append(run_case(case, [_SETUP]).verdict)
 
 
-def _in_copy(mutant: Mutant, cases: Sequence[Reach], most: int, pipe: int) -> NoReturn:
+def _in_copy(mutant: Mutant, cases: _Candidates, pipe: int) -> NoReturn:
     warnings.simplefilter("ignore")  # of computing with what a mutant has made
     try:
         with os.fdopen(pipe, "wb", buffering=0) as told:
-            for trial in _trials(mutant, cases, most):
+            for trial in _trials(mutant, cases):
                 told.write(pickle.dumps(trial))
         os._exit(0)
     finally:
         os._exit(1)
 
 
-def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial]:
+def _trials(mutant: Mutant, cases: _Candidates) -> Iterator[Trial]:
     """Before each case what is true if it ends the process, and at the end what became of it."""
     import resource  # not on every system
 
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
-    reached, runs, changed = len(cases), 0, ""
-    sure = sum(one.case.may_fail for one in cases)
+    reached, sure, runs, changed = cases.reached, cases.sure, 0, ""
     setups = [_SETUP]
     if mutant.package in _APART and not missing(_IN_C):
         setups.append(_IN_C)
     try:
         with put_in_place(mutant):
-            for runs, one in enumerate(_some(cases, most), 1):
+            for runs, one in enumerate(cases.tried, 1):
                 case = one.case
                 fate: Fate = "red" if case.may_fail else "soft"
                 yield Trial(mutant, fate, case.name, "the process ended", reached, sure, runs)
-                noticed, why, seen = _noticed(case, setups)
+                noticed, why, seen = _noticed(one, setups)
                 changed = changed or (case.name if seen != one.seen else "")
                 if noticed:
                     yield Trial(mutant, noticed, case.name, why, reached, sure, runs, changed)
@@ -277,21 +308,16 @@ def _trials(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Trial
         yield Trial(mutant, "invalid", "", str(error), reached, sure)
 
 
-def _some(cases: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """The cases to try: ``most`` that may fail, and a tenth as many of the others.
+def _noticed(reach: Reach, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
+    """How a case notices the mutant that is in place, why, and the digest of what was seen.
 
-    Of the first, half come in the order given, and half are those with the rarest lines.
+    Where nothing else is seen than without it, the other executor has nothing to differ from.
     """
-    hard = [one for one in cases if one.case.may_fail]
-    first = hard[: most - most // 2]
-    yield from first
-    yield from sorted(hard[len(first) :], key=lambda one: one.shared)[: most // 2]
-    yield from [one for one in cases if not one.case.may_fail][: max(1, most // 10)]
-
-
-def _noticed(case: Case, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
-    """How a case notices the mutant that is in place, why, and the digest of what was seen."""
-    results = run_case(case, setups, KnownFailures(), most=_SECONDS).results
+    case = reach.case
+    results = run_case(case, setups[:1], KnownFailures(), most=_SECONDS).results
+    first = results[0].observation
+    if len(setups) > 1 and (first is None or seen_digest(first) != reach.seen):
+        results = run_case(case, setups, KnownFailures(), most=_SECONDS).results
     seen = results[0].observation
     digest = seen_digest(seen) if seen else ""
     bad = sorted((one for one in results if one.verdict not in ("pass", "skipped")), key=_grave)

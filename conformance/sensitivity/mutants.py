@@ -31,6 +31,7 @@ __all__ = [
     "InvalidMutant",
     "Mutant",
     "all_mutants",
+    "around",
     "drawn",
     "load",
     "modules",
@@ -63,7 +64,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         ),
     ),
     # left out: the cell around the controller, how a run is recorded, what is looked up of one that
-    # has come to its end or stands, and loads, which only torques depend on
+    # has come to its end or stands, loads, which only torques depend on, and motions that are
+    # skipped where parts of a program are stood in for
     "controller": (
         ("interp.controller.*",),
         (
@@ -74,14 +76,16 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                 for name in ("arm", "levels", "look", "unfulfilled")
             ),
             "interp.controller.input_script",
+            "interp.controller.motion_requests.MotionRequests._skip",
             "interp.controller.motions._load",
             "interp.controller.profile",
             "interp.controller.script_player",
             "interp.controller.trace",
         ),
     ),
-    # left out: files of machine data and torques; motions written in Python and what only they ask
-    # of the core, and planning in batches, which is there to be compared with
+    # left out: files of machine data and torques; motions written in Python, what only they ask of
+    # the core, and a check of the first motion that the controller makes before; and planning in
+    # batches, which is there to be compared with
     "robot": (
         (
             "interp.robot.path.*",
@@ -100,6 +104,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.robot.kinematics.data_list",
             "interp.robot.kinematics.dynamics_data",
             "interp.robot.kinematics.machine_data",
+            "interp.robot.path.targets_in_force.check_start",
         ),
     ),
 }
@@ -225,6 +230,31 @@ def uses_of(mutant: Mutant) -> Mapping[str, frozenset[int]]:
         for module in modules()
         if module == mutant.module or importing in _text(module)
     }
+
+
+def around(mutant: Mutant) -> Mapping[str, frozenset[int]]:
+    """The lines of its function, and of all functions that its statement names, by module."""
+    first, last = sorted(map(abs, mutant.lines))
+    words = {mutant.function.rpartition(".")[2]}
+    for node in ast.walk(_tree(mutant.module)):
+        if isinstance(node, ast.Name | ast.Attribute) and first <= node.lineno <= last:
+            words.add(node.id if isinstance(node, ast.Name) else node.attr)
+    found: dict[str, set[int]] = {}
+    for module, name, lines in _functions_of_modules():
+        if name in words:
+            found.setdefault(module, set()).update(lines)
+    return {module: frozenset(lines) for module, lines in found.items()}
+
+
+@cache
+def _functions_of_modules() -> Sequence[tuple[str, str, range]]:
+    """Module, name and lines of each function."""
+    return [
+        (module, node.name, range(node.lineno, (node.end_lineno or node.lineno) + 1))
+        for module in modules()
+        for node in ast.walk(_tree(module))
+        if isinstance(node, ast.FunctionDef)
+    ]
 
 
 @cache

@@ -11,10 +11,11 @@ statement    a call, an assignment to a part, ``raise``, ``break``, ``continue``
 
 A ``raise`` is left out where a program of KRL that a controller selects can come to it. What tells
 a caller in Python of a mistake, or who wrote machine data, a profile or a program of which parts
-are missing, is left as it is. So are texts, annotations, assertions, defaults of parameters, class
-bodies, and what stands behind a ``return`` or ``raise``: they decide nothing, or what they have
-decided cannot be replaced in a module that is loaded. A boundary is not moved where a number that
-is not whole is compared: what is equal to it is so by chance.
+are missing, is left as it is, and so is the condition of an ``if`` that does nothing else. So are
+texts, annotations, assertions, defaults of parameters, class bodies, and what stands behind a
+``return`` or ``raise``: they decide nothing, or what they have decided cannot be replaced in a
+module that is loaded. A boundary is not moved where a number that is not whole is compared: what is
+equal to it is so by chance.
 """
 
 from __future__ import annotations
@@ -191,7 +192,10 @@ def _of_statement(
         return
     if isinstance(node, ast.Assert):
         return
-    if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+    if isinstance(node, ast.If) and (
+        "TYPE_CHECKING" in ast.unparse(node.test)
+        or (not node.orelse and all(map(_is_own_mistake, node.body)))
+    ):
         return
     inner = replace(scope, lines=_span(node), assignment=None)
     if _is_droppable(node):
@@ -307,12 +311,19 @@ def _is_droppable(node: ast.stmt) -> bool:
             return isinstance(value, ast.Call | ast.Yield | ast.YieldFrom)
         case ast.AugAssign() | ast.Break() | ast.Continue() | ast.Delete():
             return True
-        case ast.Raise(exc):
-            return exc is None or not _OWN_MISTAKE.match(ast.unparse(exc))
+        case ast.Raise():
+            return not _is_own_mistake(node)
         case ast.Assign(targets):
             parts = [part for one in targets for part in _parts(one)]
             return all(isinstance(part, ast.Attribute | ast.Subscript) for part in parts)
     return False
+
+
+def _is_own_mistake(node: ast.stmt) -> bool:
+    """Whether a statement tells of a mistake that no program of KRL can make."""
+    if not isinstance(node, ast.Raise) or node.exc is None:
+        return False
+    return _OWN_MISTAKE.match(ast.unparse(node.exc)) is not None
 
 
 def _parts(target: ast.expr) -> list[ast.expr]:

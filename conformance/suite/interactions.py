@@ -66,7 +66,7 @@ _MORE: Final[Mapping[str, tuple[str, ...]]] = {
 _CP: Final = ("lin", "spline", "rel")
 #: Statements of the path with what they show, and where it ends.
 _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
-    "lin": (("LIN {X 545} ;> path line 445 0 810 to 545 0 810 [MOT-04]",), "545 0 810"),
+    "lin": (("LIN {X 545} ;> path line 445 0 810 to 545 0 810 [MOT-20]",), "545 0 810"),
     "lin_blend": (
         ("LIN {X 545} C_DIS ;> misses 545 0 810 by 20 within 19.9 [BLD-08]", "LIN {Y 100}"),
         "545 100 810",
@@ -74,14 +74,14 @@ _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
     "circ": (
         (
             "CIRC {X 495, Y 50}, {X 545, Y 0}",
-            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-12]",
+            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-20]",
         ),
         "545 0 810",
     ),
     "circ_blend": (
         (
             "CIRC {X 495, Y 50}, {X 545, Y 0} C_DIS",
-            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-12]",
+            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-20]",
             ";> misses 545 0 810 by 20 within 19.9 [BLD-08]",
             "LIN {X 645}",
         ),
@@ -96,15 +96,15 @@ _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
         ),
         "545 0 810",
     ),
-    "ptp": (("PTP {A1 40} ;> axes 40 -90 90 0 90 0 [MOT-02]",), ""),
+    "ptp": (("PTP {A1 40} ;> axes 40 -90 90 0 90 0 [MOT-20]",), ""),
     "ptp_blend": (
         (
             "PTP {A1 40} C_PTP ;> limits [MOT-06]",
-            "PTP {A1 60, A2 -80} ;> axes 60 -80 90 0 90 0 [MOT-02]",
+            "PTP {A1 60, A2 -80} ;> axes 60 -80 90 0 90 0 [MOT-20]",
         ),
         "",
     ),
-    "rel": (("LIN_REL {X 100} ;> path line 445 0 810 to 545 0 810 [MOT-04]",), "545 0 810"),
+    "rel": (("LIN_REL {X 100} ;> path line 445 0 810 to 545 0 810 [MOT-20]",), "545 0 810"),
     "chain_blend": (
         ("LIN {X 490} C_DIS", "LIN {Y 40} C_DIS", "LIN {X 545} C_DIS", "PTP {A1 10}"),
         "",
@@ -126,9 +126,9 @@ _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
     ),
 }
 _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
-    "run": ("$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-01]",),
-    "brake": ("BRAKE ;> brake at in 1 [INT-09]", "WAIT SEC 0.3", "$OUT[3] = TRUE"),
-    "brake_hard": ("BRAKE F ;> brake at in 1 [INT-09]", "WAIT SEC 0.3", "$OUT[3] = TRUE"),
+    "run": ("$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-06.a]",),
+    "brake": ("BRAKE ;> brake at in 1 [INT-09.a]", "WAIT SEC 0.3", "$OUT[3] = TRUE"),
+    "brake_hard": ("BRAKE F ;> brake at in 1 [INT-09.a]", "WAIT SEC 0.3", "$OUT[3] = TRUE"),
     "halt": ("HALT ;> halt [INT-16]", "$OUT[3] = TRUE ;> out 3 TRUE after in 1 + 0.4 [INT-16]"),
     "nested": (
         "INTERRUPT ON 4",
@@ -139,9 +139,9 @@ _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
     ),
     "pulse": (
         "PULSE($OUT[3], TRUE, 0.2)",
-        ";> out 3 TRUE at in 1 [IOT-08] ;> out 3 FALSE at out 3 + 0.2 [IOT-07]",
+        ";> out 3 TRUE at in 1 [IOT-08] ;> out 3 FALSE at out 3 + 0.2 [IOT-07.a]",
     ),
-    "override": ("$OV_PRO = 25", "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-01]"),
+    "override": ("$OV_PRO = 25", "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [INT-06.a]"),
     "proceed": (
         "A[1] = 0",
         "ON_ERROR_PROCEED",
@@ -298,7 +298,7 @@ def _main(name: str, row: Row) -> Iterator[str]:
     if row["act"] != "operator":
         yield "  INTERRUPT ON 5"
     yield "  way()"
-    yield "  $OUT[5] = TRUE ;> out 5 TRUE after start 2"
+    yield "  $OUT[5] = TRUE" + (" ;> out 5 TRUE after start 2 [INT-10]" if is_left else "")
     yield "  LIN {X 445, Y 0, Z 790, A 180, B 0, C 180} ;> pose 445 0 790 [ARI-09]"
     yield "END"
     yield from _way(row, is_left=is_left)
@@ -308,7 +308,7 @@ def _main(name: str, row: Row) -> Iterator[str]:
             yield "  DECL INT A[2]"
         yield from (f"  {text}" for text in _ROUTINES[row["act"]])
         if not is_left and row["act"] != "halt":
-            yield "  $FLAG[2] = TRUE ;> interrupt 5 times 1 [INT-01]"
+            yield "  $FLAG[2] = TRUE ;> interrupt 5 times 1 [INT-06.a]"
         yield "END"
     if row["act"] in ("nested", "resume_deep"):
         yield "DEF higher()"
@@ -348,7 +348,7 @@ def _way(row: Row, *, is_left: bool) -> Iterator[str]:
         yield "  WAIT SEC 0"
         yield "  R = 2 ;> never [INT-10]"
     else:
-        yield "  R = 2 ;> runs 1 [INT-01]" if row["act"] != "operator" else "  R = 2"
+        yield "  R = 2"
     yield "END"
 
 

@@ -57,6 +57,13 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ("control/good.src", "runs 1", "line at mark NOWHERE", "nothing is marked NOWHERE"),
         ("control/good.src", "runs 1", "halted", "no expectation 'halted'"),
         ("control/good.src", "DEF", ";> never\nDEF", "beside no line"),
+        ("control/good.src", "runs 1", "path line 0 0 0 to 1 1 1", "CTL-01 says nothing of"),
+        (
+            "submit/good.src",
+            GOOD,
+            GOOD.replace("CTL", "SUB").replace("runs", "line at"),
+            "has no period",
+        ),
     ],
 )
 def test_faults_are_found(tmp_path: Path, name: str, old: str, new: str, part: str) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from conformance.evaluation.execution import Setup
 from conformance.sensitivity import bench, mutant_trial
-from conformance.sensitivity.line_reach import reach_of
+from conformance.sensitivity.line_reach import Reach, reach_of
 from conformance.sensitivity.mutant_trial import (
     Fate,
     Trial,
@@ -21,6 +21,7 @@ from conformance.sensitivity.mutant_trial import (
 from conformance.sensitivity.mutants import (
     Mutant,
     all_mutants,
+    around,
     drawn,
     modules,
     named,
@@ -79,6 +80,7 @@ def _case(name: str) -> Case:
         ("raise a", {("statement", "pass")}),
         ("raise ProfileError(a)", set()),
         ("raise LinkError(a)", set()),
+        ("if a < b: raise ValueError(a)", set()),
         ("assert a < 7", set()),
         ("return isinstance(a, int | str)", set()),
         ("return f'{a + 1}'", set()),
@@ -189,6 +191,19 @@ def test_lines_that_a_case_runs() -> None:
     at = next(number for number, line in enumerate(text, 1) if "def _if(" in line)
     assert reach.has("interp.tree.statements", frozenset(range(at, at + 12)))
     assert not reach.has("interp.robot.path.spline", frozenset(range(1, 999)))
+
+
+def test_cases_that_run_what_a_statement_names_come_first() -> None:
+    """Of three cases that run a call only the last runs what the called function then does."""
+    plan = "interp.robot.planning.planned_arm"
+    mutant = _mutant(plan, "PlannedArm.plan", "check_start(motion)", "pass")
+    called = "interp.robot.path.targets_in_force"
+    rare = max(around(mutant)[called])
+    lines = {plan: frozenset({mutant.line})}
+    reaches = [Reach(_case(f"motion/{name}"), lines, 1) for name in ("acc_cp", "lin_speed")]
+    last = _case("motion/lin_end_pose")
+    reaches.append(Reach(last, {**lines, called: frozenset({rare})}, 1))
+    assert last == mutant_trial._candidates(mutant, reaches, 60).tried[0].case
 
 
 @needs_fork
