@@ -83,7 +83,10 @@ def _is_higher(priority: object, other: object) -> bool:
 
 
 def _motions(events: Sequence[Event]) -> Iterator[Violation]:
-    """Up to a BRAKE motions begin in the order in which they are planned, one behind the other."""
+    """Motions begin in the order in which they are planned, one behind the other.
+
+    Up to a BRAKE or RESUME: then the path is left, and others may come before it is gone on.
+    """
     planned = started = 0
     is_moving = False
     blending: object = None
@@ -105,7 +108,7 @@ def _motions(events: Sequence[Event]) -> Iterator[Violation]:
                 fits = blending == number
             case "blend_end" if isinstance(number, int):
                 fits, blending = blending == number - 1, None
-            case "brake":  # the path is left, and others may come before it is gone on
+            case "brake" | "resume":
                 return
         if not fits:
             yield Violation(one, "motions follow one another", f"{one.kind} {number}")
