@@ -1,4 +1,4 @@
-"""Tuning constants of the search for causes: what each limits or weighs, and what it rests on.
+"""Tuning constants of searching causes and growing: what each limits or weighs, and rests on.
 
 Ranks and breadths are counted in steps: the more, the more an edit accepts besides the failing
 line. A step costs an edit half a per cent of its worth (`BREADTH_FACTOR`). What a value rests on is
@@ -8,8 +8,8 @@ said in one of these ways:
 - *revised*: the earlier values are given; by what they were compared has not been kept;
 - *not measured*: a first guess that has not been compared with another value.
 
-Whoever changes a value compares `krl bench mutation` before and after, and says here what came of
-it.
+Whoever changes a value compares `krl bench mutation` before and after, for growing
+`krl recover --auto --hold-out`, and says here what came of it.
 """
 
 # ---------------------------------------------------------- which lines are searched for edits
@@ -253,6 +253,90 @@ MOST_EXPECTED = 2
 MOST_TOLD = 8
 #: Reserved words that a title lists, where several stand for names. Not measured.
 MOST_LISTED = 3
+
+# ----------------------------------------------------------------------------- growing a grammar
+# `recovery.induction`.
+
+#: Different words up to which surroundings are those of keywords; where names may be too, fewer.
+#: Not measured.
+FEW_WORDS = 8
+FEWER_WORDS = 3
+#: Origins and files that a word needs which is to be a keyword. Not measured.
+WOULD_BE_ORIGINS = 2
+WOULD_BE_FILES = 3
+#: Files that it needs in a single origin, where there are others; and what else recurs in a
+#: single origin. Not measured.
+WOULD_BE_FILES_ALONE = 5
+LEAST_FILES_ALONE = 2
+#: The least share of its uses in such surroundings; the share of files with uses as a name, and
+#: the lines with one, from which on it stays a name. Not measured.
+WOULD_BE_SHARE = 0.8
+NAME_SHARE = 0.02
+NAMED_LINES = 3
+#: The least share of lines with a word ahead that others begin without it, by so many tokens. Not
+#: measured.
+PREFIX_SHARE = 0.6
+PREFIX_TOKENS = 5
+#: Places that are remembered of a line, and given as evidence. Bound: for a reader.
+PLACES_REMEMBERED = 3
+PLACES_SHOWN = 10
+#: Different lines of a single file that an edit with a new word needs, and places without one.
+#: Not measured.
+LINES_OF_ONE_FILE = 3
+PLACES_IN_ONE_FILE = 2
+#: The least share of files in which a pair of words is in balance (damaged files are the others),
+#: their least number, and that of their origins. Not measured.
+BALANCED_SHARE = 0.95
+BALANCED_FILES = 3
+BALANCED_ORIGINS = 2
+#: Among so many files one may be damaged. Not measured.
+FILES_WITH_ONE_DAMAGED = 6
+#: Words between opener and closer of one block. Not measured.
+BLOCK_MIDDLES = 3
+#: The part of what one rule reads that two may read together to be preferred. Not measured.
+READ_TOGETHER_SHARE = 0.8
+#: Lists of so many kinds, none of them longer than this, are never longer. Not measured.
+SHORT_LIST_KINDS = 8
+SHORT_LIST = 3
+#: Lines of a form that a rule is tried on. Bound on time.
+MOST_SAMPLES = 64
+#: Lists of more than one item from which on none is taken to be long where none is, and the items
+#: behind the first one up to which a list is short. Not measured.
+SHORT_LIST_EXAMPLES = 50
+ITEMS_BEHIND_THE_FIRST = 2
+#: Elements in a row that may be missing together. Not measured.
+MISSING_RUN = 3
+#: The part of the kinds of line of one word that another has too, for one form to read both. Not
+#: measured.
+ALIKE_SHARE = 0.5
+#: What a level counts by which operators bind weaker than they need, in symbols. Not measured.
+LEVEL_SYMBOLS = 12
+#: Alternatives from which on a rule of words is the list of all of them. Not measured.
+WORD_LIST_ALTERNATIVES = 8
+#: What a rule counts that an edit no longer calls, in symbols. Not measured.
+LOST_RULE_SYMBOLS = 12
+#: Symbols by which a grammar may become longer where what holds in one place holds in another
+#: too. Not measured.
+FOLDING_SYMBOLS = 12
+#: Files with lines that an edit mends, for one program more that it accepts and should not.
+#: Revised: 100.
+GAIN_PER_NEGATIVE = 75
+#: What is left of a gain for each symbol that is written and each step in width of its rule, and
+#: the symbols for which a part counts more that may come any number of times. Not measured.
+SYMBOL_FACTOR = 0.997
+UNBOUNDED_SYMBOLS = 3
+#: What a line counts that is read further and still fails. Not measured.
+ADVANCED_WORTH = 0.25
+#: The least share of what an edit does that no edit before it in the round has done. Not
+#: measured.
+FRESH_SHARE = 0.5
+#: Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
+#: Not measured.
+OPERAND_FILES = 5
+#: Files, the shortest, on which a block is tried, and on which it is tried whether an alternative
+#: is needed. Bound on time.
+BLOCK_FILES = 12
+FOLD_FILES = 40
 
 # ---------------------------------------------------------------------------------- reproducers
 # `recovery.reproducer`.

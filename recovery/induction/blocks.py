@@ -17,6 +17,13 @@ from recovery.induction.symbols import Token
 from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.proposals.block_inference import is_balanced
 from recovery.proposals.keywords import Vocabulary
+from recovery.tuning import (
+    BALANCED_FILES,
+    BALANCED_ORIGINS,
+    BALANCED_SHARE,
+    BLOCK_MIDDLES,
+    FILES_WITH_ONE_DAMAGED,
+)
 
 __all__ = ["BlockLines", "SourceFile", "blocks_of", "find_blocks"]
 
@@ -24,13 +31,6 @@ __all__ = ["BlockLines", "SourceFile", "blocks_of", "find_blocks"]
 _Line = tuple[str, tuple[Token, ...]]
 #: Distinct lines with the origins that have them.
 _Having = dict[tuple[Token, ...], set[str]]
-# The least share of files in which a pair of words is in balance; damaged files are the others.
-_BALANCED_SHARE = 0.95
-_LEAST_FILES = 3
-# Among so many files one may be damaged.
-_FILES_WITH_ONE_DAMAGED = 6
-_LEAST_ORIGINS = 2
-_MOST_MIDDLES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,13 +131,13 @@ def _is_pair(
 ) -> bool:
     places = sorted({*having[opener], *having[closer]})
     equal = [n for n in places if counts[n][opener] == counts[n][closer]]
-    damaged = len(places) >= _FILES_WITH_ONE_DAMAGED
-    needed = max(_LEAST_FILES, min(_BALANCED_SHARE * len(places), len(places) - damaged))
+    damaged = len(places) >= FILES_WITH_ONE_DAMAGED
+    needed = max(BALANCED_FILES, min(BALANCED_SHARE * len(places), len(places) - damaged))
     if len(equal) < needed:
         return False
     good = [n for n in equal if is_balanced(opener, closer, files[n].lines)]
     origins = frozenset[str]().union(*(files[n].origins for n in good))
-    return len(good) >= needed and len(origins) >= _LEAST_ORIGINS
+    return len(good) >= needed and len(origins) >= BALANCED_ORIGINS
 
 
 def _inside(opener: str, closer: str, lines: Sequence[_Line]) -> int:
@@ -184,7 +184,7 @@ def _gathered(
     middles = [word for word in order if word not in outside]
     # a middle divides: it recurs in most of the blocks
     middles = [w for w in middles if sum(w in s for s in seen) * 3 >= len(seen)]
-    if len(middles) > _MOST_MIDDLES:
+    if len(middles) > BLOCK_MIDDLES:
         middles = []
     for word in middles:
         block.middles[word] = inside[word]

@@ -13,11 +13,9 @@ from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import BRACKETS, Symbol, bracket_pairs
+from recovery.tuning import MISSING_RUN
 
 __all__ = ["BracketEdits"]
-
-# Elements in a row that may be missing together.
-_LONGEST_RUN = 3
 
 
 class BracketEdits:
@@ -107,5 +105,5 @@ def _groups(symbols: Sequence[Symbol]) -> Iterator[tuple[str, tuple[Symbol, ...]
 
 def _runs(count: int) -> Iterator[tuple[int, int]]:
     """Runs of so many elements, but not all of them: the first one and how many."""
-    for length in range(1, min(_LONGEST_RUN, count - 1) + 1):
+    for length in range(1, min(MISSING_RUN, count - 1) + 1):
         yield from ((start, length) for start in range(count - length + 1))

@@ -14,15 +14,9 @@ from recovery.induction.steps import Evidence
 from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.language import CorpusFile
 from recovery.proposals.edit_site import LinePattern
+from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN
 
 __all__ = ["FailingLines", "Occurrences"]
-
-# Places that are remembered of a line, and given as evidence.
-_MOST_SEEN = 3
-_MOST_SHOWN = 10
-# Different lines of a single file that an edit with a new word needs, and places without one.
-_LINES_OF_ONE_FILE = 3
-_PLACES_IN_ONE_FILE = 2
 
 
 @dataclass(slots=True)
@@ -60,7 +54,7 @@ class FailingLines:
                 line.state = line.state or failure.state
                 line.files.add(place)
                 line.origins |= files[place].origins
-                if len(line.seen) < _MOST_SEEN:
+                if len(line.seen) < PLACES_REMEMBERED:
                     line.seen.append(f"{files[place].path}:{failure.line}")
         self.patterns = list(found)
         self.occurrences = list(found.values())
@@ -79,14 +73,14 @@ class FailingLines:
         files = {place for line in some for place in line.files}
         origins = {origin for line in some for origin in line.origins}
         seen = dict.fromkeys(place for line in some for place in line.seen)
-        shown = tuple(islice(seen, _MOST_SHOWN))
+        shown = tuple(islice(seen, PLACES_SHOWN))
         return Evidence(len(files), len(origins), self.weight(lines), shown)
 
     def is_repeated(self, lines: Set[int], edits: Sequence[Edit]) -> bool:
         """Whether lines of a single file show edits often enough to be no slip."""
         some = [self.occurrences[n] for n in lines]
         if any(isinstance(edit, AddToken) for edit in edits):
-            return len({text for line in some for text in line.texts}) >= _LINES_OF_ONE_FILE
+            return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
         # where nothing else is wrong in a file a single line is none either
         is_all = any(self._of_file[p] <= lines for line in some for p in line.files)
-        return is_all or sum(len(line.seen) for line in some) >= _PLACES_IN_ONE_FILE
+        return is_all or sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE

@@ -37,11 +37,9 @@ from recovery.induction.forms import LONG_LIST, FormWriter, samples_of
 from recovery.induction.steps import Inferred
 from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
 from recovery.proposals.grammar_profile import GrammarProfile
+from recovery.tuning import FOLDING_SYMBOLS
 
 __all__ = ["Folding", "size"]
-
-# Symbols by which a grammar may become longer where what holds in one place holds in another too.
-_LONGER = 12
 
 
 def size(grammar: Grammar) -> int:
@@ -124,7 +122,7 @@ class Folding:
                 if form and self._source(rule.name, tail) != form
             ]
             title = f"one form for what follows a name in {rule.name}"
-            yield Inferred(title, tuple(edits), (), breadth=_LONGER * len(edits))
+            yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
 
     def _source(self, rule: str, elements: Sequence[Element]) -> str:
         return " ".join(map(self.grammar.by_name[rule].source_of, elements))
@@ -151,7 +149,7 @@ class Folding:
                 text = f"{rule.source_of(word)} {self._source(rule.name, every)}"
                 title = f"{min(words)} without {min(first)} in {rule.name}"
                 edits = (AddAlternative(rule.name, text),)
-                yield Inferred(title, edits, (), breadth=len(every) + _LONGER)
+                yield Inferred(title, edits, (), breadth=len(every) + FOLDING_SYMBOLS)
 
     def _signs(self) -> Iterator[Inferred]:
         """Signs ahead of an operand, where another sign of the same level between operands is."""
@@ -172,7 +170,7 @@ class Folding:
                     text = f"({' | '.join(sorted({sign, *more}))}){often}"
                     title = f"{', '.join(sorted(more))} ahead of operands in {name}"
                     edits = (Replace(name, (number, 1), text),)
-                    yield Inferred(title, edits, (), breadth=_LONGER)
+                    yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
 
     def _lists(self, families: Sequence[tuple[str, str, list[int]]]) -> Iterator[Inferred]:
         """Lists where the same word begins one in another rule."""
@@ -194,7 +192,7 @@ class Folding:
                     form = self.writer.form(dict.fromkeys([*shapes, *more]))
                     edits = (Replace(rule, (number, 1), form, len(elements)),) if form else ()
                     title = f"a list behind {word} in {rule}"
-                    yield Inferred(title, edits, (), breadth=_LONGER)
+                    yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
 
     def _trailing(self) -> Iterator[Inferred]:
         """One choice for words that may end lines, where two such choices have a word in common."""
@@ -223,7 +221,7 @@ class Folding:
             if len(every) > 1 and edits and every not in done:
                 done.add(every)
                 title = f"{', '.join(sorted(every))} at the end of lines"
-                yield Inferred(title, tuple(edits), (), breadth=_LONGER * len(edits))
+                yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
 
     def _is_ending(self, element: Element) -> bool:
         """Whether an element is words that may be missing."""

@@ -17,16 +17,12 @@ from itertools import pairwise
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
+from recovery.tuning import MOST_SAMPLES, READ_TOGETHER_SHARE, SHORT_LIST, SHORT_LIST_KINDS
 
 __all__ = ["LONG_LIST", "FormWriter", "samples_of", "split_at_commas"]
 
-# The part of what one rule reads that two may read together to be preferred.
-_MUCH_LESS = 0.8
-# Lists of so many kinds, none of them longer than this, are never longer.
-_MANY_LISTS = 8
-_SHORT_LIST = 3
 #: So many items are more than a short list has.
-LONG_LIST = _SHORT_LIST + 1
+LONG_LIST = SHORT_LIST + 1
 _COMMA = "','"
 _EQUALS = "'='"
 #: A list of pieces with commas between: its text is this, ``inside`` is none.
@@ -142,7 +138,7 @@ class FormWriter:
             if single[-1] in "?*":
                 return out, None
             single += "?"
-        if len(cut) >= _MANY_LISTS and max(map(len, cut)) <= _SHORT_LIST:
+        if len(cut) >= SHORT_LIST_KINDS and max(map(len, cut)) <= SHORT_LIST:
             text = ""
             for _ in range(max(map(len, cut)) - 1):
                 text = f" (',' {single}{text})?"
@@ -155,7 +151,7 @@ class FormWriter:
         """The form of a first item, where many lists begin with what only some go on with."""
         shapes = {tuple(s.text for s in piece) for piece in ahead}
         others = {tuple(s.text for s in piece) for piece in behind}
-        if len(ahead) < _MANY_LISTS or () in others or not shapes < others:
+        if len(ahead) < SHORT_LIST_KINDS or () in others or not shapes < others:
             return None
         return self.form([p for p in (*ahead, *behind) if tuple(s.text for s in p) in shapes])
 
@@ -279,7 +275,7 @@ class FormWriter:
         found = [usual[first], usual[second]]
         named = self.rules.matcher.rules_for((self.rules.lexer.name_kind,))
         is_constant = wide in named and named.isdisjoint(found)
-        return found if is_constant or count <= _MUCH_LESS * self._reads[wide] else None
+        return found if is_constant or count <= READ_TOGETHER_SHARE * self._reads[wide] else None
 
     def _breadth(self, rule: str) -> tuple[int, ...]:
         """What a rule reads, first of the corpus, then of what other rules are."""
@@ -479,11 +475,8 @@ def _sequences(
     for element in sequence:
         lines = [(*line, *more) for line in lines for more in _samples(rules, element, within)]
         # an odd step takes both of what comes in pairs
-        lines = lines[:: len(lines) // _MOST_SAMPLES | 1]
+        lines = lines[:: len(lines) // MOST_SAMPLES | 1]
     return lines
-
-
-_MOST_SAMPLES = 64
 
 
 def _samples(

@@ -16,11 +16,9 @@ from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import Symbol
 from recovery.proposals.edit_site import places_of
+from recovery.tuning import ALIKE_SHARE
 
 __all__ = ["LineEdits"]
-
-# The part of the kinds of line of one word that another has too, for one form to read both.
-_ALIKE = 0.5
 
 
 class LineEdits:
@@ -107,7 +105,9 @@ class LineEdits:
             # around each word those that have most kinds of tail in common with it
             for head, _, tails in heads:
                 alike = [
-                    h for h in heads if len(h[2] & tails) >= _ALIKE * min(len(h[2]), len(tails))
+                    h
+                    for h in heads
+                    if len(h[2] & tails) >= ALIKE_SHARE * min(len(h[2]), len(tails))
                 ]
                 if len(alike) < 3:
                     continue

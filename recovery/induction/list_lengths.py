@@ -16,13 +16,9 @@ from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
 from recovery.induction.steps import Inferred
+from recovery.tuning import ITEMS_BEHIND_THE_FIRST, SHORT_LIST_EXAMPLES
 
 __all__ = ["bounded_lists"]
-
-# Lists of more than one item from which on none is taken to be long where none is.
-_MANY_LISTS = 50
-# Items behind the first one up to which a list is short.
-_MOST_BEHIND = 2
 
 
 def bounded_lists(
@@ -45,14 +41,14 @@ def bounded_lists(
                 if (
                     not _is_list(element)
                     or source in known
-                    or max(rounds, default=0) > _MOST_BEHIND
+                    or max(rounds, default=0) > ITEMS_BEHIND_THE_FIRST
                 ):
                     continue
-                if rounds.total() - rounds[0] >= _MANY_LISTS:
+                if rounds.total() - rounds[0] >= SHORT_LIST_EXAMPLES:
                     text = ""
-                    for _ in range(_MOST_BEHIND):
+                    for _ in range(ITEMS_BEHIND_THE_FIRST):
                         text = f"({source[1:-2]}{text and f' {text}'})?"
-                    title = f"at most {1 + _MOST_BEHIND} items in {rule.name}"
+                    title = f"at most {1 + ITEMS_BEHIND_THE_FIRST} items in {rule.name}"
                     yield Inferred(title, (Replace(rule.name, at, text),), ())
 
 

@@ -12,11 +12,9 @@ from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.survey.failing_line import source_lines
+from recovery.tuning import GAIN_PER_NEGATIVE
 
 __all__ = ["Judge"]
-
-# Files with lines that an edit mends, for one program more that it accepts and should not.
-_GAIN_PER_NEGATIVE = 75
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,7 @@ class Judge:
         if wider is None:
             return "does not fit the grammar"
         accepted = [n for n in self.rejected.accepted(wider) if self._is_read_anew(wider, n)]
-        if len(accepted) > gain / _GAIN_PER_NEGATIVE:
+        if len(accepted) > gain / GAIN_PER_NEGATIVE:
             return f"accepts {len(accepted)} programs that must be rejected: {accepted[0].reason}"
         return ""
 

@@ -13,11 +13,9 @@ from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms
 from recovery.induction.symbols import BRACKETS
 from recovery.proposals.edit_site import configurations_of, places_of
+from recovery.tuning import LEVEL_SYMBOLS
 
 __all__ = ["OperandEdits"]
-
-# What a level counts by which operators bind weaker than they need, in symbols.
-_LEVEL = 12
 
 
 class OperandEdits:
@@ -49,7 +47,7 @@ class OperandEdits:
             if text[0] != "'" and len(heads) == 1 and None not in heads:
                 continue  # a word of one statement, as STEP is
             for edits, level in self._as_infix(text):
-                breadth = _LEVEL * (len(self.at.rules.ladder) - level)
+                breadth = LEVEL_SYMBOLS * (len(self.at.rules.ladder) - level)
                 title = f"{text} between operands"
                 yield Inferred(title, edits, tuple(members), breadth=breadth)
         for text, members in prefix.items():
@@ -174,7 +172,7 @@ class OperandEdits:
             for level in levels:
                 if level != rule:
                     edits = (AddAlternative(level, rule),)
-                    breadth = 0 if level == gathering else _LEVEL
+                    breadth = 0 if level == gathering else LEVEL_SYMBOLS
                     yield Inferred(f"{rule} as an operand", edits, tuple(members), breadth=breadth)
 
     def _fresh(self, wanted: str) -> str:

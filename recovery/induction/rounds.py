@@ -38,27 +38,23 @@ from recovery.induction.objections import Judge
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import Evidence, Inferred, Refused, Round, Taken, joined
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
-from recovery.induction.would_be_keywords import LEAST_FILES_ALONE, WouldBeKeywords, names_read
+from recovery.induction.would_be_keywords import WouldBeKeywords, names_read
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 from recovery.survey.failing_line import source_lines
+from recovery.tuning import (
+    ADVANCED_WORTH,
+    BLOCK_FILES,
+    FOLD_FILES,
+    FRESH_SHARE,
+    LEAST_FILES_ALONE,
+    OPERAND_FILES,
+    SYMBOL_FACTOR,
+    UNBOUNDED_SYMBOLS,
+)
 
 __all__ = ["Induction"]
 
-# What is left of a gain for each symbol that is written and each step in width of its rule.
-_BREADTH_FACTOR = 0.997
-# Symbols for which a part counts more that may come any number of times.
-_UNBOUNDED = 3
-# What a line counts that is read further and still fails.
-_ADVANCED = 0.25
-# The least share of what an edit does that no edit before it in the round has done.
-_FRESH = 0.5
-# Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
-_OPERAND_FILES = 5
-# Files on which a block is tried, the shortest that open one.
-_BLOCK_FILES = 12
-# The files, the shortest, on which it is tried whether an alternative is needed.
-_FOLD_FILES = 40
 
 #: What a round looks for: what is missing within lines, whole lines and blocks, what is alike.
 _Step = Literal["inner", "outer", "fold"]
@@ -179,7 +175,7 @@ class Induction:
                 rules = [r for r in changed_rules(edits) if r in callers]
                 breadth = found.breadth + sum(map(_size, edits))
                 breadth += sum(map(inference.profile.width, rules))
-                scored.append((gain * _BREADTH_FACTOR**breadth, found, mended))
+                scored.append((gain * SYMBOL_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
         taken, refused = self._chosen(scored, table, judge, least)
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
@@ -213,7 +209,7 @@ class Induction:
         if wider is None or not places:
             return 0.0
         finder = FailureFinder(wider)
-        some = places[:_BLOCK_FILES]
+        some = places[:BLOCK_FILES]
         opener = found.title.split()[0]
         fewer = openers = left = 0
         for place in some:
@@ -237,7 +233,7 @@ class Induction:
         changed: set[str] = set()
         reserved: set[Edit] = set()
         for gain, found, lines in scored:
-            if table.weight(lines - done) < _FRESH * table.weight(lines):
+            if table.weight(lines - done) < FRESH_SHARE * table.weight(lines):
                 continue
             evidence = table.evidence(lines)
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
@@ -245,7 +241,7 @@ class Induction:
             is_new = any(isinstance(e, AddToken) for e in found.edits)
             is_wide = evidence.origins == 1 and not (is_new or fixed.isdisjoint(operands))
             if evidence.origins < least[0] or evidence.files < (
-                _OPERAND_FILES if is_wide else least[1]
+                OPERAND_FILES if is_wide else least[1]
             ):
                 reason = "only one origin shows it"
             elif evidence.files < LEAST_FILES_ALONE and not table.is_repeated(lines, edits):
@@ -279,7 +275,7 @@ class Induction:
         lines = CorpusLines(files, recognizer.lexer).lines
         operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
         good = (file.text for file, found in zip(files, failures, strict=True) if not found)
-        some = sorted(good, key=len)[:_FOLD_FILES]
+        some = sorted(good, key=len)[:FOLD_FILES]
         taken: list[Taken] = []
         refused: dict[str, Refused] = {}
         found = Folding(recognizer, operands, self._prefixes).candidates()
@@ -339,7 +335,7 @@ class Induction:
 def _size(edit: Edit) -> int:
     """How many symbols an edit writes; what may come any number of times counts thrice more."""
     text = getattr(edit, "text", "")
-    return len(text.split()) + _UNBOUNDED * len(re.findall(r"[)\w][*+]", text))
+    return len(text.split()) + UNBOUNDED_SYMBOLS * len(re.findall(r"[)\w][*+]", text))
 
 
 def _led_by(word: str, failures: Sequence[Failure]) -> int:
@@ -351,5 +347,5 @@ def _line_gain(
 ) -> tuple[float, frozenset[int]]:
     """What edits do for the lines they were inferred from, in files, and for which."""
     result = trial.result(found.edits, found.lines)
-    gain = table.weight(result.mended) + _ADVANCED * table.weight(result.advanced)
+    gain = table.weight(result.mended) + ADVANCED_WORTH * table.weight(result.advanced)
     return gain, result.mended | result.advanced

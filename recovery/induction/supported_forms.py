@@ -12,13 +12,9 @@ from grammar.notation.model import Element, Reference, walk
 from recovery.induction.forms import FormWriter
 from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.symbols import BRACKETS, Symbol, operands_of
+from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
 __all__ = ["SupportedForms", "optional"]
-
-# Alternatives from which on a rule of words is the list of all of them.
-_LONG_LIST = 8
-# What a rule counts that an edit no longer calls, in symbols.
-_LOST = 12
 
 
 class SupportedForms:
@@ -105,7 +101,7 @@ class SupportedForms:
         lists = [
             rule
             for rule in self.at.profile.vocabulary.word_lists
-            if len(self.at.grammar.by_name[rule].alternatives) >= _LONG_LIST
+            if len(self.at.grammar.by_name[rule].alternatives) >= WORD_LIST_ALTERNATIVES
         ]
         entered = (AddAlternative(rule, word) for word in words for rule in lists)
         return (*map(AddToken, words), *entered)
@@ -116,7 +112,7 @@ class SupportedForms:
         called = {
             e.name for o in old for e in walk(o) if isinstance(e, Reference) and not e.is_token
         }
-        return _LOST * sum(
+        return LOST_RULE_SYMBOLS * sum(
             not any(self.at.rules.includes(other, name) for other in written)
             for name in called & self.at.rules.reaches.keys()
         )

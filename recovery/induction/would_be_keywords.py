@@ -19,24 +19,22 @@ from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.language import CorpusFile
 from recovery.survey.failing_line import source_lines
+from recovery.tuning import (
+    FEW_WORDS,
+    FEWER_WORDS,
+    LEAST_FILES_ALONE,
+    NAME_SHARE,
+    NAMED_LINES,
+    PREFIX_SHARE,
+    PREFIX_TOKENS,
+    WOULD_BE_FILES,
+    WOULD_BE_FILES_ALONE,
+    WOULD_BE_ORIGINS,
+    WOULD_BE_SHARE,
+)
 
-__all__ = ["LEAST_FILES_ALONE", "WouldBeKeywords", "names_read"]
+__all__ = ["WouldBeKeywords", "names_read"]
 
-# Different words up to which surroundings are those of keywords; where names may be too, fewer.
-_FEW = 8
-_FEWER = 3
-_LEAST_ORIGINS = 2
-_LEAST_FILES = 3
-_MANY_FILES = 5
-#: Files that what recurs in a single origin needs.
-LEAST_FILES_ALONE = 2
-_LEAST_SHARE = 0.8
-_NAME_SHARE = 0.02
-# Lines that use a word as a name, from which on it stays one.
-_NAMED_LINES = 3
-# The least share of lines with a word ahead that others begin without it, by so many tokens.
-_PREFIX_SHARE = 0.6
-_PREFIX_TOKENS = 5
 
 # Signs behind a name that is called, indexed or has members.
 _BEHIND_NAMES = frozenset("([.")
@@ -83,7 +81,7 @@ def names_read(
         for upper in {w.upper() for w in words[1:] if lexer.kinds[w] == lexer.name_kind}:
             found[upper] += 1
             origins[upper] |= having
-    return {word: origins[word] for word, count in found.items() if count >= _NAMED_LINES}
+    return {word: origins[word] for word, count in found.items() if count >= NAMED_LINES}
 
 
 class WouldBeKeywords:
@@ -95,7 +93,7 @@ class WouldBeKeywords:
         lexer: Lexer,
         read: Mapping[str, Collection[str]],
         types: Collection[str],
-        least: int = _LEAST_ORIGINS,
+        least: int = WOULD_BE_ORIGINS,
     ) -> None:
         """``read`` are names in lines that the grammar reads, with the origins that use them so.
 
@@ -105,7 +103,7 @@ class WouldBeKeywords:
         self.corpus = corpus
         self.lexer = lexer
         self.least = least
-        alone = _MANY_FILES if least > 1 else LEAST_FILES_ALONE
+        alone = WOULD_BE_FILES_ALONE if least > 1 else LEAST_FILES_ALONE
         self._types = frozenset(types)
         self._name = lexer.name_kind
         self._values = frozenset(
@@ -131,10 +129,12 @@ class WouldBeKeywords:
         heads: Counter[str] = Counter()
         places: dict[str, set[str]] = defaultdict(set)
         for surroundings, words in fillers.items():
-            is_head = surroundings == _HEAD or (surroundings[2] == _TYPE and len(words) <= _FEWER)
+            is_head = surroundings == _HEAD or (
+                surroundings[2] == _TYPE and len(words) <= FEWER_WORDS
+            )
             if surroundings in (_PLAIN, _OPEN):
                 continue
-            if is_head or len(words) <= (_FEW if surroundings in beside else _FEWER):
+            if is_head or len(words) <= (FEW_WORDS if surroundings in beside else FEWER_WORDS):
                 self._closed.add(surroundings)
                 for word in words:
                     meant[word] += files[surroundings, word]
@@ -143,15 +143,15 @@ class WouldBeKeywords:
         self.words = frozenset(
             word
             for word, count in meant.items()
-            if (len(places[word]) >= _LEAST_ORIGINS and count >= _LEAST_FILES) or count >= alone
-            if heads[word] >= _LEAST_FILES or count >= _LEAST_SHARE * uses[word]
+            if (len(places[word]) >= WOULD_BE_ORIGINS and count >= WOULD_BE_FILES) or count >= alone
+            if heads[word] >= WOULD_BE_FILES or count >= WOULD_BE_SHARE * uses[word]
         )
         typed = {
             word
             for surroundings, words in fillers.items()
             if _is_of_types(surroundings) and surroundings[1] in lexer.kind_of
             for word, origins in words.items()
-            if len(origins) >= _LEAST_ORIGINS
+            if len(origins) >= WOULD_BE_ORIGINS
         }
         ahead = {w for s in self._closed if s[2] == _TYPE for w in fillers[s]}
         #: Those that are used as names besides.
@@ -160,7 +160,7 @@ class WouldBeKeywords:
             for word in self.words
             if word in typed - ahead
             or (
-                (files[_PLAIN, word] > _NAME_SHARE * uses[word] or word in read)
+                (files[_PLAIN, word] > NAME_SHARE * uses[word] or word in read)
                 # one origin that uses it as a name does not outvote several that do not
                 and (
                     len(fillers[_PLAIN][word].union(read.get(word, ()))) > 1
@@ -174,7 +174,7 @@ class WouldBeKeywords:
         lines, kinds = self.corpus.lines, self.lexer.kinds
 
         def begun(line: Sequence[str]) -> tuple[object, ...]:
-            words = line[:_PREFIX_TOKENS]
+            words = line[:PREFIX_TOKENS]
             return tuple(
                 w if kinds[w] == self._name and w in self.words else kinds[w] for w in words
             )
@@ -186,7 +186,7 @@ class WouldBeKeywords:
             if line[0] in self.words or self.lexer.is_keyword(kinds[line[0]]):
                 whole[line[0]] += 1
                 rest[line[0]] += len(line) > 2 and begun(line[1:]) in beginnings
-        return frozenset(w for w, count in whole.items() if rest[w] > _PREFIX_SHARE * count)
+        return frozenset(w for w, count in whole.items() if rest[w] > PREFIX_SHARE * count)
 
     def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
         """The places of a line where a keyword is meant, with the words."""
