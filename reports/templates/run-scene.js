@@ -132,6 +132,7 @@ function scene() {
     return z < 1 ? [((1 + x) * holder.clientWidth) / 2, ((1 - y) * holder.clientHeight) / 2] : null;
   };
 
+  /** Draws a mark; its box. */
   function dot(at, radius, fill, ring) {
     pen.beginPath();
     pen.arc(...at, radius, 0, 2 * Math.PI);
@@ -139,9 +140,10 @@ function scene() {
     pen.fill();
     pen.strokeStyle = ring;
     pen.stroke();
+    return [at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius];
   }
 
-  /** Marks of points, and as many of their names as do not lie upon one another. */
+  /** Marks of points, and as many of their names as lie neither upon one another nor upon a mark. */
   function marks() {
     const [ink, soft, paper, mark] = ["ink", "soft", "panel", "mark"].map(colourOf);
     pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
@@ -152,7 +154,7 @@ function scene() {
     const name = (text, [x, y], colour) => {
       const box = [x, y - 10, x + pen.measureText(text).width, y + 3];
       const isFree = taken.every(([left, top, right, bottom]) => box[2] < left || box[0] > right || box[3] < top || box[1] > bottom);
-      if (!isFree || box[0] < 0 || box[2] > holder.clientWidth || box[1] < 0) return;
+      if (!isFree || box[0] < 0 || box[2] > holder.clientWidth || box[1] < 0) return false;
       taken.push(box);
       pen.lineWidth = 3;
       pen.strokeStyle = paper;
@@ -160,21 +162,25 @@ function scene() {
       pen.lineWidth = 1.2;
       pen.fillStyle = colour;
       pen.fillText(text, x, y);
+      return true;
     };
     const current = motionStarts[placeAt(startTimes, moment)]?.motion;
     const seen = points.map((point) => [point, seenAt(point.place)]).filter(([, at]) => at);
-    for (const [point, at] of seen) dot(at, 3, point.blended ? paper : ink, ink);
+    for (const [point, at] of seen) taken.push(dot(at, 3, point.blended ? paper : ink, ink));
     const place = arm.tip() ?? (tool[0].length ? tool.map(valuesAt(moment)) : null);
     const now = place && seenAt(place);
     byId("place").textContent = place ? `tool at X ${place[0].toFixed(1)} Y ${place[1].toFixed(1)} Z ${place[2].toFixed(1)} mm` : "";
-    if (now) dot(now, 4.5, mark, paper);
+    if (now) taken.push(dot(now, 4.5, mark, paper));
     "XYZ".split("").forEach((text, i) => {
       const tip = seenAt([0, 1, 2].map((j) => (i === j ? arrow : 0)));
       if (tip) name(text, [tip[0] + 3, tip[1]], colourOf(`${text.toLowerCase()}-axis`));
     });
     for (const isNow of [true, false]) {
       for (const [point, [x, y]] of seen) {
-        if ((point.motion === current) === isNow) name(`${point.motion} ${point.kind}`, [x + 7, y - 5], isNow ? ink : soft);
+        if ((point.motion === current) !== isNow) continue;
+        const text = `${point.motion} ${point.kind}`;
+        const left = x - 7 - pen.measureText(text).width;
+        [[x + 7, y - 5], [left, y - 5], [x + 7, y + 13], [left, y + 13]].some((at) => name(text, at, isNow ? ink : soft));
       }
     }
     name(`grid ${number(step)} mm`, [10, holder.clientHeight - 10], soft);

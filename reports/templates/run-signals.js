@@ -87,6 +87,10 @@ function inTurn(u, x, list, word, y) {
     const isLast = x(event.t) + gap + width > u.bbox.left + u.bbox.width;
     const at = isLast ? x(event.t) - gap - width : x(event.t) + gap;
     if (at < free || event.t < span.from || event.t > span.to) continue;
+    u.ctx.save();
+    [u.ctx.strokeStyle, u.ctx.lineWidth] = [colourOf("page"), gap];
+    u.ctx.strokeText(word(event), at, y);
+    u.ctx.restore();
     u.ctx.fillText(word(event), at, y);
     free = at + width + gap;
   }
