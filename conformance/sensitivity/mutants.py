@@ -64,8 +64,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         ),
     ),
     # left out: the cell around the controller, how a run is recorded, what is looked up of one that
-    # has come to its end or stands, loads, which only torques depend on, and motions that are
-    # skipped where parts of a program are stood in for
+    # has come to its end or stands, loads, which only torques depend on, and what is skipped, or
+    # gives a zero, where parts of a program are stood in for
     "controller": (
         ("interp.controller.*",),
         (
@@ -78,8 +78,10 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.input_script",
             "interp.controller.motion_requests.MotionRequests._skip",
             "interp.controller.motions._load",
+            "interp.controller.predefined_routines.PredefinedRoutines._unsupported",
             "interp.controller.profile",
             "interp.controller.script_player",
+            "interp.controller.state.ControllerState.skip",
             "interp.controller.trace",
         ),
     ),
