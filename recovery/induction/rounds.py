@@ -36,7 +36,7 @@ from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
 from recovery.induction.objections import Judge
 from recovery.induction.shown_files import Failures, ShownFiles, reading
-from recovery.induction.steps import Evidence, Inferred, Refused, Round, Taken, joined
+from recovery.induction.steps import Evidence, Inferred, Reading, Refused, Round, Taken, joined
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
 from recovery.induction.would_be_keywords import WouldBeKeywords, names_read
 from recovery.language import CorpusFile, Language
@@ -97,6 +97,8 @@ class Induction:
         self._names: str | None = None
         self._prefixes: frozenset[str] = frozenset()
         self._tried: set[Edit] = set()
+        self._judge: Judge | None = None
+        self._held_read = Reading(0, 0, 0)
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
         """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
@@ -115,16 +117,18 @@ class Induction:
 
     def _round(self, step: _Step, least: tuple[int, int]) -> Round:
         finder, failures = self.shown.failures(self.grammar)
-        held = [finder.find(file.text) for file in self.held]
-        judge = Judge(
-            finder.recognizer, self.negatives.rejected_by(finder.recognizer), self._reserved_in
-        )
+        recognizer = finder.recognizer
+        if self._judge is None or self._judge.recognizer is not recognizer:
+            self._held_read = reading([finder.find(file.text) for file in self.held])
+            rejected = self.negatives.rejected_by(recognizer)
+            self._judge = Judge(recognizer, rejected, self._reserved_in)
+        judge = self._judge
         if step == "fold":
             taken, refused = self._folded(judge, failures, is_last=least == (1, 1))
         else:
             taken, refused = self._inferred(judge, finder, failures, least, inner=step == "inner")
         self.grammar = apply(self.grammar, joined(taken))
-        return Round(reading(failures), reading(held), tuple(taken), tuple(refused))
+        return Round(reading(failures), self._held_read, tuple(taken), tuple(refused))
 
     # ----------------------------------------------------------------------------------- inference
 

@@ -15,24 +15,30 @@ from recovery.language import CorpusFile
 
 __all__ = ["Failures", "ShownFiles", "reading"]
 
+# Grammars under which it is known how the files read: before steps, with all, with those kept.
+_MOST_KEPT = 3
+
 #: The failures of each file, in its order.
 Failures = Sequence[Sequence[Failure]]
 
 
 class ShownFiles:
-    """Reads the files; what was read under the last grammar is kept."""
+    """Reads the files; what was read under the last few grammars is kept."""
 
     def __init__(self, files: Sequence[CorpusFile]) -> None:
         self.files = files
-        self._read: tuple[str, FailureFinder, Failures] | None = None
+        self._read: dict[str, tuple[FailureFinder, Failures]] = {}
 
     def failures(self, grammar: Grammar) -> tuple[FailureFinder, Failures]:
         """What finds failures under a grammar, and those of all files."""
-        if self._read is None or self._read[0] != grammar.sha256:
+        known = self._read.pop(grammar.sha256, None)
+        if known is None:
             finder = FailureFinder(Recognizer(grammar))
-            found = [finder.find(file.text) for file in self.files]
-            self._read = (grammar.sha256, finder, found)
-        return self._read[1:]
+            known = finder, [finder.find(file.text) for file in self.files]
+        self._read[grammar.sha256] = known
+        if len(self._read) > _MOST_KEPT:
+            del self._read[next(iter(self._read))]
+        return known
 
     def kept(
         self, grammar: Grammar, taken: Sequence[Taken], names: str | None
