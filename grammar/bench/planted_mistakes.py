@@ -52,6 +52,8 @@ _DECLARING = frozenset("DECL GLOBAL CONST STRUC ENUM CHAR INT REAL BOOL SIGNAL".
 _CLOSERS = frozenset("ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH ENDSPLINE END ENDFCT".split())
 # A line is drawn again so often until a kind of mistake can be made in it.
 _TRIES = 200
+# Of the files that end early, the share.
+_CUT = 0.3
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 _WORD = re.compile(r"[A-Z_$][A-Z0-9_$]*", re.IGNORECASE)
 _LITERALS = {"INT": ("TRUE", '"x"'), "REAL": ("TRUE", '"x"'), "BOOL": ("1.5", '"x"')}
@@ -281,19 +283,26 @@ def measure_planted(
     """Plant ``count`` mistakes in programs below ``roots``, each by itself.
 
     ``missing`` says which files are left out before: a share of them, drawn by ``seed``, ``"dat"``
-    for all data lists, ``"others"`` for each file alone. ``on_step`` is called once a mistake. The
+    for all data lists, ``"others"`` for each file alone; ``"cut"`` leaves all, but three of ten end
+    early, at a character drawn by ``seed``. ``on_step`` is called once a mistake. The
     record has for all of them, by kind, and for misspelt names by what they are called for, or
     ``"nowhere else"`` for those that are written in no other place: ``planted``, the shares
     ``found`` and ``in_place``, and of the number of findings of a mistake that is found the
     ``median``, the 95th percentile ``p95``, and the mean in the ``median_file``. ``survivors`` are
     the first that were not found, ``elsewhere`` those that were found in another place.
+    ``unplanted`` counts the errors and warnings before, and those ``caused`` by what is missing.
 
     Raises `support.files.discovery.IngestError` where no line can be damaged.
     """
     chance = random.Random(seed)
     projects: list[_Checked] = []
+    caused: Counter[str] = Counter()
     for whole in _projects(roots):
-        projects += map(_Checked, _left(whole, missing, chance))
+        left = [_Checked(some) for some in _left(whole, missing, chance)]
+        if missing != "0":
+            known = set(map(_place, _Checked(whole).found))
+            caused.update(_codes(o for one in left for o in one.found if _place(o) not in known))
+        projects += left
     places = [
         (project, path, lines)
         for project in projects
@@ -320,7 +329,7 @@ def measure_planted(
             {"kind": kind, **_figures([one for one in done if one["name"] == kind])}
             for kind in sorted({one["name"] for one in done} - {None})
         ],
-        "unplanted": _unplanted(projects),
+        "unplanted": {**_unplanted(projects), "caused": dict(sorted(caused.items()))},
         "survivors": [one for one in done if not one["findings"]][:100],
         "elsewhere": [one for one in done if one["findings"] and not one["in_place"]][:100],
     }
@@ -335,10 +344,30 @@ def _left(
             yield from ({path: program} for path, program in whole.items())
         case "dat":
             yield {path: one for path, one in whole.items() if not path.lower().endswith(".dat")}
+        case "cut":
+            yield {
+                path: _cut(one, chance) if chance.random() < _CUT else one
+                for path, one in whole.items()
+            }
         case _:
             share = float(missing)
             kept = [path for path in whole if not share or chance.random() >= share]
             yield {path: whole[path] for path in kept}
+
+
+def _cut(program: _Program, chance: random.Random) -> _Program:
+    """A program that ends early, as one that was not copied to its end does."""
+    text = program.source.text
+    end = chance.randrange(len(text) // 4, len(text)) if text else 0
+    return _program(Source(text[:end], program.source.path), program.file.origin)
+
+
+def _place(finding: Diagnostic) -> tuple[str, int, str]:
+    return finding.path, finding.region.line, finding.code
+
+
+def _codes(found: Iterable[Diagnostic]) -> Iterator[str]:
+    return (f"{one.severity} {one.code}" for one in found if one.severity != "note")
 
 
 def _unplanted(projects: Iterable[_Checked]) -> dict[str, Any]:
@@ -346,7 +375,7 @@ def _unplanted(projects: Iterable[_Checked]) -> dict[str, Any]:
     codes: Counter[str] = Counter()
     lines = 0
     for project in projects:
-        codes.update(f"{o.severity} {o.code}" for o in project.found if o.severity != "note")
+        codes.update(_codes(project.found))
         lines += sum(len(program.source.lines) for program in project.programs.values())
     return {"lines": lines, "codes": dict(sorted(codes.items()))}
 

@@ -23,9 +23,9 @@ def _missing(value: str) -> str:
     try:
         is_share = 0 <= float(value) < 1
     except ValueError:
-        is_share = value in ("dat", "others")
+        is_share = value in ("dat", "others", "cut")
     if not is_share:
-        raise typer.BadParameter("a share below 1, 'dat' or 'others'")
+        raise typer.BadParameter("a share below 1, 'dat', 'others' or 'cut'")
     return value
 
 
@@ -42,7 +42,7 @@ def check(
         typer.Option(
             metavar="WHAT",
             help="Leave files out: a share by chance, 'dat' for all data lists, 'others' for all "
-            "but each one.",
+            "but each one; 'cut' lets three of ten end early.",
             callback=_missing,
         ),
     ] = "0",
@@ -111,9 +111,14 @@ def _print(record: Mapping[str, Any]) -> None:
         before = planted["unplanted"]
         console.print(
             figures(
-                ("before planting", "findings", "per 1,000 lines"),
+                ("before planting", "findings", "per 1,000 lines", "for what is missing"),
                 [
-                    (code, f"{count:,}", f"{1000 * count / before['lines']:.2f}")
+                    (
+                        code,
+                        f"{count:,}",
+                        f"{1000 * count / before['lines']:.2f}",
+                        f"{before['caused'].get(code, 0):,}",
+                    )
                     for code, count in before["codes"].items()
                 ],
             )

@@ -105,3 +105,13 @@ def test_a_mistake_that_nothing_finds_is_a_survivor(tmp_path: Path) -> None:
     survivors = {one["kind"] for one in record["survivors"]}
     assert "literal of another type" not in survivors
     assert record["found"] < 1
+
+
+def test_what_is_missing_causes_findings(tmp_path: Path) -> None:
+    """What is found only because files end early is counted apart; whole files cause nothing."""
+    for number in range(8):
+        (tmp_path / f"cell{number}.src").write_text(CELL, encoding="utf-8")
+    whole = measure_planted([tmp_path], 0, 1)["unplanted"]
+    cut = measure_planted([tmp_path], 0, 1, missing="cut")["unplanted"]
+    assert {} == whole["caused"]
+    assert cut["caused"]["error KRL001"] == cut["codes"]["error KRL001"] > 0
