@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from grammar.check.context import placed
 from grammar.syntax import ast
 from grammar.syntax.source import Source
+from grammar.syntax.walk import walk
 from interp.controller.controller import Controller
 from interp.controller.input_script import Script
 from interp.controller.profile import Profile
@@ -22,7 +23,7 @@ from interp.executors import EXECUTORS, Prepared, available
 from interp.port.events import EVERY_KIND, Kind
 from interp.port.executor import Executor
 from interp.port.requests import Value
-from interp.program.load import CheckedProgram, Limits
+from interp.program.load import CheckedProgram, Limits, Unit
 from interp.program.variables import data_lists
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
@@ -184,7 +185,9 @@ def run_program(
     else:
         robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
     tracking = _tracking(arm, robot, machine, start, setup)
-    trace = Trace(take, kinds=_kinds(program, setup))
+    starts = program.starts(prepared.routine, setup.submit)
+    arguments = _stand_in_arguments(program.reached(*starts)) if setup.is_told else None
+    trace = Trace(take, kinds=_kinds(program, setup), arguments=arguments)
     silent = None if setup.is_submit_told else _needed_kinds(program)
     sink, submit_sink = trace.sink(), trace.sink("submit", silent)
     limits = replace(
@@ -278,6 +281,21 @@ def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
     if setup.is_full:
         return EVERY_KIND
     return WORLD_KINDS if setup.is_told else _needed_kinds(program)
+
+
+def _stand_in_arguments(units: Sequence[Unit]) -> dict[tuple[str, int, str], str]:
+    """What stand-ins are called with, as it is written: their traces tell little else."""
+    names = {unit.module.name.upper() for unit in units if unit.module.folder == FOLDER}
+    found: dict[tuple[str, int, str], str] = {}
+    for unit in units if names else ():
+        module = unit.module
+        if module.syntax is None or module.suffix == ".dat" or module.folder == FOLDER:
+            continue
+        for node in walk(module.syntax):
+            if isinstance(node, ast.Call) and node.name.key in names:
+                text = unit.source.text[slice(*node.span)].partition("(")[2].rpartition(")")[0]
+                found.setdefault((module.path, unit.line(node), node.name.key), text.strip())
+    return found
 
 
 def _needed_kinds(program: CheckedProgram) -> frozenset[Kind]:

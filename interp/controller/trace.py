@@ -80,7 +80,8 @@ class Trace:
     are those that executors are to tell, by default all but lines and assignments, most of what a
     program is made of; where nobody wants them they cost time for nothing. ``origin``
     is the task and the line that cause what changes now; the line is ``None`` for what comes from
-    outside.
+    outside. ``arguments`` are those of calls that are told with them, as they are written, by file,
+    line and name in upper case.
     """
 
     def __init__(
@@ -88,7 +89,9 @@ class Trace:
         take: Callable[[TraceEvent], None] | None = None,
         *,
         kinds: frozenset[Kind] = WORLD_KINDS,
+        arguments: Mapping[tuple[str, int, str], str] | None = None,
     ) -> None:
+        self.arguments = arguments or {}
         self.events: list[TraceEvent] = []
         self.now = 0
         #: How many events there were.
@@ -149,7 +152,9 @@ class TaskSink:
     def call(self, at: At, name: str) -> None:
         """A routine is called."""
         self._names[at.depth + 1] = name
-        self._trace.record(self.task, "call", at, name=name)
+        given = self._trace.arguments.get((at.file, at.line, name.upper()))
+        fields = {} if given is None else {"arguments": given}
+        self._trace.record(self.task, "call", at, name=name, **fields)
 
     def leave(self, at: At, name: str) -> None:
         """A routine has ended."""

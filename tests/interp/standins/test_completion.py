@@ -121,10 +121,14 @@ def test_line_at_the_beginning() -> None:
 
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_trace_of_a_signature(executor: str) -> None:
-    """A call of a routine that nothing declares is in the trace like any other call."""
-    run = _run(_main(f'{HOME}OPT_Start ("job",1,2.5 )\n'), executor)
-    calls = [event.fields["name"] for event in run.events if event.kind == "call"]
-    assert (("end", ""), ["OPT_START"]) == (_outcome(run), [name.upper() for name in calls])
+    """A call of a routine that nothing declares is in the trace with its arguments."""
+    body = f'{HOME}OPT_Start ("job",1,MAX (2, 3) )\nown ( )\nEND\nDEF own ( )\n'
+    run = _run(_main(body), executor)
+    calls = [event.fields for event in run.events if event.kind == "call"]
+    assert ("end", "") == _outcome(run)
+    assert [("OPT_START", '"job",1,MAX (2, 3)'), ("OWN", None)] == [
+        (one["name"].upper(), one.get("arguments")) for one in calls if one["name"].upper() != "MAX"
+    ]
 
 
 def test_result_of_a_function() -> None:
