@@ -50,8 +50,8 @@ def readable(source: Source) -> Readable | None:
         return None
     lines = list(Source(found.text).lines)
     if isinstance(found.syntax.content, ast.Program):
-        left_out = [one for one in sorted(found.left_out) if not lines[one - 1].strip()]
-        _put_calls(lines, left_out, source)
+        blank = {number for number, line in enumerate(lines, start=1) if not line.strip()}
+        _put_calls(lines, sorted(found.left_out & blank), source)
     text = "\n".join(lines)
     syntax = read_module(text, source.path)
     assert isinstance(syntax, ast.Module), "what was recovered can be read"

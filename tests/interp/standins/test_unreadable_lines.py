@@ -59,3 +59,15 @@ def test_refused_without_stand_ins() -> None:
     """Without stand-ins nothing is run of such a file."""
     with pytest.raises(LinkError, match=r"main\.src:2: '5' is not expected"):
         load([Source(TEXT, "main.src")], "main.src", strict=False)
+
+
+@pytest.mark.parametrize("end", ["E", "EN\n", "IF $IN[1] THEN\n", "PTP {A1 2"])
+def test_file_that_was_cut(end: str) -> None:
+    """Of a file that was cut what comes ahead of the cut runs."""
+    text = f"DEF main ( )\nPTP {{A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}}\n\n\n\n{end}"
+    program = load([Source(text, "main.src")], "main.src", strict=False, stands_in=True)
+    run = run_program(program, RunSetup(is_tolerant=True))
+    assert ("end", 1) == (
+        run.outcome.ending,
+        sum(event.kind == "motion_end" for event in run.events),
+    )
