@@ -133,23 +133,28 @@ class OperandEdits:
             # between signs, as a name is: an operand beside it would make it a word
             if not is_led and not self.at.ends_operand(tokens, index):
                 found[lexer.names[kind]].append(number)
-            for place in () if is_led else self._name_places(number):
+            for place in () if is_led or not self.at.rules.names else self._name_places(number):
                 placed[place][lexer.names[kind]].append(number)
         for word, members in found.items():
             if self.at.rules.names:
-                edits = (AddAlternative(self.at.rules.names, word),)
-                yield Inferred(f"{word} as a name", edits, tuple(members), is_strict=True)
+                named = (AddAlternative(self.at.rules.names, word),)
+                yield Inferred(f"{word} as a name", named, tuple(members), is_strict=True)
         for (rule, at), words in placed.items():
             every = tuple(number for numbers in words.values() for number in numbers)
-            title = f"{', '.join(sorted(words))} beside names in {rule}"
-            yield Inferred(title, tuple(Widen(rule, at, word) for word in sorted(words)), every)
+            # what several origins have is a name everywhere
+            if len(self.forms.origins_of(every)) == 1:
+                title = f"{', '.join(sorted(words))} beside names in {rule}"
+                edits = tuple(Widen(rule, at, word) for word in sorted(words))
+                yield Inferred(title, edits, every)
 
     def _name_places(self, number: int) -> Iterator[tuple[str, Address]]:
-        """The places of names at which the grammar stands when a line fails."""
-        recognizer, names = self.at.recognizer, {self.at.rules.names, self.at.lexer.name}
+        """The places of names in lines, none in operands or types, where a line fails."""
+        recognizer, rules = self.at.recognizer, self.at.rules
+        names = {rules.names, self.at.lexer.name}
+        others = {*names, *rules.recursive, *rules.word_choices}
         for site in configurations_of(recognizer, self.at.state(number)):
             rule = self.at.grammar.by_name[recognizer.network.rule[site[0]]]
-            for place in places_of(recognizer, site) if rule.name not in names else ():
+            for place in places_of(recognizer, site) if rule.name not in others else ():
                 elements = sequence_at(rule, place[:-1]).elements[place[-1] - 1 : place[-1]]
                 if any(isinstance(e, Reference) and e.name in names for e in elements):
                     yield rule.name, place

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
@@ -37,10 +37,7 @@ class SupportedForms:
 
         One odd line must not spoil the form, nor one origin.
         """
-        having = {
-            shape: set[str]().union(*(self._origins[n] for n in numbers))
-            for shape, numbers in shapes.items()
-        }
+        having = {shape: self.origins_of(numbers) for shape, numbers in shapes.items()}
         shapes = {shape: shapes[shape] for shape in self.supported(having, old)}
         lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
         choices = [
@@ -53,6 +50,10 @@ class SupportedForms:
         ]
         texts = [self.writer.form([*old, *chosen]) for chosen in choices if chosen]
         yield from dict.fromkeys(text for text in texts if text)
+
+    def origins_of(self, numbers: Iterable[int]) -> frozenset[str]:
+        """Those that have one of some lines."""
+        return frozenset[str]().union(*(self._origins[n] for n in numbers))
 
     def supported(
         self,

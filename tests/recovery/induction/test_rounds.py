@@ -15,6 +15,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import held_out
 from recovery.induction.growth_record import Growth, without
+from recovery.induction.names_rule import with_names
 from recovery.induction.rounds import Induction
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
@@ -124,6 +125,7 @@ def test_words_beside_names(toy: Grammar) -> None:
     grown = toy.text.replace("    | halt\n", "    | halt\n    | KIND NAME FAST NAME\n")
     words = "".join(f"{w} : '{w}' ;\n" for w in ("KIND", "FAST"))
     start = read(grown.replace("HALT : 'HALT' ;\n", f"HALT : 'HALT' ;\n{words}"))
+    start = apply(start, with_names(start, "NAME").edits)
     files = (
         CorpusFile("a/a.toy", "KIND A FAST HALT\nKIND B FAST HALT\n", frozenset({"a"})),
         CorpusFile("b/b.toy", "KIND B FAST X\n", frozenset({"b"})),
