@@ -87,7 +87,7 @@ class _Values:
         if context.scope.own(Space.VALUE, name.key) is None:
             return
         if name.key not in self.awaited:
-            message = f"the initial values of {name.text} follow its declaration"
+            message = f"the initial values of {name.text} belong directly behind its declaration"
             self.checker.report("initial-not-adjacent", node.target, message)
             self.awaited = frozenset({name.key})
         elif _has_blank_line(context.source.text[self.end : node.span[0]]):
