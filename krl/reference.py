@@ -32,7 +32,8 @@ _HEAD = """# Commands
 <!-- made by python -m krl.reference --write -->
 
 Exit status everywhere: 0 fine, 1 findings, 2 wrong usage or unreadable input, reported in one
-line on stderr.
+line on stderr. What takes longer than 10 s says how far it is: by a bar, or where stderr is not a
+terminal by a line each 10 s; `KRL_PROGRESS` in the environment gives other seconds, 0 none.
 """
 
 

@@ -33,6 +33,9 @@ settings.register_profile(
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
+# Nor does what a command says depend on how long it takes.
+os.environ["KRL_PROGRESS"] = "0"
+
 _FLAGS = (
     "--headless=new",
     "--no-sandbox",

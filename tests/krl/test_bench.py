@@ -76,4 +76,4 @@ def test_growth_names_shapes_with_their_slopes(
 def test_growth_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
     """One line names the commands."""
     assert 2 == main(["bench", "growth", "--entry", "brew"])
-    assert "--entry brew: not one of check, format," in capsys.readouterr().err
+    assert "--entry brew: not one of check, check sarif," in capsys.readouterr().err

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import os
+import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, replace
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -30,6 +33,9 @@ __all__ = ["growth"]
 _AIM: Final = 1.15
 _SMALLEST: Final = 8_000
 _PROGRAM: Final = "DEF A()\nEND\n"
+_ONE_TEST: Final = '[[test]]\nname = "one"\nexpect = [\n'
+_A_TEST: Final = _ONE_TEST + '"ends before 1"]\n'
+_CASE: Final = ";@ rule: ADV-03\n;@ title: A case\n;@ phase: run\nDEF a()\n"
 
 #: Writes what a command reads, of about so many characters, into a folder.
 _Writer = Callable[[Path, int], Path]
@@ -66,28 +72,99 @@ _G4: Final = "grammar G;\nfile : a* EOF ;\na : 'X'"
 _G4_END: Final = " ;\nNAME : [A-Z]+ ;\n"
 
 
+def _messages(file: Path) -> bytes:
+    """What an editor says that opens a file, asks for what it shows of it, and goes."""
+    uri = {"uri": file.as_uri()}
+    text = file.read_text(encoding="ascii")
+    opened = {"textDocument": {**uri, "languageId": "krl", "version": 1, "text": text}}
+    changed = {
+        "textDocument": {**uri, "version": 2},
+        "contentChanges": [{"text": text + "; changed\n"}],
+    }
+    asked = ("documentSymbol", "semanticTokens/full", "foldingRange", "formatting")
+    wanted = {"textDocument": uri, "options": {"tabSize": 2, "insertSpaces": True}}
+    said: list[tuple[str, bool, Any]] = [
+        ("initialize", True, {"processId": None, "rootUri": None, "capabilities": {}}),
+        ("initialized", False, {}),
+        ("textDocument/didOpen", False, opened),
+        *((f"textDocument/{what}", True, wanted) for what in asked),
+        ("textDocument/didChange", False, changed),
+        ("textDocument/documentSymbol", True, wanted),
+        ("shutdown", True, None),
+        ("exit", False, None),
+    ]
+    bodies = [
+        json.dumps(
+            {"jsonrpc": "2.0", "method": method, "params": params}
+            | ({"id": number} if is_request else {})
+        ).encode()
+        for number, (method, is_request, params) in enumerate(said)
+    ]
+    return b"".join(b"Content-Length: %d\r\n\r\n%b" % (len(body), body) for body in bodies)
+
+
 @dataclass(frozen=True, slots=True)
 class _Entry:
     """A command, and what it reads.
 
-    Its words may have the places ``{file}``, ``{out}`` and ``{small}``. ``before`` is a
-    command that makes what is read, and is not measured.
+    Its words may have the places ``{file}``, ``{other}`` (the same with lines left out),
+    ``{folder}`` of both, ``{out}`` and ``{small}``. ``before`` are commands that make what is read,
+    and are not measured; what they print is at ``{printed}``. ``said`` gives the standard input.
     """
 
     words: str
     inputs: Mapping[str, _Writer] = field(default_factory=lambda: _PROGRAMS)
-    before: str = ""
+    before: tuple[str, ...] = ()
+    said: Callable[[Path], bytes] = lambda _: b""
 
+
+_COMPILE: Final = "compile -o {out}.krlb {file}"
+_RUN: Final = "run --robot none --max-time 1"
+_FAILING: Final = {
+    name: shape for name, shape in SHAPES.items() if "never" in name or "lines" in name
+}
 
 _ENTRIES: Final[Mapping[str, _Entry]] = {
     "check": _Entry("check --no-cache {file}"),
+    "check sarif": _Entry("check --no-cache --format sarif --out {out}.sarif {file}"),
     "format": _Entry("format --check {file}"),
     "recover": _Entry("recover --jobs 1 --no-start --out {out} {file}"),
-    "compile": _Entry("compile -o {out}.krlb {file}"),
-    "disasm": _Entry("disasm {out}.krlb", before="compile -o {out}.krlb {file}"),
-    "run": _Entry("run --robot none --max-time 1 --trace {out}.jsonl {file}"),
+    "recover start": _Entry("recover --jobs 1 --out {out} {file}"),
+    "recover auto": _Entry("recover --auto --jobs 1 --out {out} {file}", _shapes(_FAILING)),
+    "growth": _Entry("growth --jobs 1 --out {out} {file}"),
+    "compile": _Entry(_COMPILE),
+    "disasm": _Entry("disasm {out}.krlb", before=(_COMPILE,)),
+    "asm": _Entry("asm -o {out}.krlb {printed}", before=(_COMPILE, "disasm {out}.krlb")),
+    "run": _Entry(_RUN + " --trace {out}.jsonl {file}"),
+    "run page": _Entry(_RUN + " --html {out}.html {file}"),
+    "debug": _Entry(
+        "debug --robot none --max-time 1 {file}", said=lambda _: b"step\n" * 20 + b"continue\n"
+    ),
+    "lsp": _Entry("lsp", said=_messages),
     "diff": _Entry("diff {file} {small}"),
+    "diff both": _Entry("diff {file} {other}"),
     "check archive": _Entry("check --no-cache {file}", {"members": _archive}),
+    "test": _Entry(
+        "test {file}",
+        _shapes(
+            {
+                "tests": Shape('[[test]]\nname = "{i}"\nexpect = ["ends before 1"]\n', "", ""),
+                "expectations": Shape('"out {i} never",\n', _ONE_TEST, "]\n"),
+                "inputs of a test": Shape('"t=0.{i} IN[1]=TRUE",\n', "io = [\n", "]\n" + _A_TEST),
+                "statements before": Shape('"$FLAG[1] = TRUE",\n', "before = [\n", "]\n" + _A_TEST),
+            },
+            "test_a.toml",
+        ),
+    ),
+    "conform": _Entry(
+        "conform --executor tree --robot none --jobs 1 {file}",
+        _shapes(
+            {
+                "expectations": Shape("  I={i} ;> value I {i}\n", _CASE + "  INT I\n", "END\n"),
+                "lines of a case": Shape("  I={i}\n", _CASE + "  INT I\n", "END ;> runs 1\n"),
+            }
+        ),
+    ),
     "recover grammar": _Entry(
         "recover --jobs 1 --no-start --out {out} --grammar {file} {small}",
         _shapes(
@@ -179,24 +256,49 @@ def _measure(entry: str, shape: str, largest: int) -> Growth:
     from support.measure.growth import measure_growth
 
     chosen = _ENTRIES[entry]
-    with tempfile.TemporaryDirectory() as folder, Path(os.devnull).open("w") as nowhere:
+    with tempfile.TemporaryDirectory() as name, Path(os.devnull).open("w") as nowhere:
         for stream in (1, 2):  # also what is written below Python
             os.dup2(nowhere.fileno(), stream)
-        root = Path(folder)
-        (root / "small.src").write_text(_PROGRAM, encoding="ascii")
-        places = {"out": str(root / "out"), "small": str(root / "small.src")}
+        root = Path(name)
+        numbers = count()
 
-        def filled(words: str) -> list[str]:
-            return [word.format(**places) for word in words.split()]
+        def prepare(size: int) -> list[str]:
+            # a folder for each: what is remembered by path is not what is measured
+            folder = root / str(next(numbers))
+            (folder / "less").mkdir(parents=True)
+            file, small = chosen.inputs[shape](folder, size), folder / "small.src"
+            small.write_text(_PROGRAM, encoding="ascii")
+            other = folder / "less" / file.name
+            if file.suffix != ".zip":
+                lines = file.read_text(encoding="ascii").splitlines(keepends=True)
+                kept = (line for number, line in enumerate(lines) if number % 7 != 3)
+                other.write_text("".join(kept), encoding="ascii")
+            places = {
+                "file": file,
+                "other": other,
+                "small": small,
+                "out": folder / "out",
+                "printed": folder / "printed",
+            }
+
+            def filled(words: str) -> list[str]:
+                return [word.format(**places) for word in words.split()]
+
+            for words in chosen.before:
+                with places["printed"].open("w") as printed:
+                    os.dup2(printed.fileno(), 1)
+                    krl(filled(words))
+                    sys.stdout.flush()
+                    os.dup2(nowhere.fileno(), 1)
+            said = folder / "said"
+            said.write_bytes(chosen.said(file))
+            with said.open("rb") as stream:
+                os.dup2(stream.fileno(), 0)
+            sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
+            return filled(chosen.words)
 
         def krl(words: list[str]) -> int:
             return run(app(*words), words)
-
-        def prepare(size: int) -> list[str]:
-            places["file"] = str(chosen.inputs[shape](root, size))
-            if chosen.before:
-                krl(filled(chosen.before))
-            return filled(chosen.words)
 
         return measure_growth(prepare, krl, _SMALLEST, largest * 1_000)
 
