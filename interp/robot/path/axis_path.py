@@ -307,7 +307,9 @@ class PosePathCurve:
         self.others = others
         self.grid, axes = self._points(start)
         self._table = Table(axes)
-        self.end: Array = np.concatenate((axes[-1], others.at(np.ones(1))[0]))
+        ends = np.concatenate((axes[[0, -1]], others.at(np.array([0.0, 1.0]))), axis=1)
+        self.start: Array = ends[0]
+        self.end: Array = ends[1]
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""

@@ -111,9 +111,12 @@ def straight_through(
     ways = np.array([way_of(curve) for curve in curves])
     ways[0] *= 1.0 - start
     ways[-1] *= end
-    if not ways.all() or any(not _is_like(one, curve) for curve in curves):
+    if not ways.all() or not isinstance(one, JointLine | PosePathCurve):
         return None
-    (leaves,), (joins,) = one.axes(np.array([start])), other.axes(np.array([end]))
+    if not all(_is_like(one, curve) for curve in curves):
+        return None
+    leaves = one.axes(np.array([start]))[0] if start > 0.0 else one.start
+    joins = other.axes(np.array([end]))[0] if end < 1.0 else other.end
     shares = np.cumsum(ways)[:-1] / ways.sum()
     corners = np.array([curve.end for curve in curves[:-1]])
     if isinstance(one, JointLine):
