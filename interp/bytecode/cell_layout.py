@@ -301,7 +301,10 @@ def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
         if len(type_.sizes) == 1:  # else it cannot be
             given: list[Raw | None] = [ord(letter) for letter in value[:length]]
             return given + [None] * (length - len(given))
-    return _flattened(converted(value, shown(type_)), type_)
+    kind = shown(type_)
+    if not (isinstance(value, StructureValue | ArrayValue) and value.type == kind):
+        value = converted(value, kind)
+    return _flattened(value, type_)
 
 
 def _flattened(value: Value | None, type_: Type) -> list[Raw | None]:
@@ -311,6 +314,9 @@ def _flattened(value: Value | None, type_: Type) -> list[Raw | None]:
         case StructureValue():
             pairs = zip(value.members, value.type.members, strict=True)
             return [raw for part, member in pairs for raw in _flattened(part, member.type)]
+        case ArrayValue() if value.type.element == CHAR:
+            letters: Any = value
+            return [None if letter is None else ord(letter) for letter in letters]
         case ArrayValue():
             return [raw for part in value for raw in _flattened(part, value.type.element)]
     assert isinstance(type_, Plain), "what is no structure and no array is a scalar"

@@ -5,11 +5,13 @@ Arguments are evaluated from left to right.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from grammar.semantics.predefined import System
+from grammar.semantics.assignability import assignable
+from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.scopes import Found
-from grammar.semantics.types import UNKNOWN, Type
+from grammar.semantics.types import UNKNOWN, Text, Type, is_same
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from interp.port.requests import Invoke
@@ -27,7 +29,7 @@ from interp.tree.places import LocalPlace, Place, SystemPlace, fresh, is_left_ou
 from interp.tree.run import Call, Steps
 from interp.values.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
 from interp.values.faults import LinkError, fault
-from interp.values.values import Value, copied, known
+from interp.values.values import Value, copied, known, type_of
 
 __all__ = ["Calls"]
 
@@ -113,6 +115,7 @@ class Calls(Expressions):
         if is_value and System.load().functions[name].result == UNKNOWN:
             raise untyped_result(name)
         if name in BUILTINS:
+            _check(zip(parameters, node.arguments, places, values, strict=False))
             reply = call(name, values, Surroundings(self.run.random, self.find))
             result, after = reply.result, reply.arguments
         else:
@@ -132,3 +135,22 @@ class Calls(Expressions):
         value = yield from self.read(place)
         is_empty = value is None and is_left_out(place) and reads_text(place.type)
         return "" if is_empty else known(value)
+
+
+_Given = tuple[PredefinedParameter, ast.Expression | None, Place | None, Value | None]
+
+
+def _check(given: Iterable[_Given]) -> None:
+    """Fault ``argument`` where a predefined function does not take one of its arguments [ARI-04].
+
+    One by reference has to have the very type; any other is converted.
+    """
+    for parameter, argument, place, value in given:
+        if place is not None:
+            fits = is_same(parameter.type, place.type)
+        elif isinstance(argument, ast.StringLiteral):
+            fits = assignable(parameter.type, Text(len(argument.text))).is_fine
+        else:
+            fits = value is None or assignable(parameter.type, type_of(value)).is_fine
+        if not fits:
+            raise fault("argument")

@@ -43,6 +43,7 @@ from grammar.semantics.types import (
     Enumeration,
     Scalar,
     Structure,
+    Text,
     Type,
     is_same,
 )
@@ -71,6 +72,7 @@ __all__ = [
     "set_text",
     "single",
     "text_of",
+    "type_of",
     "zero",
 ]
 
@@ -261,6 +263,8 @@ def empty(type_: Type) -> Value | None:
     match type_:
         case Structure():
             return StructureValue(type_, [empty(member.type) for member in type_.members])
+        case Array(element=Scalar() | Enumeration()):
+            return ArrayValue(type_, [None] * math.prod(_sizes(type_)))
         case Array():
             return ArrayValue(
                 type_, [empty(type_.element) for _ in range(math.prod(_sizes(type_)))]
@@ -317,6 +321,20 @@ def has_value(value: Value | None) -> bool:
 
 
 # ---------------------------------------------------------------------------------- conversion
+
+
+def type_of(value: Value) -> Type:
+    """The type of a value; a text that is no letter is no array but a `Text`."""
+    match value:
+        case bool():
+            return BOOL
+        case int():
+            return INT
+        case float():
+            return REAL
+        case str():
+            return CHAR if len(value) == 1 else Text(len(value))
+    return value.type
 
 
 def index(value: Value) -> int:

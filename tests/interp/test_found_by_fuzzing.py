@@ -34,11 +34,11 @@ from interp.values.json_form import to_json
 Maker = Callable[[Sink | None], Executor]
 
 
-def _makers(main: str, **others: str) -> list[Maker]:
+def _makers(main: str, *, strict: bool = True, **others: str) -> list[Maker]:
     """Every executor of a program; ``others`` are files, ``lib_dat`` being ``lib.dat``."""
     sources = [Source(main, "main.src")]
     sources += [Source(text, path.replace("_", ".")) for path, text in others.items()]
-    program = load(sources, "main.src")
+    program = load(sources, "main.src", strict=strict)
     verified = verify(compile_program(program).program)
     makers: list[Maker] = [
         lambda sink: TreeExecutor(program, "MAIN", sink=sink),
@@ -51,9 +51,9 @@ def _makers(main: str, **others: str) -> list[Maker]:
     return makers
 
 
-def _run(main: str, **others: str) -> Observed:
+def _run(main: str, *, strict: bool = True, **others: str) -> Observed:
     """What all executors ask and tell."""
-    makers = _makers(main, **others)
+    makers = _makers(main, strict=strict, **others)
     tree, *machines = [observe(make, StubController(), most=500) for make in makers]
     for machine in machines:
         assert None is difference(tree, machine)
@@ -227,3 +227,28 @@ def test_chains_of_operators_have_any_length() -> None:
     )
     assert isinstance(seen.last, End)
     assert [60, True, 300] == [one.value for one in seen.steps if isinstance(one, Write)]
+
+
+def test_a_wrong_argument_of_a_predefined_function_is_one_fault() -> None:
+    """Whatever is wrong with it, and whether the function reads or changes it [ARI-04]."""
+    wrong = (
+        *(
+            "N=STRLEN(N)",
+            "N=STRLEN(C)",
+            'N=STRADD(N,"A")',
+            "R=SQRT(T[])",
+            "R=ABS(B)",
+            "N=STRLEN(3)",
+        ),
+        *('B=STRTOREAL("5",N)', 'SWRITE(T[],N,N,"%d",1)', "F=INV_POS(R)", "B=STRCOPY(T[],B)"),
+    )
+    seen = _run(
+        "DEF main()\nINT N\nREAL R\nBOOL B\nFRAME F\nCHAR C,T[8]\n"
+        'N=1\nR=1.0\nB=TRUE\nC="A"\nT[]="ABC"\n'
+        + "".join(f"ON_ERROR_PROCEED\n{line}\n" for line in wrong)
+        + "END\n",
+        strict=False,
+    )
+    assert isinstance(seen.last, End)
+    numbers = [one.value for one in seen.steps if isinstance(one, Write)]
+    assert [2274] * len(wrong) == numbers

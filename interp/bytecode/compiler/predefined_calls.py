@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
+from grammar.semantics.assignability import assignable
 from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind
@@ -106,9 +107,8 @@ class PredefinedCalls:
             self._emit(Op.ASK, tables.ask(ask))
             return
         builtin = Builtin(name, tuple(parts), result)
-        reason = call_mismatch(Program(tuple(tables.types), (), (), (), (), (), ()), builtin)
-        if reason is not None:
-            raise self._emitter.refuse(f"{name}: {reason}")
+        if call_mismatch(Program(tuple(tables.types), (), (), (), (), (), ()), builtin):
+            raise self._emitter.fail("argument")
         self._emit(Op.BUILTIN, tables.builtin(builtin))
 
     def _argument(
@@ -131,7 +131,12 @@ class PredefinedCalls:
         if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
             return self._memory.handed(Text(letters(self._name_to_find(argument.text))))
         value = self._given(argument, type_, is_builtin=is_builtin)
-        if name in FUNCTIONS and type_ == REAL and isinstance(value, Scalar):
+        if (
+            name in FUNCTIONS
+            and type_ == REAL
+            and isinstance(value, Scalar)
+            and assignable(REAL, value.type).is_fine
+        ):
             self._memory.convert(value, REAL)
             value = Scalar(REAL)
         return self._memory.handed(value)
