@@ -333,6 +333,9 @@ FRESH_SHARE = 0.5
 #: Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
 #: Not measured.
 OPERAND_FILES = 5
+#: Grammars under which it is known how the files read: before steps, with all, with those kept.
+#: Bound on memory.
+GRAMMARS_KEPT = 3
 #: Files, the shortest, on which a block is tried, and on which it is tried whether an alternative
 #: is needed. Bound on time.
 BLOCK_FILES = 12

@@ -12,11 +12,9 @@ from grammar.parser.recognizer import Recognizer
 from recovery.induction.names_rule import names_kept
 from recovery.induction.steps import Evidence, Reading, Refused, Taken, joined
 from recovery.language import CorpusFile
+from recovery.tuning import GRAMMARS_KEPT
 
 __all__ = ["Failures", "ShownFiles", "reading"]
-
-# Grammars under which it is known how the files read: before steps, with all, with those kept.
-_MOST_KEPT = 3
 
 #: The failures of each file, in its order.
 Failures = Sequence[Sequence[Failure]]
@@ -36,7 +34,7 @@ class ShownFiles:
             finder = FailureFinder(Recognizer(grammar))
             known = finder, [finder.find(file.text) for file in self.files]
         self._read[grammar.sha256] = known
-        if len(self._read) > _MOST_KEPT:
+        if len(self._read) > GRAMMARS_KEPT:
             del self._read[next(iter(self._read))]
         return known
 
