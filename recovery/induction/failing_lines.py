@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence, Set
 from dataclasses import dataclass, field
 from itertools import islice
 
-from grammar.notation.edits import AddToken, Edit
+from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.failures import Failure
 from grammar.parser.recognizer import State
 from recovery.induction.steps import Evidence
@@ -81,6 +81,7 @@ class FailingLines:
         some = [self.occurrences[n] for n in lines]
         if any(isinstance(edit, AddToken) for edit in edits):
             return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
-        # where nothing else is wrong in a file a single line is none either
-        is_all = any(self._of_file[p] <= lines for line in some for p in line.files)
+        # where nothing else is wrong in a file a form that is known may grow by a single line
+        is_new = any(isinstance(edit, AddAlternative) for edit in edits)
+        is_all = not is_new and any(self._of_file[p] <= lines for line in some for p in line.files)
         return is_all or sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE
