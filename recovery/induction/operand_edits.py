@@ -175,7 +175,7 @@ class OperandEdits:
         levels = [r for r in self.at.rules.ladder if self.at.profile.has_choice(r)]
         for rule, members in found.items():
             for level in levels:
-                if level != rule:
+                if level not in {rule, self.at.rules.names}:
                     edits = (AddAlternative(level, rule),)
                     breadth = 0 if level == gathering else LEVEL_SYMBOLS
                     yield Inferred(f"{rule} as an operand", edits, tuple(members), breadth=breadth)
