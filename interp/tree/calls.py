@@ -5,7 +5,7 @@ Arguments are evaluated from left to right.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from grammar.semantics.assignability import assignable
@@ -14,7 +14,7 @@ from grammar.semantics.scopes import Found
 from grammar.semantics.types import UNKNOWN, Text, Type, is_same
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from interp.port.requests import Invoke
+from interp.port.requests import Invoke, StopAdvance
 from interp.program.reads import is_variable
 from interp.program.variables import (
     is_complete,
@@ -92,7 +92,30 @@ class Calls(Expressions):
     def _predefined(self, node: ast.Call, *, is_value: bool) -> Steps[Any]:
         """Call what the controller brings along; what is passed :OUT is assigned afterwards."""
         name = node.name.key
-        parameters = System.load().functions[name].parameters
+        function = System.load().functions[name]
+        if name in BUILTINS and function.stops:
+            yield StopAdvance(self.at())
+        places, values = yield from self._given(node, function.parameters)
+        if is_value and function.result == UNKNOWN:
+            raise untyped_result(name)
+        if name in BUILTINS:
+            _check(zip(function.parameters, node.arguments, places, values, strict=False))
+            reply = call(name, values, Surroundings(self.run.random, self.find))
+            result, after = reply.result, reply.arguments
+        else:
+            values = [copied(value) for value in values]
+            paths = [place.path if isinstance(place, SystemPlace) else None for place in places]
+            result, after = yield Invoke(self.at(), name, tuple(values), tuple(paths))
+        for place, before, value in zip(places, values, after, strict=True):
+            if place is not None and value is not None and value is not before:
+                yield from self.store(place, value)
+        return result
+
+    def _given(
+        self, node: ast.Call, parameters: Sequence[PredefinedParameter]
+    ) -> Steps[tuple[list[Place | None], list[Value | None]]]:
+        """The values of all arguments, and the places of those that are passed :OUT."""
+        name = node.name.key
         places: list[Place | None] = []
         values: list[Value | None] = []
         for number, argument in enumerate(node.arguments):
@@ -112,20 +135,7 @@ class Calls(Expressions):
                 value = yield from self.value(argument, type_)
             places.append(place)
             values.append(value)
-        if is_value and System.load().functions[name].result == UNKNOWN:
-            raise untyped_result(name)
-        if name in BUILTINS:
-            _check(zip(parameters, node.arguments, places, values, strict=False))
-            reply = call(name, values, Surroundings(self.run.random, self.find))
-            result, after = reply.result, reply.arguments
-        else:
-            values = [copied(value) for value in values]
-            paths = [place.path if isinstance(place, SystemPlace) else None for place in places]
-            result, after = yield Invoke(self.at(), name, tuple(values), tuple(paths))
-        for place, before, value in zip(places, values, after, strict=True):
-            if place is not None and value is not None and value is not before:
-                yield from self.store(place, value)
-        return result
+        return places, values
 
     def _text(self, node: ast.Expression, wanted: Type) -> Steps[Value]:
         """A text passed :IN to a predefined function; see `interp.values.builtins.reads_text`."""

@@ -74,6 +74,8 @@ class PredefinedCalls:
         name = node.name.key
         function = System.load().functions[name]
         is_builtin = name in BUILTINS
+        if is_builtin and function.stops:
+            self._emitter.ask("StopAdvance")
         parts = [
             self._argument(name, argument, parameter, is_builtin=is_builtin)
             for argument, parameter in _paired(node.arguments, function.parameters)
