@@ -85,6 +85,7 @@ class Signatures:
     ) -> None:
         self.types = {} if types is None else types
         self.owner = ""
+        self._named_types: set[str] = set()
         self.placed: set[str] = set()
         self._places = places
         self._values = values
@@ -128,6 +129,7 @@ class Signatures:
 
     def type(self, name: str, use: DataUse) -> None:
         """Declare a type that only its name is known of, from how its variables are used."""
+        self._named_types.add(name)
         if use.constants and not use.members:
             self.types[name] = f"GLOBAL ENUM {name} {','.join(use.constants.values())}"
         else:
@@ -137,7 +139,7 @@ class Signatures:
         numbers = [one for one in use.types if one in (INT, REAL)]
         is_pose = bool(use.motions - AXIS_MOTIONS or _FRAME & set(use.members))
         # What was made for one of its other uses is made again with what this round knows.
-        own = self.types if use.members or use.constants else ()
+        own = self.types.keys() - self._named_types if use.members or use.constants else ()
         for one in use.types:
             if one not in numbers and not (is_pose and is_axes(one)) and str(one) not in own:
                 known = self._known(name, one, use)

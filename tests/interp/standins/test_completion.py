@@ -455,6 +455,12 @@ def test_types_of_variables_without_data_lists(first: str, second: str) -> None:
     assert [] == _skipped(files)
 
 
+def test_types_that_only_their_names_are_known_of() -> None:
+    """A member that is compared with constants has the type of the variable it is assigned to."""
+    body = "SIDE=PART.SIDE\nIF PART.SIDE==#LEFT THEN\nENDIF\nIF SIDE==#LEFT THEN\nENDIF\n"
+    assert [] == _skipped({"main.src": f"DEF main ( )\nDECL SIDES SIDE\n{body}END\n"})
+
+
 def test_types_of_parameters_with_long_names() -> None:
     """Each parameter of a missing routine takes its own constants, however long its name is."""
     body = "A_NAME_OF_TWENTY_TWO_X(#LEFT,#FAST)\nA_NAME_OF_TWENTY_TWO_X(#RIGHT,#SLOW)\n"
