@@ -31,7 +31,7 @@ from interp.robot.path.way import Way
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of, even_ceiling
 from interp.robot.planning.profile import Bounds, ramp
 from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
-from interp.robot.planning.straight_run import StraightRun, extended, straight_through, way_of
+from interp.robot.planning.straight_run import StraightPart, StraightRun, extended, straight_through
 from interp.robot.planning.tracks import Piece, Track, reduced_paths
 
 __all__ = ["Joint", "Zone", "blend_of", "wants_blend", "zone_of"]
@@ -216,10 +216,11 @@ def _straight_on(
     It is a piece of straight way itself. ``None`` where that would miss the point between.
     """
     one, other = first.pieces[-1], second.pieces[0]
-    curve = straight_through((one.curve, other.curve), 1.0 - zone.before, zone.after)
+    parts = StraightPart.of(one.curve), StraightPart.of(other.curve)
+    curve = straight_through(parts, 1.0 - zone.before, zone.after)
     if curve is None or len(one.paths) != len(other.paths):
         return None
-    ways = way_of(one.curve), way_of(other.curve)
+    ways = parts[0].way, parts[1].way
     length = zone.before * ways[0] + zone.after * ways[1]
     straight = extended(run, first, second, (zone.before, zone.after), machine, limits)
     if straight is not None:

@@ -21,11 +21,36 @@ from interp.robot.planning.limits import AxisLimits, Ceiling, ceiling_of
 from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, reduced_paths
 
-__all__ = ["StraightRun", "extended", "straight_through", "way_of"]
+__all__ = ["StraightPart", "StraightRun", "extended", "straight_through"]
 
 _BESIDE = 2e-5
 """Share of a straight way by which a point on it may lie beside it: no axis feels such a bend."""
 _TINY = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StraightPart:
+    """A curve and its end, worked out once: a run is looked at again for each motion more.
+
+    ``way`` is its length in what it goes by, mm or degrees; 0 where it is bent. ``point`` and
+    ``turn`` are the pose of the tool at its end; ``None`` for one of axes.
+    """
+
+    curve: Curve
+    way: float
+    point: Array | None = None
+    turn: Array | None = None
+
+    @classmethod
+    def of(cls, curve: Curve) -> StraightPart:
+        """That of a curve."""
+        if isinstance(curve, JointLine):
+            return cls(curve, float(np.linalg.norm(curve.end - curve.start)))
+        line = curve.pose_path
+        if not isinstance(line, StraightLine):
+            return cls(curve, 0.0)
+        (point,), (turn,) = line.at(np.ones(1))
+        return cls(curve, line.length or sum(line.angles), point, turn)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,7 +61,7 @@ class StraightRun:
     in mm or degrees of the whole ``length`` if it were travelled from u = 0 to 1.
     """
 
-    curves: tuple[Curve, ...]
+    parts: tuple[StraightPart, ...]
     places: dict[Key, tuple[float, float]]
     length: float
     ceiling: Ceiling
@@ -74,19 +99,19 @@ def extended(
     limits_of = [[replace(path, length=1.0) for path in piece.paths] for piece in (one, other)]
     if limits_of[0] != limits_of[1] or not first.axis_limits.equals(second.axis_limits):
         return None
-    curves: tuple[Curve, ...] = (one.curve, other.curve)
+    parts: tuple[StraightPart, ...] = StraightPart.of(one.curve), StraightPart.of(other.curve)
+    before, behind = (part.way for part in parts)
     places: dict[Key, tuple[float, float]] = {}
     whole = None
-    if run is not None and run.curves[-1] is one.curve:
-        whole = straight_through((*run.curves, other.curve))
+    if run is not None and run.parts[-1].curve is one.curve:
+        whole = straight_through((*run.parts, parts[1]))
     if run is not None and whole is not None:
-        curves, places = (*run.curves, other.curve), dict(run.places)
+        parts, places = (*run.parts, parts[1]), dict(run.places)
     else:
-        whole = straight_through(curves)
+        whole = straight_through(parts)
     if whole is None:
         return None
-    before, behind = way_of(one.curve), way_of(other.curve)
-    length = math.fsum(way_of(curve) for curve in curves)
+    length = math.fsum(part.way for part in parts)
     corner = length - behind
     number, following = first.motion.number, second.motion.number
     places[number, False, 0] = corner - before, corner
@@ -96,61 +121,48 @@ def extended(
         paths = reduced_paths(whole, machine, first.motion.settings, second.motion.settings)
     else:
         paths = tuple(replace(x, length=x.length * length / behind) for x in other.paths)
-    return StraightRun(curves, places, length, ceiling_of(whole, limits, second.axis_limits, paths))
+    return StraightRun(parts, places, length, ceiling_of(whole, limits, second.axis_limits, paths))
 
 
 def straight_through(
-    curves: Sequence[Curve], start: float = 0.0, end: float = 1.0
+    parts: Sequence[StraightPart], start: float = 0.0, end: float = 1.0
 ) -> JointLine | PosePathCurve | None:
     """The straight way from a parameter of the first curve to one of the last.
 
     ``None`` where they are not straight, or a point between two of them would lie beside it. Raises
     `Fault` as `PosePathCurve`.
     """
-    one, other = curves[0], curves[-1]
-    ways = np.array([way_of(curve) for curve in curves])
+    one, other = parts[0].curve, parts[-1].curve
+    ways = np.array([part.way for part in parts])
     ways[0] *= 1.0 - start
     ways[-1] *= end
     if not ways.all() or not isinstance(one, JointLine | PosePathCurve):
         return None
-    if not all(_is_like(one, curve) for curve in curves):
+    if type(one) is not type(other):
+        return None
+    if not isinstance(one, JointLine) and one.placement != other.placement:
         return None
     leaves = one.axes(np.array([start]))[0] if start > 0.0 else one.start
     joins = other.axes(np.array([end]))[0] if end < 1.0 else other.end
     shares = np.cumsum(ways)[:-1] / ways.sum()
-    corners = np.array([curve.end for curve in curves[:-1]])
+    corners = np.array([part.curve.end for part in parts[:-1]])
     if isinstance(one, JointLine):
         line = JointLine(one.arm, one.placement, leaves, joins)
         return line if _is_near(line.axes(shares), corners, joins - leaves) else None
-    lines = [curve.pose_path for curve in curves if curve.pose_path is not None]
+    lines = [line for line in (one.pose_path, other.pose_path) if line is not None]
     (point,), (turned,) = lines[0].at(np.array([start]))
-    (there,), (turn,) = lines[-1].at(np.array([end]))
+    (there,), (turn,) = lines[1].at(np.array([end]))
     whole = StraightLine(point, there, turning(turned, turn), kind="BLEND")
     others = InStep(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
-    ends = [line.at(np.ones(1)) for line in lines[:-1]]
-    points, turns = (np.concatenate(both) for both in zip(*ends, strict=True))
     places, rotations = whole.at(shares)
     is_through = (
-        _is_near(places, points, whole.length)
-        and _is_near(rotations, turns, sum(whole.angles))
+        _is_near(places, np.array([part.point for part in parts[:-1]]), whole.length)
+        and _is_near(rotations, np.array([part.turn for part in parts[:-1]]), sum(whole.angles))
         and _is_near(others.at(shares), corners[:, ROBOT_AXES:], others.end - others.start)
     )
     if not is_through:
         return None
     return PosePathCurve(one.arm, one.placement, whole, leaves[:ROBOT_AXES], others)
-
-
-def way_of(curve: Curve) -> float:
-    """The length of a straight curve, in what it goes by; 0 where it is bent."""
-    if isinstance(curve, JointLine):
-        return float(np.linalg.norm(curve.end - curve.start))
-    line = curve.pose_path
-    return (line.length or sum(line.angles)) if isinstance(line, StraightLine) else 0.0
-
-
-def _is_like(one: Curve, other: Curve) -> bool:
-    is_axes = isinstance(one, JointLine)
-    return type(one) is type(other) and (is_axes or one.placement == other.placement)
 
 
 def _is_near(ours: Array, theirs: Array, way: Array | float) -> bool:
