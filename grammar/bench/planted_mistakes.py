@@ -217,7 +217,7 @@ class _Checked:
     def _findings(self, project: Project, module: Module) -> Findings:
         program = self.programs[module.path]
         if module.syntax is None:
-            return Findings(program.reading.diagnostics, ())
+            return program.reading.alone()
         checked = check_module(project, module, program.source)
         if module.path not in self.names:
             self.names[module.path] = _names(checked.resolution)

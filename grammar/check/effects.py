@@ -17,12 +17,21 @@ from grammar.check.constant_folding import constant, integer_of
 from grammar.check.context import Context
 from grammar.check.data_flow import needed_parameters
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain, without_parentheses
 from support.lazy_dataclass import dataclass
 
-__all__ = ["NO_EFFECTS", "Effects", "LeftOut", "Place", "effects", "of_project"]
+__all__ = [
+    "NO_EFFECTS",
+    "Effects",
+    "LeftOut",
+    "Place",
+    "effects",
+    "effects_of_unread",
+    "of_project",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,17 +109,26 @@ def effects(context: Context) -> Effects:
     return _Collector(context).collect()
 
 
+def effects_of_unread(words: frozenset[str]) -> Effects:
+    """What text that cannot be read may do, given its words in upper case; `REST` may do it all."""
+    if REST in words:
+        words |= {"INTERRUPT", "$OUT", "$FLAG"}
+    switched_on = frozenset({""} if "INTERRUPT" in words else ())
+    return Effects(switched_on=switched_on, reset=words, changed=words)
+
+
 class _Collector:
     """Goes through the statements of a file."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
+        unread = effects_of_unread(context.module.words or frozenset())
         self._interrupts: list[Place] = []
-        self._on: set[str] = set()
+        self._on = set(unread.switched_on)
         self._outputs: dict[str, Place] = {}
-        self._reset: set[str] = set()
+        self._reset = set(unread.reset)
         self._waits: list[tuple[Place, frozenset[str]]] = []
-        self._changed: set[str] = set()
+        self._changed = set(unread.changed)
         self._left_out: list[LeftOut] = []
         self._literals: list[tuple[str, str, Place]] = []
 
@@ -351,7 +369,7 @@ def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterato
 def _never_reset(outputs: Iterable[Place], reset: frozenset[str]) -> Iterator[Diagnostic]:
     for place in outputs:
         key, _, shown = place.what.partition("\t")
-        if key not in reset:
+        if key not in reset and shown.upper() not in reset:
             message = f"{shown} is set here and never reset"
             yield diagnose("output-never-reset", place.path, place.region, message)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from grammar.check import advance_stops
 from grammar.check.context import Context
 from grammar.check.dependencies import Contribution, Needs, contribution, needs_of
+from grammar.check.effects import effects_of_unread
 from grammar.check.framework import Findings, check_module
 from grammar.check.suppression_comments import SuppressionComment, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
@@ -137,6 +138,11 @@ class Reading:
     diagnostics: tuple[Diagnostic, ...] = ()
     words: frozenset[str] | None = None
     exchanged: frozenset[int] = frozenset()
+
+    def alone(self) -> Findings:
+        """What was found in reading, and what the text that was not read may do."""
+        unread = effects_of_unread(self.words or frozenset())
+        return Findings(self.diagnostics, (), unread)
 
     def completed(self, found: Findings) -> Findings:
         """What was found in the tree, with what was found in reading; nothing in place of it."""
@@ -262,7 +268,7 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
     if options.syntax_only or tree is None:
         lines = _lines(source, (one.region.line for one in found))
         given = contribution(path, source.text, None, reading.words)
-        looked = FileResult(Findings(found, ()), None, None, lines, comments, reading.words, given)
+        looked = FileResult(reading.alone(), None, None, lines, comments, reading.words, given)
         return looked, None
     table = table_of(tree)
     given = contribution(path, source.text, table, reading.words)

@@ -218,6 +218,7 @@ def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
 
 CUT = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nDECL GLOBAL IN"
 UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
+WATCHED = "DEF A()\nINTERRUPT DECL 5 WHEN $IN[1] DO B()\n"
 MAIN = "DEF MAIN()\n  GRIPPED = 1\n  PARTS = OTHERS\n  CELL(1)\nEND\n"
 
 
@@ -228,6 +229,12 @@ MAIN = "DEF MAIN()\n  GRIPPED = 1\n  PARTS = OTHERS\n  CELL(1)\nEND\n"
         ({"cell.dat": UNREAD, "main.src": MAIN}, [("cell.dat", 1)]),
         ({"cell.src": "DEF CELL(A:IN =)\nEND\n", "main.src": MAIN}, [("cell.src", 1)]),
         ({"a.src": "DEF A()\nGOTO FAR\nX = 1\n;FOLD\n"}, [("a.src", 4)]),
+        ({"a.src": WATCHED}, [("a.src", 2)]),
+        ({"a.src": f"{WATCHED}INTERRUPT ON ON 5\nEND\nDEF B()\nEND\n"}, [("a.src", 3)]),
+        (
+            {"a.src": f"{WATCHED}END\n", "b.src": "DEFFCT (\nINTERRUPT ON 5\n$OUT[1]=TRUE\n"},
+            [("b.src", 1)],
+        ),
     ],
 )
 def test_what_is_damaged_is_told_alone(
