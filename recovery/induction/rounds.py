@@ -303,8 +303,11 @@ class Induction:
             found = Folding(narrower, operands, self._prefixes).candidates()
         if is_last:
             texts = (file.text for file, wrong in zip(files, failures, strict=True) if not wrong)
-            bounded = bounded_lists(judge.recognizer, self._start, texts)
-            taken += (Taken(b.title, b.edits, Evidence(0, 0, 0, ())) for b in bounded)
+            taken += (
+                Taken(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
+                for bounded in bounded_lists(judge.recognizer, self._start, texts)
+                if bounded.edits not in self.struck
+            )
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         return taken, [*lost, *refused.values()]
 

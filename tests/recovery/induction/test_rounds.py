@@ -13,6 +13,7 @@ from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
+from recovery.induction import list_lengths
 from recovery.induction.corpus_lines import held_out
 from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
@@ -232,6 +233,22 @@ def test_what_is_struck_is_not_taken_again(
     struck = [construct.edits for construct in growth.constructs]
     first = next(iter(Induction(toy, toy_files, (), NegativeSet(()), struck=struck).rounds()))
     assert growth.constructs[0].edits not in [step.edits for step in first.taken]
+
+
+@pytest.mark.parametrize(("is_struck", "accepted"), [(False, False), (True, True)])
+def test_a_bound_can_be_struck_out(
+    toy: Grammar, monkeypatch: pytest.MonkeyPatch, is_struck: bool, accepted: bool
+) -> None:
+    """A list is bounded at the end, unless that step was struck out."""
+    monkeypatch.setattr(list_lengths, "SHORT_LIST_EXAMPLES", 1)
+    text = "LINK A{0}\nLINK A{0}, B{0}\nLINK A{0}, B{0}, C{0}\n"
+    files = [CorpusFile(f"{o}/a.toy", text.format(o), frozenset({o})) for o in "ABC"]
+    steps = [s for done in Induction(toy, files, (), NegativeSet(())).rounds() for s in done.taken]
+    bound = next(step.edits for step in steps if "at most 3 items" in step.title)
+    again = Induction(toy, files, (), NegativeSet(()), struck=[bound] if is_struck else ())
+    for _ in again.rounds():
+        pass
+    assert accepted == Recognizer(again.grammar).accepts("LINK A, B, C, D\n")
 
 
 def test_origins_are_held_out_whole(toy_files: tuple[CorpusFile, ...]) -> None:
