@@ -56,9 +56,9 @@ def _with_changed(
     values: dict[str, Any] = {}
     for field in node.__dataclass_fields__:
         before = getattr(node, field)
-        after = changed.get(field, before)
-        if after is not before:
-            values[field] = after
+        after = before
+        if field in changed:
+            after = changed[field]
         elif isinstance(before, ast.Node):
             after = _changed(before, change)
         elif field != "span" and isinstance(before, tuple):

@@ -311,7 +311,7 @@ class _Making:
                 signatures.data(name, use, is_last=is_last, access="")
             )
         for path, declared in lines.items():
-            name = re.sub(r"\W", "_", PurePosixPath(path).stem)
+            name = re.sub(r"\W", "_", PurePosixPath(path).stem, flags=re.ASCII)
             self._texts[path] = "\n".join([f"DEFDAT LIST_{name}", *declared, "ENDDAT", ""])
 
     # ------------------------------------------------------------------------- the library

@@ -112,6 +112,23 @@ def _counting_wrongly(program: Program, _random: Random) -> Program:
     )
 
 
+@pytest.mark.parametrize("is_changed", [False, True])
+def test_each_node_of_a_long_sum_is_changed_once(is_changed: bool) -> None:
+    """Every operation goes through a change once, whether or not what is in it was changed."""
+    seen: list[ast.Node] = []
+
+    def change(node: ast.Node) -> ast.Node:
+        if isinstance(node, ast.Binary):
+            seen.append(node)
+            return replace(node, operator="-") if is_changed else node
+        return node
+
+    modules = _program(f"DEF PROG()\nINT N\nN={'+'.join('N' * 12)}\nEND\n").modules or {}
+    for module in modules.values():
+        rewritten(module, change)
+    assert 11 == len(seen)
+
+
 @pytest.mark.parametrize("compare", [same_trace, same_effects])
 def test_a_wrong_change_of_a_program_is_caught(compare: object) -> None:
     """Adding 2 in place of 1 breaks the law, and the first value that differs is told."""

@@ -467,10 +467,11 @@ def test_types_of_parameters_with_long_names() -> None:
     assert [] == _skipped({"main.src": f"DEF main ( )\n{body}END\n"})
 
 
-def test_file_names_that_are_no_names() -> None:
+@pytest.mark.parametrize("stem", ["1 lift()", "prüfen"])
+def test_file_names_that_are_no_names(stem: str) -> None:
     """A program whose file cannot give a data list its name has one in place of its own."""
     files = {
-        "a/1 lift().src": "DEF lift ( )\nFLAG=TRUE\nother ( )\nEND\n",
+        f"a/{stem}.src": "DEF lift ( )\nFLAG=TRUE\nother ( )\nEND\n",
         "a/other.src": "DEF other ( )\nFLAG=5\nEND\n",
     }
     assert [] == _skipped(files)
