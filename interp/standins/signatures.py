@@ -55,6 +55,8 @@ _MOST_ELEMENTS: Final = 4096
 _MOST_VALUES: Final = 256
 _FIRST_INPUT: Final = 1024
 _LONGEST: Final = 20
+#: Of a structure of arrays, whose elements nothing sets: it cannot be written.
+_NOTHING: Final = "{}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,8 @@ class Signatures:
         if kind.is_text and use.indices <= 1:
             return [f"DECL {access}CHAR {name}[{_TEXT_LENGTH}]", f'{name}[]=" "']
         if not use.indices:
-            return [f"DECL {access}{kind.name} {name}={kind.value}"]
+            given = f"={kind.value}" if kind.value != _NOTHING else ""
+            return [f"DECL {access}{kind.name} {name}{given}"]
         sizes = self._sizes(use, is_text=kind.is_text)
         lines = [f"DECL {access}{kind.name} {name}[{','.join(map(str, sizes))}]"]
         if not is_last:  # values tell no type, and there are many
@@ -124,7 +127,7 @@ class Signatures:
             value = kind.value
             if type_ is not None and is_placed:
                 value = self._default(type_, f"{name}[{place}]", is_target=bool(use.motions))
-            lines.append(f"{name}[{place}]={value}")
+            lines += [f"{name}[{place}]={value}"] if value != _NOTHING else ()
         return lines
 
     def type(self, name: str, use: DataUse) -> None:
@@ -209,10 +212,10 @@ class Signatures:
             if inner.indices and not kind.is_text:
                 sizes = f"[{','.join(map(str, self._sizes(inner, is_text=False)))}]"
             members.append(f"{kind.name} {member}{sizes}")
-            if not sizes or kind.is_text:
+            if kind.is_text or not (sizes or kind.value == _NOTHING):
                 values.append(f"{member}{'[]' if kind.is_text else ''} {kind.value}")
         self.types[name] = f"GLOBAL STRUC {name} {','.join(members) or 'INT UNUSED'}"
-        return f"{{{','.join(values) or 'UNUSED 0'}}}"
+        return f"{{{','.join(values) if members else 'UNUSED 0'}}}"
 
     @staticmethod
     def _sizes(use: DataUse, *, is_text: bool) -> Sequence[int]:
@@ -263,7 +266,9 @@ class Signatures:
                 if member.type.element == CHAR and len(member.type.sizes) == 1:
                     yield f'{member.name}[] " "'
             elif member.type != UNKNOWN:
-                yield f"{member.name} {self._default(member.type, f'{name}.{member.name}')}"
+                value = self._default(member.type, f"{name}.{member.name}")
+                if value != _NOTHING:
+                    yield f"{member.name} {value}"
 
     # ------------------------------------------------------------------------- routines
 
@@ -281,7 +286,7 @@ class Signatures:
                 kind = _Kind(told.type, kind.value, is_text=told.is_array)
             heads.append(f"{parameter}{brackets} :{'OUT' if is_out else 'IN'}")
             declared.append(f"DECL {kind.name} {parameter}{brackets}")
-            if is_out and not brackets:
+            if is_out and not brackets and kind.value != _NOTHING:
                 body += [
                     f'IF VARSTATE("{parameter}")<>#INITIALIZED THEN',
                     f"{parameter}={kind.value}",
@@ -305,7 +310,7 @@ class Signatures:
                 *declared,
                 f"DECL {kind.name} RESULT",
                 *body,
-                f"RESULT={value}",
+                *([f"RESULT={value}"] if value != _NOTHING else ()),
                 "RETURN RESULT",
                 "ENDFCT",
             ]

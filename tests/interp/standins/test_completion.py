@@ -461,6 +461,15 @@ def test_types_that_only_their_names_are_known_of() -> None:
     assert [] == _skipped({"main.src": f"DEF main ( )\nDECL SIDES SIDE\n{body}END\n"})
 
 
+@pytest.mark.parametrize(
+    "body", ["R.P=N\nN=R\n", "R.P[1]=2\nX=R\n", "S.T.P[1]=2\nS.T=Y\nY=G(Y)\nH(Y)\n"]
+)
+def test_structures_that_have_no_value_to_be_written(body: str) -> None:
+    """A structure of arrays, or of itself, is a variable, a member, an argument and a result."""
+    main = f"DEF main ( )\nIF FALSE THEN\n{body}ENDIF\n{HOME}END\n"
+    assert (("end", ""), ["PTP"]) == _moves_and_ends({"main.src": main})
+
+
 def test_types_of_parameters_with_long_names() -> None:
     """Each parameter of a missing routine takes its own constants, however long its name is."""
     body = "A_NAME_OF_TWENTY_TWO_X(#LEFT,#FAST)\nA_NAME_OF_TWENTY_TWO_X(#RIGHT,#SLOW)\n"
