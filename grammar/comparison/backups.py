@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 from typing import Any
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText, content_of
-from grammar.comparison.matching import likest
+from grammar.comparison.matching import likest, line_matcher
 from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change
 from grammar.comparison.renaming import names_in, renamed, renamings
 from grammar.syntax.source import Source
 
 __all__ = ["compare"]
 
-# Beyond this many lines exact comparison takes long, and lines that come up often are left aside.
-_LONG = 5_000
 _DRIVES = frozenset({"r1", "steu"})
 
 _Pair = tuple[Content, Content]
@@ -210,8 +207,7 @@ def _changed(old: _Placed, new: _Placed, is_same_file: bool) -> Record | None:
 def _hunks(old: RoutineText, new: RoutineText) -> Iterator[Record]:
     if old.signature != new.signature:
         yield _hunk([old.head], [new.head], old.head.number, new.head.number)
-    is_long = len(old.body) + len(new.body) > _LONG
-    matcher = SequenceMatcher(None, old.keys, new.keys, autojunk=is_long)
+    matcher = line_matcher(old.keys, new.keys)
     for tag, first, last, start, end in matcher.get_opcodes():
         if tag != "equal":
             lines = old.body[first:last], new.body[start:end]

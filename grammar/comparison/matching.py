@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from difflib import SequenceMatcher
 from typing import TypeVar
 
-__all__ = ["likest", "similarity"]
+__all__ = ["likest", "line_matcher", "similarity"]
 
 _K = TypeVar("_K", bound=Hashable)
 
@@ -14,6 +15,17 @@ _K = TypeVar("_K", bound=Hashable)
 _LEAST = 0.6
 # More candidates than anybody renames at once: then only what is the same counts.
 _MOST = 300
+# Beyond so many lines, or pairs of equal lines, exact comparison takes long.
+_LONG = 5_000
+_MOST_PAIRS = 200_000
+
+
+def line_matcher(old: Sequence[str], new: Sequence[str]) -> SequenceMatcher[str]:
+    """Compares two lists of lines; in long ones lines that come up often are left aside."""
+    one, other = Counter(old), Counter(new)
+    pairs = sum(count * other[line] for line, count in one.items())
+    is_long = len(old) + len(new) > _LONG or pairs > _MOST_PAIRS
+    return SequenceMatcher(None, old, new, autojunk=is_long)
 
 
 def likest(

@@ -10,15 +10,13 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from difflib import SequenceMatcher
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText
+from grammar.comparison.matching import line_matcher
 
 __all__ = ["names_in", "renamed", "renamings"]
 
 _NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
-# Longer routines are compared line by line with less care.
-_LONG = 5_000
 
 
 def names_in(content: Content) -> set[str]:
@@ -60,8 +58,7 @@ def _votes(
     old: Sequence[str], new: Sequence[str], gone: set[str], come: set[str]
 ) -> Iterator[tuple[str, str]]:
     """Old and new name for each line that differs in names alone that are not in both states."""
-    matcher = SequenceMatcher(None, old, new, autojunk=len(old) + len(new) > _LONG)
-    for tag, first, last, start, end in matcher.get_opcodes():
+    for tag, first, last, start, end in line_matcher(old, new).get_opcodes():
         if tag != "replace" or last - first != end - start:
             continue
         for before, after in zip(old[first:last], new[start:end], strict=True):

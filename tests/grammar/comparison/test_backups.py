@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.comparison.backups import compare
+from grammar.comparison.matching import line_matcher
 from grammar.syntax.source import Source
 
 MAIN = """&ACCESS RVP
@@ -177,3 +178,10 @@ def test_damaged_files_are_compared_all_the_same(text: str) -> None:
     for name in ("a.src", "a.dat"):
         compare([Source(text, name)], [Source(MAIN, name)])
         assert [] == compare([Source(text, name)], [Source(text, name)])["routines"]
+
+
+def test_lines_that_come_up_again_and_again_are_left_aside() -> None:
+    """A routine of many like lines costs no more than a longer one; a shorter one is exact."""
+    lines = ["IF B THEN", "ENDIF"]
+    found = [line_matcher(lines * n, lines * (n - 1)).get_opcodes() for n in (200, 400)]
+    assert [["equal", "delete"], ["replace"]] == [[one[0] for one in codes] for codes in found]
