@@ -69,7 +69,7 @@ def _shapes(shapes: Mapping[str, Shape], name: str | None = None) -> dict[str, _
 
 _PROGRAMS: Final = _shapes(SHAPES)
 _G4: Final = "grammar G;\nfile : a* EOF ;\na : 'X'"
-_G4_END: Final = " ;\nNAME : [A-Z]+ ;\n"
+_G4_END: Final = " ;\nX : 'X' ;\nNAME : [A-Z]+ ;\n"
 
 
 def _messages(file: Path) -> bytes:
@@ -107,9 +107,9 @@ def _messages(file: Path) -> bytes:
 class _Entry:
     """A command, and what it reads.
 
-    Its words may have the places ``{file}``, ``{other}`` (the same with lines left out),
-    ``{folder}`` of both, ``{out}`` and ``{small}``. ``before`` are commands that make what is read,
-    and are not measured; what they print is at ``{printed}``. ``said`` gives the standard input.
+    Its words may have the places ``{file}``, ``{other}`` (the same with lines left out), ``{out}``
+    and ``{small}``. ``before`` are commands that make what is read, and are not measured; what
+    they print is at ``{printed}``. ``said`` gives the standard input.
     """
 
     words: str
@@ -161,7 +161,9 @@ _ENTRIES: Final[Mapping[str, _Entry]] = {
         _shapes(
             {
                 "expectations": Shape("  I={i} ;> value I {i}\n", _CASE + "  INT I\n", "END\n"),
-                "lines of a case": Shape("  I={i}\n", _CASE + "  INT I\n", "END ;> runs 1\n"),
+                "lines of a case": Shape(
+                    "  I={i}\n", _CASE + "  INT I\n  I=0 ;> runs 1\n", "END\n"
+                ),
             }
         ),
     ),
@@ -169,10 +171,10 @@ _ENTRIES: Final[Mapping[str, _Entry]] = {
         "recover --jobs 1 --no-start --out {out} --grammar {file} {small}",
         _shapes(
             {
-                "rules": Shape("r{i} : 'W{i}' NAME ;\n", _G4 + " ;\n", _G4_END[3:]),
-                "alternatives": Shape(" | 'W{i}' NAME", _G4, _G4_END),
+                "rules": Shape("r{i} : 'X' NAME ;\n", _G4 + " ;\n", _G4_END[3:]),
+                "alternatives": Shape(" | 'X' NAME", _G4, _G4_END),
                 "a long sequence": Shape(" NAME", _G4, _G4_END),
-                "optional parts": Shape(" 'W{i}'?", _G4, _G4_END),
+                "optional parts": Shape("r{i} : 'X'? NAME? ;\n", _G4 + " ;\n", _G4_END[3:]),
                 "brackets in brackets": Shape("(", _G4 + " ", _G4_END, "NAME", ")"),
             },
             "G.g4",
@@ -256,20 +258,22 @@ def _measure(entry: str, shape: str, largest: int) -> Growth:
     from support.measure.growth import measure_growth
 
     chosen = _ENTRIES[entry]
-    with tempfile.TemporaryDirectory() as name, Path(os.devnull).open("w") as nowhere:
+    with tempfile.TemporaryDirectory() as place, Path(os.devnull).open("w") as nowhere:
         for stream in (1, 2):  # also what is written below Python
             os.dup2(nowhere.fileno(), stream)
-        root = Path(name)
+        root = Path(place)
         numbers = count()
 
         def prepare(size: int) -> list[str]:
-            # a folder for each: what is remembered by path is not what is measured
+            # a folder for each: what is remembered by path is not what is measured, and a program
+            # is read with all that lies beside and below it
             folder = root / str(next(numbers))
-            (folder / "less").mkdir(parents=True)
-            file, small = chosen.inputs[shape](folder, size), folder / "small.src"
+            for name in ("given", "less", "small"):
+                (folder / name).mkdir(parents=True)
+            file = chosen.inputs[shape](folder / "given", size)
+            small, other = folder / "small" / "small.src", folder / "less" / file.name
             small.write_text(_PROGRAM, encoding="ascii")
-            other = folder / "less" / file.name
-            if file.suffix != ".zip":
+            if "{other}" in chosen.words:
                 lines = file.read_text(encoding="ascii").splitlines(keepends=True)
                 kept = (line for number, line in enumerate(lines) if number % 7 != 3)
                 other.write_text("".join(kept), encoding="ascii")
