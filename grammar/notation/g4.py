@@ -40,6 +40,9 @@ __all__ = [
     "read_rule",
 ]
 
+#: How deep elements may lie within one another. Whoever walks a rule may rely on it and recurse.
+_MAX_DEPTH = 100
+
 
 @cache
 def _reader(start: str) -> Lark:
@@ -136,19 +139,21 @@ def _command(node: Tree[Token]) -> str:
     return str(name) if argument is None else f"{name}({argument})"
 
 
-def _alternatives(node: Tree[Token], offset: int) -> tuple[Alternative, ...]:
+def _alternatives(node: Tree[Token], offset: int, depth: int = 0) -> tuple[Alternative, ...]:
     out: list[Alternative] = []
     for child in node.children:
         assert isinstance(child, Tree)
         parts: list[Any] = list(child.children)
         *elements, label = parts
-        converted = tuple(_element(e, offset) for e in elements if isinstance(e, Tree))
+        converted = tuple(_element(e, offset, depth) for e in elements if isinstance(e, Tree))
         span = (converted[0].span[0], converted[-1].span[1]) if converted else (0, 0)
         out.append(Alternative(converted, None if label is None else str(label), span))
     return tuple(out)
 
 
-def _element(node: Tree[Token], offset: int) -> Element:
+def _element(node: Tree[Token], offset: int, depth: int) -> Element:
+    if depth > _MAX_DEPTH:
+        raise GrammarError(f"brackets or ~ are nested more than {_MAX_DEPTH} deep")
     span = (node.meta.start_pos - offset, node.meta.end_pos - offset)
     first = node.children[0] if node.children else None
     match node.data:
@@ -167,16 +172,16 @@ def _element(node: Tree[Token], offset: int) -> Element:
             return CharSet(((0, MAX_CODE_POINT),), span)
         case "complement":
             assert isinstance(first, Tree)
-            return CharSet(_complement(_element(first, offset)), span)
+            return CharSet(_complement(_element(first, offset, depth + 1)), span)
         case "group":
             assert isinstance(first, Tree)
-            return Group(_alternatives(first, offset), span)
+            return Group(_alternatives(first, offset, depth + 1), span)
         case _:
             item, suffix = node.children
             assert isinstance(item, Tree)
             match str(suffix):
                 case "?" | "*" | "+" as operator:
-                    return Repeat(_element(item, offset), operator, span)
+                    return Repeat(_element(item, offset, depth), operator, span)
                 case other:
                     raise GrammarError(f"non-greedy {other!r} is not of our style")
 

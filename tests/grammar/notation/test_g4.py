@@ -288,6 +288,11 @@ def test_exchanging_a_rule() -> None:
         ("s : A ;\nC : '(' C? ')' ;", 3, "recursive tokens through C → C"),
         ("s : A ;\nC : 'c' D ;\nD : 'd' C? ;", 3, "recursive tokens through C → D → C"),
         ("s : A ;\nt : A | B ;\nu : A u | B (A u)+ ;", 4, "rule u has no end"),
+        (
+            f"s : {'(' * 5000}A{')' * 5000} ;",
+            2,
+            "rule s: brackets or ~ are nested more than 100 deep",
+        ),
     ],
 )
 def test_what_is_not_of_our_style_is_refused(rules: str, line: int, message: str) -> None:
