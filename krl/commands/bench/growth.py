@@ -216,7 +216,7 @@ def growth(
 
     Inputs of each shape have the sizes n, 2n and 4n, where n is what takes a fifth of a second. A
     slope is the exponent: 1 is linear, 2 quadratic, 0 nothing. Each is measured in a process of its
-    own; the whole takes some 20 minutes of a core.
+    own. All of them take long: --entry and --shape choose some.
     """
     check_files(json_file)
     tasks = [

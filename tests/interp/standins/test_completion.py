@@ -462,7 +462,7 @@ def test_types_that_only_their_names_are_known_of() -> None:
 
 
 @pytest.mark.parametrize(
-    "body", ["R.P=N\nN=R\n", "R.P[1]=2\nX=R\n", "S.T.P[1]=2\nS.T=Y\nY=G(Y)\nH(Y)\n"]
+    "body", ["R.P=N\nN=R\n", "R.P[1]=2\nX=R\n", "Y.P[1]=2\nY=G(1)\n", "Y.P[1]=2\nH(Y)\n"]
 )
 def test_structures_that_have_no_value_to_be_written(body: str) -> None:
     """A structure of arrays, or of itself, is a variable, a member, an argument and a result."""
