@@ -51,6 +51,11 @@ _SPOKEN_OF: Final = {
     "path circle": "circle CIRC",
     "path joint": "axes",
     "speed": "velocity speed acceleration VEL Parameters",
+    "smooth": "velocity speed acceleration",
+    "limits": "velocity speed limits fast",
+    "brake": "BRAKE",
+    "resume": "RESUME",
+    "halt": "HALT",
 }
 
 

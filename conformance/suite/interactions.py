@@ -190,7 +190,9 @@ _BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
     "anin": ("R = $ANIN[1]",),
     "act_read": ("WAIT FOR $POS_ACT.X > 0", "R = $VEL_ACT"),
     "tool": ("$TOOL = {X 0, Y 0, Z 20, A 0, B 0, C 0}", "$TOOL = $NULLFRAME"),
-    "pulse": ("PULSE($OUT[8], TRUE, 0.5) ;> out 8 TRUE at end LAST [ADV-04] ;> out 8 FALSE",),
+    "pulse": (
+        "PULSE($OUT[8], TRUE, 0.5) ;> out 8 TRUE at end LAST [ADV-04] ;> out 8 FALSE [IOT-07.a]",
+    ),
 }
 
 
