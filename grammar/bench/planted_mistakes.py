@@ -34,7 +34,7 @@ from grammar.syntax.source import Source
 from support.files.decode import decode
 from support.files.discovery import Found, IngestError, discover, read
 
-__all__ = ["KINDS", "damaged", "measure_planted"]
+__all__ = ["KINDS", "cut", "damaged", "lines_of_tokens", "measure_planted"]
 
 #: What a slip can be.
 KINDS = (
@@ -307,7 +307,7 @@ def measure_planted(
         (project, path, lines)
         for project in projects
         for path, program in project.programs.items()
-        if not program.reading.diagnostics and (lines := list(_lines(program.source)))
+        if not program.reading.diagnostics and (lines := list(lines_of_tokens(program.source)))
     ]
     if not places:
         raise IngestError("no line of these files can be damaged")
@@ -356,10 +356,13 @@ def _left(
 
 
 def _cut(program: _Program, chance: random.Random) -> _Program:
-    """A program that ends early, as one that was not copied to its end does."""
-    text = program.source.text
-    end = chance.randrange(len(text) // 4, len(text)) if text else 0
-    return _program(Source(text[:end], program.source.path), program.file.origin)
+    source = program.source
+    return _program(Source(cut(source.text, chance), source.path), program.file.origin)
+
+
+def cut(text: str, chance: random.Random) -> str:
+    """A text that ends early, as that of a file that was not copied to its end does."""
+    return text[: chance.randrange(len(text) // 4, len(text))] if text else ""
 
 
 def _place(finding: Diagnostic) -> tuple[str, int, str]:
@@ -457,7 +460,7 @@ def _projects(roots: Sequence[Path]) -> Iterator[dict[str, _Program]]:
         yield {module.path: programs[module.path] for module in project.modules}
 
 
-def _lines(source: Source) -> Iterator[list[Token]]:
+def lines_of_tokens(source: Source) -> Iterator[list[Token]]:
     """The tokens of each line that has some."""
     lexer: Lexer = builder().failures.recognizer.lexer
     line: list[Token] = []

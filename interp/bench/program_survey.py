@@ -14,10 +14,12 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import asdict, dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from random import Random
 from typing import Any, Final, Literal
 
+from grammar.bench.damage import damaged_source
 from grammar.syntax.source import Source
 from interp.bench.main_programs import (
     MainProgram,
@@ -33,7 +35,7 @@ from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 from support.parallel.sticky_pool import StickyPool
 
-__all__ = ["Bounds", "Chance", "Origin", "Part", "Surveyed", "remaining", "survey"]
+__all__ = ["Bounds", "Chance", "Origin", "Part", "Surveyed", "damaged", "remaining", "survey"]
 
 #: Statements of one program: what computes longer without end is known to do so by then.
 _STATEMENTS: Final = 3_000_000
@@ -43,13 +45,14 @@ _STATEMENTS: Final = 3_000_000
 class Origin:
     """Where files come from, the files, and scripts of their programs by the stem of the file.
 
-    ``script`` is for all of its programs.
+    ``script`` is for all of its programs. ``damage`` is what kind its files have suffered.
     """
 
     name: str
     sources: tuple[Source, ...]
     script: str = ""
     scripts: tuple[tuple[str, str], ...] = ()
+    damage: str = ""
 
 
 #: What there is of a backup: all, what its users wrote without the folders of the controller, all
@@ -79,6 +82,13 @@ def remaining(origins: Iterable[Origin], part: Part, kept: Chance) -> Iterator[O
             yield replace(origin, sources=tuple(some))
 
 
+def damaged(origins: Iterable[Origin], kinds: Sequence[str], seed: int) -> Iterator[Origin]:
+    """Each origin with each kind of damage, one at a time; ``""`` is none."""
+    for origin, kind in product(origins, kinds):
+        some = (damaged_source(one, kind, seed) if kind else one for one in origin.sources)
+        yield replace(origin, sources=tuple(one for one in some if one), damage=kind)
+
+
 def _remains(source: Source, part: Part) -> bool:
     if part == "modules":
         return not is_of_controller(source.path)
@@ -105,11 +115,11 @@ class Bounds:
 class Surveyed:
     """An origin whose programs have run: their rows, files that cannot be read, and the reasons.
 
-    A row has ``origin`` and ``path``, the fields of `interp.bench.main_programs.Ran`, and ``wall``
-    in seconds.
+    A row has ``origin``, ``damage`` and ``path``, the fields of `interp.bench.main_programs.Ran`,
+    and ``wall`` in seconds.
     """
 
-    origin: str
+    origin: Origin
     rows: tuple[dict[str, Any], ...]
     unread: tuple[tuple[str, str], ...]
 
@@ -144,6 +154,11 @@ class _Running:
     paths: list[str] = field(default_factory=list)
     unread: list[tuple[str, str]] = field(default_factory=list)
     rows: dict[int, dict[str, Any]] = field(default_factory=dict)
+
+    def placed(self, place: int, row: dict[str, Any]) -> dict[str, Any]:
+        """A row with what it is about."""
+        name, damage = self.origin.name, self.origin.damage
+        return {"origin": name, "damage": damage, "path": self.paths[place], **row}
 
 
 class _Survey:
@@ -185,7 +200,9 @@ class _Survey:
     def _begin(self, todo: deque[Origin], process: int) -> None:
         if todo:
             origin = todo.popleft()
-            digest = hashlib.sha256(repr((origin, self._bounds)).encode()).hexdigest()
+            texts = [(one.path, one.text) for one in origin.sources]
+            asked = (origin.name, origin.script, origin.scripts, texts, self._bounds)
+            digest = hashlib.sha256(repr(asked).encode()).hexdigest()
             future = self._pool.submit(process, _list_programs, origin, self._bounds)
             self._pending[future] = _Running(origin, process, digest), None
 
@@ -195,22 +212,21 @@ class _Survey:
         for place in range(len(paths)):
             kept = self._store.get_record(f"{running.digest} {place}")
             if kept is not None:
-                running.rows[place] = kept
+                running.rows[place] = running.placed(place, kept)
                 self._on_done()
                 continue
             future = self._pool.submit(running.process, _run_program, place, self._bounds)
             self._pending[future] = running, place
 
     def _ran(self, running: _Running, place: int, row: dict[str, Any]) -> None:
-        row = {"origin": running.origin.name, "path": running.paths[place], **row}
-        running.rows[place] = row
+        running.rows[place] = running.placed(place, row)
         self._store.put([(f"{running.digest} {place}", row)])
         self._on_done()
 
     @staticmethod
     def _finished(running: _Running) -> Surveyed:
         rows = tuple(row for _, row in sorted(running.rows.items()))
-        return Surveyed(running.origin.name, rows, tuple(running.unread))
+        return Surveyed(running.origin, rows, tuple(running.unread))
 
 
 def _size(sources: Sequence[Source]) -> int:

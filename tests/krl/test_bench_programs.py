@@ -167,10 +167,30 @@ def test_incomplete_backups(
     assert found == set(results(Path("plant"), *options))
 
 
+def test_damage(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All runs once whole and once with each kind of damage; results are kept by what is there."""
+    some(tmp_path, "ends", "part", "lacks")
+    monkeypatch.chdir(tmp_path)
+    given = ["bench", "programs", "plant", "--executor", "tree", "--cache", "kept", "--jobs", "1"]
+    records = []
+    for name in ("first.json", "second.json"):
+        assert 0 == main([*given, "--damage", "files,cut", "--seed", "9", "--json", name])
+        records.append(json.loads(Path(name).read_text(encoding="utf-8")))
+    whole, files, cut = records[0]["damages"]
+    assert {"damage": "", "programs": 2, "moved": 2, "served": 2} == whole
+    assert ("files", 1, 1) == (files["damage"], files["programs"], files["moved"])
+    assert ("cut", 2) == (cut["damage"], cut["programs"])
+    assert "files: 1 programs, 100% executed a motion" in capsys.readouterr().out
+    assert records[0]["programs"] == records[1]["programs"], "taken over, wall time and all"
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
         (["missing"], "missing"),
+        (["--damage", "cut,rust", "."], "kinds are files, lists, cut"),
         (["--scripts", "nowhere", "."], "--scripts: nowhere: no such folder"),
         (["--scripts", "bad", "."], "--scripts: "),
     ],

@@ -59,6 +59,16 @@ class Part(StrEnum):
     FILE = "file"
 
 
+def _kinds(value: str) -> str:
+    """The value of ``--damage``, if each of its kinds is one."""
+    from grammar.bench.damage import DAMAGES
+
+    kinds = list(DAMAGES) if value == "all" else value.split(",")
+    if value and not DAMAGES.keys() >= set(kinds):
+        raise typer.BadParameter(f"kinds are {', '.join(DAMAGES)} and all")
+    return ",".join(kinds)
+
+
 def programs(
     paths: ProgramsArgument = None,
     executor: Annotated[
@@ -102,11 +112,21 @@ def programs(
         float,
         typer.Option(min=0, max=0.99, metavar="SHARE", help="Leave so many files out, by chance."),
     ] = 0.0,
+    damage: Annotated[
+        str,
+        typer.Option(
+            metavar="KIND,…",
+            callback=_kinds,
+            help="Run all once more with three of ten files damaged: files (lost), lists (data "
+            "lists lost), cut, lines (lost), names (misspelt), characters (exchanged), latin (read "
+            "so), or all of these.",
+        ),
+    ] = "",
     sample: Annotated[
         float,
         typer.Option(min=0, max=1, metavar="SHARE", help="Run so many of the programs, by chance."),
     ] = 1.0,
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws files and programs.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Draws files, programs and damage.")] = 1,
 ) -> int:
     """Run the main programs of backups with their own machine, tools, bases and points.
 
@@ -116,7 +136,7 @@ def programs(
     Each origin is shown as soon as its programs have run.
     Exit status 1 after a defect of ours.
     """
-    from interp.bench.program_survey import Bounds, Chance, remaining, survey
+    from interp.bench.program_survey import Bounds, Chance, damaged, remaining, survey
     from interp.controller.input_script import ScriptError
     from interp.executors import available
 
@@ -131,13 +151,16 @@ def programs(
         sample=Chance(sample, seed),
     )
     whole = _origins(programs_or_ours(paths), scripts)
-    origins = list(remaining(whole, part.value, Chance(1.0 - missing, seed)))
+    left = remaining(whole, part.value, Chance(1.0 - missing, seed))
+    kinds = ["", *damage.split(",")] if damage else [""]
+    origins = list(damaged(left, kinds, seed))
     record: dict[str, Any] = {
         "bench": "programs",
         "executor": bounds.executor,
         "robot": bounds.robot,
         "part": part.value,
         "missing": missing,
+        "damages": [],
         "sample": sample,
         "seed": seed,
         "results": {},
@@ -148,7 +171,7 @@ def programs(
         "unread": [],
     }
     console = Console(highlight=False)
-    finished: dict[str, Surveyed] = {}
+    finished: dict[Origin, Surveyed] = {}
     expected = 0
     try:
         with progress_bar("running programs") as bar:
@@ -168,7 +191,7 @@ def programs(
                 on_done=bar,
             ):
                 finished[done.origin] = done
-                _fill(record, [finished[one.name] for one in origins if one.name in finished])
+                _fill(record, [finished[one] for one in origins if one in finished])
                 write_json(record, json_file, indent=1)
                 _print_origin(console, done)
     except ScriptError as error:
@@ -213,12 +236,23 @@ def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
     record["moved"] = sum(row["motions"] > 0 for row in rows)
     record["served"] = sum(row["result"] in _SERVED for row in rows)
     record["own_faults"] = sum(row["is_own_fault"] for row in rows)
+    record["damages"] = [
+        {
+            "damage": kind,
+            "programs": len(some),
+            "moved": sum(row["motions"] > 0 for row in some),
+            "served": sum(row["result"] in _SERVED for row in some),
+        }
+        for kind in dict.fromkeys(row["damage"] for row in rows)
+        for some in [[row for row in rows if row["damage"] == kind]]
+    ]
 
 
 def _print_origin(console: Console, done: "Surveyed") -> None:
     if not done.rows:
         return
-    console.print(one_line(done.origin), soft_wrap=True, markup=False)
+    damage = f" ({done.origin.damage})" if done.origin.damage else ""
+    console.print(one_line(done.origin.name + damage), soft_wrap=True, markup=False)
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     table.add_column("program")
     table.add_column("ran")
@@ -263,5 +297,12 @@ def _print_summary(console: Console, record: Mapping[str, Any]) -> None:
         console.print(
             f"{moved:.0%} executed a motion, {served:.0%} ended or serve for ever, "
             f"{record['own_faults'] / len(rows):.0%} have a fault of their own",
+            soft_wrap=True,
+        )
+    for one in record["damages"] if len(record["damages"]) > 1 else ():
+        moved, served = (one[name] / one["programs"] for name in ("moved", "served"))
+        console.print(
+            f"{one['damage'] or 'not damaged'}: {one['programs']:,} programs, {moved:.0%} executed "
+            f"a motion, {served:.0%} ended or serve for ever",
             soft_wrap=True,
         )
