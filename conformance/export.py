@@ -23,8 +23,6 @@ from conformance.suite.expectations import KINDS, PHASES, Anchor, Expectation, W
 from conformance.suite.registry import basis
 from interp.values.faults import FAULTS
 
-__all__ = ["EXPECTATIONS", "SCHEMA", "expectations_of", "reference_of", "write_export"]
-
 EXPECTATIONS: Final = "krl-expectations/1"
 _TEXT: Final = {"type": "string"}
 _TEXTS: Final = {"type": "array", "items": _TEXT}

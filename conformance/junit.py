@@ -10,8 +10,6 @@ from junitparser import Failure, JUnitXml, Skipped, TestCase, TestSuite
 from conformance.runner import CaseResult, Result
 from support.files.atomic_write import atomic_path
 
-__all__ = ["write_junit"]
-
 
 def write_junit(results: Sequence[CaseResult], target: Path) -> None:
     """Write the file whole or not at all. Failures are failures, all else but a pass is skipped."""

@@ -21,8 +21,6 @@ from conformance.suite.registry import Rule, basis, registry
 from grammar.syntax.build import read_module
 from interp.controller.input_script import Script, ScriptError
 
-__all__ = ["SUITES", "Coverage", "coverage", "lint"]
-
 #: The suites, in the order in which they are shown.
 SUITES: Final = (
     "syntax",

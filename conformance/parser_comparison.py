@@ -27,8 +27,6 @@ from grammar.parser.antlr_reference import refusal_by
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 
-__all__ = ["OWN", "Parser", "ParserError", "compared", "parsers"]
-
 #: The name of this project's parser.
 OWN: Final = "krl"
 #: Seconds that a command may take for a file.

@@ -19,8 +19,6 @@ from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import Result, run_case
 from conformance.suite.case import ENDINGS, Case, CaseError, read_case
 
-__all__ = ["CaseFile", "CaseItem", "pytest_collect_file"]
-
 _VARIABLE: Final = "KRL_CONFORM_SETUPS"
 
 

@@ -22,8 +22,6 @@ from conformance.suite.case import Case
 from conformance.suite.registry import registry
 from interp.robot.simulation.tracking import PathRecord
 
-__all__ = ["record_of"]
-
 #: Events that are about the cell and not about each statement: these are kept for every case.
 _STATEMENTS: Final = frozenset({"line", "assign", "branch", "call", "return"})
 #: So many events and points of a path are kept at most, fewer points where all is well.

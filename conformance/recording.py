@@ -24,8 +24,6 @@ from conformance.suite.registry import registry
 from interp.robot.simulation.tracking import PathRecord
 from support.files.untrusted import json_of, read_bytes
 
-__all__ = ["FORMAT", "Answer", "Recording", "RecordingError", "answers", "evaluate_recording"]
-
 FORMAT: Final = "krl-recording/1"
 #: Millimetres and degrees that nothing reaches.
 _BEYOND: Final = 1e9

@@ -27,8 +27,6 @@ from conformance.suite.case import Case
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError
 
-__all__ = ["CaseResult", "Observe", "Result", "repeated", "run_case", "run_cases"]
-
 #: So many cases go to a process at once.
 _SHARE: Final = 8
 #: So many seconds of computing an executor may take for a case; all of them take a few at most.

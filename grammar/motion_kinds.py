@@ -4,15 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = [
-    "AXIS_MOTIONS",
-    "CIRCLES",
-    "PTP_SPLINE_SEGMENTS",
-    "SPLINE_MOTIONS",
-    "SPLINE_SEGMENTS",
-    "WITHOUT_PATH",
-]
-
 #: Motions that are no spline and have no path of the tool: nothing refers to places on it [TRG-04].
 WITHOUT_PATH: Final = frozenset({"PTP", "PTP_REL"})
 #: What may stand in PTP_SPLINE and in SPLINE [SPL-02, SPL-03].

@@ -17,8 +17,6 @@ from support.files.kept_values import kept
 if TYPE_CHECKING:
     from interp.bytecode.verifier.verify import Verified
 
-__all__ = ["CODE", "COMPILED", "EXECUTORS", "Prepared", "available", "is_available"]
-
 #: The reference first.
 EXECUTORS: Final = ("tree", "vm", "native")
 #: The machine in C with native code of the program: takes a C compiler, only where it is asked for.

@@ -24,8 +24,6 @@ from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
 from interp.values.poses import Pose
 
-__all__ = ["RunRecord", "record_of", "tip_of"]
-
 #: How often a line may take one way until the record tells no more of it.
 _MOST_BRANCHES: Final = 1000
 

@@ -8,8 +8,6 @@ from krl import errors
 from krl.commands.app import app
 from krl.extras import hiding_package
 
-__all__ = ["main"]
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `krl` with `arguments` (those of the process by default) and return its exit status."""

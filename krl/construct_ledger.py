@@ -12,18 +12,6 @@ from krl.errors import as_input_errors, one_line
 if TYPE_CHECKING:
     from recovery.ledger.evaluation import Evaluation
 
-__all__ = [
-    "GENERATED",
-    "GRAMMAR",
-    "LEDGER",
-    "PRELIMINARY",
-    "checkout_or_packaged",
-    "expected_errors",
-    "print_evaluation",
-    "print_refusals",
-    "print_table",
-]
-
 # In the working folder: only a checkout's grammar grows.
 GRAMMAR = Path("grammar", "KRL.g4")
 PRELIMINARY = Path("grammar", "preliminary.g4")

@@ -23,23 +23,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = [
-    "CommandError",
-    "cases",
-    "clusters",
-    "failures",
-    "findings",
-    "frame",
-    "growth",
-    "nightly_runs",
-    "path",
-    "proposals",
-    "record",
-    "results",
-    "rules",
-    "trace",
-]
-
 Record = Mapping[str, Any] | Sequence[Mapping[str, Any]]
 
 

@@ -29,8 +29,6 @@ from interp.program.load import CheckedProgram
 from interp.values.faults import RuntimeFailure
 from krl.errors import one_line, shown
 
-__all__ = ["Prompt"]
-
 _BREAK = re.compile(
     r"(?:(?P<file>[^\s:]+):)?(?P<line>\d+)"
     r"(?:\s+if\s+(?P<condition>.+?))?(?:\s+hits\s+(?P<hits>[<>=%]*\s*\d+))?(?:\s+log\s+(?P<log>.+))?",

@@ -8,8 +8,6 @@ from interp.executors import Prepared
 from interp.program.load import CheckedProgram
 from interp.session import RunResult, RunSetup, run_program
 
-__all__ = ["debugged_run"]
-
 
 def debugged_run(
     program: CheckedProgram, setup: RunSetup, debugger: Debugger, on_message: Callable[[str], None]

@@ -15,19 +15,6 @@ from typing import Final
 
 import typer
 
-__all__ = [
-    "BAD_INPUT",
-    "FINDINGS",
-    "FINE",
-    "INTERRUPTED",
-    "READER_GONE",
-    "InputError",
-    "as_input_errors",
-    "one_line",
-    "run",
-    "shown",
-]
-
 FINE: Final = 0
 FINDINGS: Final = 1
 BAD_INPUT: Final = 2

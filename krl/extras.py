@@ -9,8 +9,6 @@ from pathlib import Path
 
 from krl.errors import InputError
 
-__all__ = ["ARM", "expected_extras", "hiding_package", "need"]
-
 _EXTRA_OF = {
     "junitparser": "records",
     "lsprotocol": "lsp",

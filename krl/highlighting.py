@@ -18,8 +18,6 @@ from grammar.parser.lexer import regex_of
 from grammar.semantics.predefined import System
 from support.files.atomic_write import write_atomic
 
-__all__ = ["FILES", "Words", "words"]
-
 _EDITORS = Path(__file__).parents[1] / "editors"
 #: The rules whose words have a colour of their own.
 _MOTIONS = "motion splineMotion splineBlock approximatedSplineMotion emilyMotion criterion"

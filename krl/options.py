@@ -9,18 +9,6 @@ import typer
 
 from krl.errors import InputError
 
-__all__ = [
-    "CorpusArgument",
-    "JobsOption",
-    "JobsOrOneOption",
-    "JsonOption",
-    "JsonTooOption",
-    "ProgramsArgument",
-    "all_cores",
-    "corpus_or_ours",
-    "programs_or_ours",
-]
-
 #: Where a command's record goes; `krl.output_files.check_files` sees to it before the work.
 JsonOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")

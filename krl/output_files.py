@@ -9,8 +9,6 @@ from typing import Any, Final
 from krl.errors import InputError
 from support.files.atomic_write import write_atomic
 
-__all__ = ["check_files", "check_targets", "json_text", "write_json"]
-
 _NOT_ASCII: Final = re.compile(r"[^\n\x20-\x7e]")
 
 

@@ -12,15 +12,6 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from support.files.discovery import Found
 
-__all__ = [
-    "compile_project",
-    "load_program",
-    "project_paths",
-    "project_root",
-    "read_sources",
-    "sources_below",
-]
-
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
 _ENDINGS = frozenset({".src", ".dat", ".sub"})

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, ClassVar, Final
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-__all__ = ["Bar", "progress_bar"]
-
 _SECONDS: Final = 10.0
 
 

@@ -20,15 +20,6 @@ if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
     from support.files.discovery import Found
 
-__all__ = [
-    "FILE_NAME",
-    "Settings",
-    "baseline_place",
-    "read_baseline",
-    "read_settings",
-    "settings_of",
-]
-
 FILE_NAME: Final = "krl.toml"
 
 _Level = Literal["error", "warning", "note", "off"]

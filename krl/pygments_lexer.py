@@ -9,8 +9,6 @@ from pygments.lexer import words as any_of
 
 from krl.highlighting import words
 
-__all__ = ["KrlLexer"]
-
 
 def _rules() -> list[Any]:
     known = words()

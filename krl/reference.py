@@ -17,8 +17,6 @@ import typer
 
 from support.files.atomic_write import write_atomic
 
-__all__ = ["LIBRARY_PAGE", "PAGE", "library_reference", "reference"]
-
 PAGE = Path(__file__).parents[1] / "docs" / "commands.md"
 LIBRARY_PAGE = PAGE.with_name("python-reference.md")
 _QUOTED_TYPE = re.compile(r"""(: |-> )(?:'([^']*)'|"([^"]*)")""")

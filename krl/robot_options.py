@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
     from interp.robot.simulation.scene import Scene
 
-__all__ = ["OwnRobot", "read_machine_file", "robot_options"]
-
 
 @dataclass(frozen=True, slots=True)
 class OwnRobot:

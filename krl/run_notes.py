@@ -8,8 +8,6 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
 
-__all__ = ["run_notes"]
-
 _MOST_TOLD = 3
 
 

@@ -22,17 +22,6 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from interp.session import RunSetup
 
-__all__ = [
-    "Executor",
-    "ExecutorOption",
-    "FileArgument",
-    "Robot",
-    "RunOptions",
-    "expected_errors",
-    "prepared_run",
-    "with_run_options",
-]
-
 _AUTO = "auto"
 _MOST_TOLD = 3
 #: Virtual seconds that a run lasts at most, without and with automatic inputs.

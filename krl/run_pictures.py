@@ -14,8 +14,6 @@ from krl.errors import InputError
 from krl.progress import progress_bar
 from support.files.atomic_write import atomic_path
 
-__all__ = ["write_run_film", "write_run_picture"]
-
 _MOST_SIGNALS = 8
 _LONGEST = 60
 

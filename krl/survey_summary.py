@@ -14,8 +14,6 @@ from krl.errors import one_line
 if TYPE_CHECKING:
     from recovery.records import ClusterRecord, StartRecord, SurveyRecord
 
-__all__ = ["print_survey", "share"]
-
 _ROWS = 15
 _WIDE = 120  # columns: on narrower terminals the title needs the room of the example
 _WORDS = 12

@@ -5,8 +5,6 @@ from collections.abc import Iterable, Sequence
 from rich import box
 from rich.table import Table
 
-__all__ = ["figures"]
-
 
 def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> Table:
     """A table with these headings, whose figures are never broken over lines."""

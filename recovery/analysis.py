@@ -25,8 +25,6 @@ from recovery.survey_record import record_of
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["analyse", "with_answers"]
-
 
 def analyse(
     found: Survey,

@@ -17,8 +17,6 @@ from support.files.decode import decode, digest
 from support.files.discovery import IngestError, Skipped, discover, read
 from support.files.untrusted import read_bytes
 
-__all__ = ["KRL", "CorpusFile", "Language", "language_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class CorpusFile:

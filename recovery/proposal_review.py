@@ -18,8 +18,6 @@ from recovery.survey.unreserved_keywords import UnreservedKeyword, unreserved_ke
 from support.files.decode import decode
 from support.files.discovery import Skipped, read
 
-__all__ = ["Reviewer"]
-
 # Mended lines looked at for second readings; the first of them are the shortest.
 _LINES_READ = 60
 

@@ -8,28 +8,6 @@ from __future__ import annotations
 
 from typing import NotRequired, TypedDict
 
-__all__ = [
-    "AmbiguousLineRecord",
-    "AmbiguousRecord",
-    "ClusterRecord",
-    "ConstructRecord",
-    "ExampleRecord",
-    "FailureRecord",
-    "FilesRecord",
-    "GrowthRecord",
-    "LineRecord",
-    "OriginRecord",
-    "ProposalRecord",
-    "RemainingFileRecord",
-    "RemainingLineRecord",
-    "ReproducerRecord",
-    "SkippedRecord",
-    "StartRecord",
-    "StepRecord",
-    "SurveyRecord",
-    "WordRecord",
-]
-
 
 class SkippedRecord(TypedDict):
     """A file that was not read, and why."""

@@ -25,8 +25,6 @@ from recovery.records import (
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.survey import Survey, SurveyedFile
 
-__all__ = ["record_of", "record_without_causes"]
-
 _EXAMPLES = 5
 _CONTEXT_LINES = 3
 _WIDEST_LINE = 1_000

@@ -12,8 +12,6 @@ from reports.record_fields import Record, count, nested, number, records, text, 
 from reports.sanitizing import shown
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_auto_page"]
-
 _MAX_ROUNDS = 200
 _MAX_ROWS = 400
 _LONGEST = 600

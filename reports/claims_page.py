@@ -9,8 +9,6 @@ from reports.embedding import embedded_json
 from reports.page import render
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_claims_page"]
-
 
 def write_claims_page(records: Mapping[str, Mapping[str, Any]], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of the paper's claims, and return its path.

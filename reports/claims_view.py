@@ -14,8 +14,6 @@ from reports.number_format import Figure, counted, percent, share
 from reports.record_fields import Record, count, nested, number, records, text
 from reports.sanitizing import shown
 
-__all__ = ["Bar", "Claim", "ClaimsView", "Curve", "LeftOut", "claims_view"]
-
 #: The commands that make each record, by its name in a nightly run.
 _COMMANDS: Final[Mapping[str, str]] = {
     "growth": "krl growth --json growth.json",

@@ -11,8 +11,6 @@ from reports.record_fields import Record, count, nested, number, records, text, 
 from reports.sanitizing import plain, shown
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_conformance_page"]
-
 Json = dict[str, Any]
 
 _MAX_CASES = 5_000

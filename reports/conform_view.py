@@ -8,8 +8,6 @@ from reports.number_format import Figure, counted, moment, percent, share
 from reports.record_fields import Record, count, nested, number, records, text, texts
 from reports.sanitizing import shown
 
-__all__ = ["VERDICTS", "Cell", "ConformView", "Row", "conform_view"]
-
 VERDICTS = ("pass", "fail", "unconfirmed", "known-failure", "skipped")
 
 

@@ -6,8 +6,6 @@ from reports.embedding import printable
 from reports.number_format import clip
 from reports.record_fields import Record, count, nested, text, texts
 
-__all__ = ["anchor", "clipped", "construct_data"]
-
 _MAX_TEXT = 8000
 _MAX_EXAMPLES = 12
 

@@ -10,8 +10,6 @@ from reports.number_format import percent, share
 from reports.page import render
 from support.files.atomic_write import write_atomic
 
-__all__ = ["CoveredFile", "write_coverage_page", "write_lcov"]
-
 
 @dataclass(frozen=True, slots=True)
 class CoveredFile:

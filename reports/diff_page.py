@@ -9,8 +9,6 @@ from reports.embedding import embedded_json
 from reports.page import render
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_diff_page"]
-
 
 def write_diff_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of a comparison, and return its path.

@@ -8,8 +8,6 @@ from reports.embedding import printable
 from reports.number_format import clip, counted
 from reports.record_fields import Record, count, nested, records, text, texts
 
-__all__ = ["DiffView", "PointRow", "diff_view", "point_words", "routine_name", "routine_words"]
-
 _MOST = 2_000
 _LONGEST = 400
 #: An angle below this is what rounding leaves.

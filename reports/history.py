@@ -14,8 +14,6 @@ from typing import Any
 from reports.record_fields import Record, count, nested, number, records, text
 from support.files.atomic_write import write_atomic
 
-__all__ = ["append_run", "changes", "known_before", "nightly_record", "read_history"]
-
 Json = dict[str, Any]
 
 #: A figure of a bench that is so much worse than in the run before is reported; machines are noisy.

@@ -11,8 +11,6 @@ from urllib.parse import urlencode
 from reports.record_fields import Record, nested, records, text
 from reports.sanitizing import shown
 
-__all__ = ["OF_THE_RUN", "Failure", "failures"]
-
 #: How the text of a failure begins that is of the nightly run itself, and not of a step.
 OF_THE_RUN = "the nightly run "
 _FINE = ("ok", "findings")

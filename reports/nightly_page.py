@@ -14,8 +14,6 @@ from reports.record_fields import Record, count, nested, number, records, text, 
 from reports.sanitizing import plain, shown
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_nightly_page"]
-
 _MAX_RUNS = 400
 _MAX_CHANGES = 300
 _BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")

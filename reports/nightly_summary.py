@@ -7,8 +7,6 @@ from reports.number_format import counted
 from reports.record_fields import nested, number, records, text, texts
 from reports.sanitizing import shown
 
-__all__ = ["nightly_summary"]
-
 _MOST = 40
 
 

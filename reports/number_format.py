@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-__all__ = ["Figure", "clip", "counted", "moment", "percent", "share", "size"]
-
 
 @dataclass(frozen=True, slots=True)
 class Figure:

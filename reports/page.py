@@ -11,8 +11,6 @@ from markupsafe import Markup
 from reports.embedding import inline_source, script_hash
 from reports.number_format import counted
 
-__all__ = ["render", "source"]
-
 
 def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:
     """The page of a template, with our ``script`` and style sheets inside it.

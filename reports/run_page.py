@@ -13,8 +13,6 @@ from reports.run_view import run_view
 from reports.sanitizing import plain
 from support.files.atomic_write import write_atomic
 
-__all__ = ["write_run_page"]
-
 _MAX_SAMPLES = 6_000
 _MAX_EVENTS = 10_000
 _STEPS = ("line", "assign", "branch")  # of the advance run; there may be millions

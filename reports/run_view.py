@@ -8,8 +8,6 @@ from reports.embedding import printable
 from reports.number_format import Figure, clip, counted, moment
 from reports.record_fields import Record, count, nested, number, records, text
 
-__all__ = ["RunView", "run_view"]
-
 _ENDS = {
     "end": "ran to its end",
     "halt": "halted",

@@ -7,8 +7,6 @@ from typing import Any
 from reports.embedding import printable
 from reports.number_format import clip
 
-__all__ = ["plain", "shown"]
-
 _MOST_ITEMS = 2_000
 _DEEPEST = 8
 

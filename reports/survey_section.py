@@ -12,8 +12,6 @@ from reports.number_format import clip, percent, share
 from reports.record_fields import Record, count, records, text
 from reports.survey_cluster import cluster_id, is_follower, title_of
 
-__all__ = ["ClusterRow", "MendingStep", "Section", "section"]
-
 _NUMBER_WORDS = dict(
     enumerate(("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=2)
 )

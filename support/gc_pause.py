@@ -10,8 +10,6 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["gc_paused"]
-
 # Bytes of source after which garbage is collected all the same, so that memory stays flat: it is
 # some 25 times as much, and collecting it costs a tenth of a check when it is done for each MB.
 _OFTEN = 8_000_000

@@ -29,8 +29,6 @@ from interp.values.faults import LinkError
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError
 
-__all__ = ["Finding", "Findings", "fuzz", "record_of"]
-
 _SHARD: Final = 50
 #: After so many shards the front end of a process begins anew: what it remembers of programs, some
 #: 100 kB each, would fill the memory.

@@ -25,8 +25,6 @@ from interp.bytecode._generated.opcodes import Op
 from interp.values.builtins import BUILTINS
 from interp.values.faults import FAULTS, LinkError
 
-__all__ = ["Counts", "Needs", "counted", "language", "missing", "needs", "reached"]
-
 #: How often each thing occurred, by its kind and its name.
 Counts = Counter[tuple[str, str]]
 #: What a program has to execute to reach a rule or clause, by its ID.

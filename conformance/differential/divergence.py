@@ -11,8 +11,6 @@ from grammar.syntax.source import Source
 from interp.port.events import EVERY_KIND
 from interp.program.load import load
 
-__all__ = ["Difference", "Files", "difference", "diverged", "examine", "prepared"]
-
 #: Texts by path; the first file is the one to begin with.
 Files = tuple[tuple[str, str], ...]
 

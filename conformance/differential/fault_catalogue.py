@@ -34,8 +34,6 @@ from interp.bytecode.instruction_set.table import Shape, instructions
 from interp.bytecode.vm.context import Rule, Site
 from interp.bytecode.vm.state import Operation, State
 
-__all__ = ["Mutant", "mutants"]
-
 #: A mutant that never comes to an end is stopped.
 _ENDLESS: Final = 100_000
 

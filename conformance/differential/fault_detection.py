@@ -19,8 +19,6 @@ from interp.port.events import Sink
 from interp.program.load import Limits
 from support.parallel.ordered_map import ordered_map
 
-__all__ = ["ReferenceRuns", "Verdict", "examine_mutants", "mutated", "record_of"]
-
 REFERENCE: Final = "tree"
 
 

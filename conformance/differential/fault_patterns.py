@@ -10,26 +10,6 @@ from interp.bytecode.vm.context import Rule, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import Fault
 
-__all__ = [
-    "Change",
-    "Rules",
-    "around",
-    "before",
-    "behind",
-    "change_top",
-    "computing",
-    "doing",
-    "exchange",
-    "instead",
-    "other_value",
-    "pushing",
-    "quiet",
-    "taking",
-    "twice",
-    "with_operands",
-    "wrapped",
-]
-
 #: The makers of all instructions, those for the trace included.
 Rules = Mapping[Op, Rule]
 #: Makes the wrong maker from the right ones and the state of the machine.

@@ -29,8 +29,6 @@ from interp.bytecode.vm.context import Rule, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import fault
 
-__all__ = ["OF_ITS_OWN"]
-
 
 def _floor(left: int, right: int) -> int:
     if right == 0:

@@ -36,8 +36,6 @@ from interp.port.requests import (
 from interp.values.faults import Fault, fault
 from interp.values.values import ArrayValue, EnumValue, StructureValue, copied, empty, has_value
 
-__all__ = ["RandomWorld"]
-
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN1"})
 #: After so many polls in vain every input is TRUE, so that no wait is endless.
 _PATIENCE: Final = 3

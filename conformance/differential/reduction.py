@@ -17,8 +17,6 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from grammar.syntax.walk import BODIES, bodies, children, walk
 
-__all__ = ["Reduced", "reduce_program", "statements_of"]
-
 #: A set of lines, counted from 1, of a file by its place among the files.
 _Unit = tuple[int, frozenset[int]]
 

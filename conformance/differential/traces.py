@@ -14,8 +14,6 @@ from interp.port.events import EVERY_KIND
 from interp.port.requests import At, CodeHandle, Path, Request, Value
 from interp.values.values import ArrayValue, EnumValue, StructureValue
 
-__all__ = ["Fact", "Trace", "place_of", "plain", "shown"]
-
 Fact = tuple[Any, ...]
 
 

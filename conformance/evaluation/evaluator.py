@@ -23,8 +23,6 @@ from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation
 from conformance.suite.registry import basis
 
-__all__ = ["Check", "evaluate", "evaluate_ending", "evaluate_run"]
-
 State = Literal["met", "unmet", "open"]
 
 

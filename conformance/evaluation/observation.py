@@ -14,8 +14,6 @@ from typing import Any
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import PathRecord
 
-__all__ = ["Event", "Finding", "Observation"]
-
 
 @dataclass(frozen=True, slots=True)
 class Finding:

@@ -37,8 +37,6 @@ from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.poses import Pose
 
-__all__ = ["evaluate_on_path"]
-
 Array = npt.NDArray[np.float64]
 
 #: The usual tolerance of a speed, as a share of it.

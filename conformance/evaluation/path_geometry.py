@@ -10,23 +10,6 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-__all__ = [
-    "RATE_MARGIN",
-    "TOLERANCE_DEGREES",
-    "TOLERANCE_MM",
-    "between",
-    "change_rates",
-    "circle_of",
-    "crosses_box",
-    "drawn",
-    "from_arc",
-    "from_circle",
-    "from_line",
-    "from_synchronous",
-    "nearest",
-    "refined",
-]
-
 Array = npt.NDArray[np.float64]
 
 #: How far the tool may be off where nothing else is said, and an axis, a linear one in mm.

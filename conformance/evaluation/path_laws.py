@@ -23,8 +23,6 @@ from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
 from interp.robot.simulation.tracking import PathRecord
 
-__all__ = ["deviations"]
-
 Array = npt.NDArray[np.float64]
 
 #: A path of fewer rows has no jerk, and no shape that it could miss.

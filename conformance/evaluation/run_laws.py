@@ -12,8 +12,6 @@ from typing import Final
 
 from conformance.evaluation.observation import Event, Observation
 
-__all__ = ["Violation", "violations"]
-
 #: $ADVANCE is at most 5 [ADV-01]; the motion under way is none of them.
 _MOST_AHEAD: Final = 5
 

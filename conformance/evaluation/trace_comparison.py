@@ -17,8 +17,6 @@ import numpy as np
 from conformance.evaluation.observation import Event, Observation
 from interp.robot.simulation.tracking import PathRecord
 
-__all__ = ["Divergence", "Side", "first_divergence"]
-
 #: How many events before the divergence are kept to be shown.
 _BEFORE: Final = 5
 #: Set-points of two executors come from one planner: they are equal up to this, in degrees.

@@ -16,8 +16,6 @@ from conformance.suite.expectations import Anchor, Expectation, When
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.faults import FAULTS
 
-__all__ = ["Evaluated", "Marks", "evaluate_on_trace", "time_of", "unwatched"]
-
 #: Whether it is met, and what was seen.
 Evaluated = tuple[Literal["met", "unmet", "open"], str]
 

@@ -20,8 +20,6 @@ from typing import Any, Final, Literal, get_args
 
 from conformance.evaluation.evaluator import Check
 
-__all__ = ["VERDICTS", "Known", "KnownFailures", "Verdict", "verdict_of"]
-
 Verdict = Literal["pass", "fail", "unconfirmed", "known-failure", "skipped"]
 VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
 _FILE: Final = Path(__file__).parents[1] / "known_failures.toml"

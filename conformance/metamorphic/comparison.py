@@ -15,18 +15,6 @@ import numpy.typing as npt
 
 from conformance.evaluation.observation import Event, Observation
 
-__all__ = [
-    "Compare",
-    "at_most_twice",
-    "no_sooner",
-    "same_axes",
-    "same_effects",
-    "same_geometry",
-    "same_outputs",
-    "same_trace",
-    "same_trace_renamed",
-]
-
 Compare = Callable[[Observation, Observation], str]
 Array = npt.NDArray[np.float64]
 

@@ -28,8 +28,6 @@ from conformance.metamorphic.tree_rewriting import (
 from grammar.syntax import ast
 from grammar.syntax.walk import children, walk
 
-__all__ = ["LAWS"]
-
 Statements = tuple[ast.Statement, ...]
 _EXIT: Final = ast.Exit(MADE)
 _MOST_FOLDED: Final = 1_000

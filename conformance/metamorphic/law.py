@@ -9,8 +9,6 @@ from random import Random
 from conformance.metamorphic.comparison import Compare
 from conformance.metamorphic.subject import Program, Run
 
-__all__ = ["Attempt", "Law", "run_law"]
-
 #: A changed program with the comparison it asks for (``None``: that of the law), or ``None`` where
 #: the law does not apply to it.
 Change = Callable[[Program, Random], "Program | tuple[Program, Compare] | None"]

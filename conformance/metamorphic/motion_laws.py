@@ -31,8 +31,6 @@ from conformance.metamorphic.tree_rewriting import (
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 
-__all__ = ["LAWS"]
-
 _KINEMATIC: Final = Run(robot="kinematic")
 _SHIFT: Final = {"X": 24.0, "Y": -36.0, "Z": 12.0}
 #: What reads or changes the position of the arm or the base in force.

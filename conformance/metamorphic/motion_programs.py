@@ -10,8 +10,6 @@ from typing import Final
 
 from grammar.generation.closed.programs import Sample
 
-__all__ = ["moving_program"]
-
 #: Where the arm stands with its hand down, at X 445, Y 0, Z 810.
 _HOME: Final = "PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}"
 _MOTIONS: Final = ("LIN", "LIN", "LIN", "PTP", "CIRC", "REL", "BLOCK")

@@ -25,8 +25,6 @@ from grammar.syntax import ast
 from grammar.syntax.formatter import formatter
 from grammar.syntax.walk import walk
 
-__all__ = ["LAWS"]
-
 _STRINGS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
 _PLAIN_TYPES: Final = frozenset({"INT", "REAL", "BOOL", "CHAR", "FRAME", "POS", "E6POS", "AXIS"})
 

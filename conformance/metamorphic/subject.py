@@ -21,8 +21,6 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from grammar.syntax.unparse import unparse
 
-__all__ = ["Program", "Run"]
-
 #: Virtual seconds that a generated program is watched: it may wait for inputs for ever.
 _WATCHED: Final = 5.0
 #: What gives a program its own line number: such programs do see a change of text.

@@ -9,20 +9,6 @@ from typing import Any, TypeVar
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain, walk
 
-__all__ = [
-    "MADE",
-    "calls_of",
-    "integer",
-    "name",
-    "names_of",
-    "negated",
-    "parenthesised",
-    "rewritten",
-    "routines",
-    "variable",
-    "with_routines",
-]
-
 #: The span of a node that was made and stands nowhere.
 MADE = (0, 0)
 

@@ -19,8 +19,6 @@ from interp.executors import available
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError
 
-__all__ = ["Standing", "laws", "record_of", "try_laws"]
-
 #: For each generated program that a law is to apply to, so many are looked at.
 _LOOKED_AT: Final = 6
 

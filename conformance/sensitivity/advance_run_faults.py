@@ -17,8 +17,6 @@ from interp.controller.tasks import Blocked
 from interp.controller.variables import Variables
 from interp.controller.waits import Waits
 
-__all__ = ["faults"]
-
 _AHEAD: Final = ("advance", "program")
 
 

@@ -16,8 +16,6 @@ from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 from conformance.suite.case import Case
 
-__all__ = ["AIM", "MUTANT_AIM", "measure", "mutants_record", "record_of", "speed_of"]
-
 #: The share of planted faults that the cases have to find.
 AIM: Final = 0.95
 #: The share of mutants that have to make a case fail.

@@ -23,8 +23,6 @@ from interp.controller.variable_access import VariableAccess
 from interp.robot.api.control_core import ControlCore
 from interp.values import faults as run_time
 
-__all__ = ["faults"]
-
 _SUITES: Final = ("interrupt", "program")
 
 

@@ -24,8 +24,6 @@ from conformance.suite.case import Case
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import in_shares
 
-__all__ = ["NOTHING_KEPT", "Reach", "reach_of", "seen_digest"]
-
 #: So many cases go to a process at once.
 _SHARE: Final = 16
 #: A store that keeps nothing.

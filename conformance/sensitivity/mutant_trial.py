@@ -40,18 +40,6 @@ from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 
-__all__ = [
-    "MOST",
-    "OF_TRIAL",
-    "Fate",
-    "Trial",
-    "equivalent",
-    "is_possible",
-    "kept_trials",
-    "reaches_of",
-    "try_mutants",
-]
-
 #: Red: a case has failed, or executors differ on it. Soft: only cases whose rules may not fail have
 #: noticed. Equivalent: none
 #: can, and ``equivalent.toml`` says why. Invalid: it could not be put in place.

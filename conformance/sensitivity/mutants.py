@@ -26,21 +26,6 @@ from typing import Any, Final
 
 from conformance.sensitivity.mutation_operators import Change, Operator, changes
 
-__all__ = [
-    "PACKAGES",
-    "InvalidMutant",
-    "Mutant",
-    "all_mutants",
-    "around",
-    "drawn",
-    "load",
-    "modules",
-    "named",
-    "of_line",
-    "put_in_place",
-    "uses_of",
-]
-
 #: What decides semantics, by the name under which it is reported: modules, and which of them or of
 #: their functions are left out. Left out is what no program of KRL can tell apart: how a run is
 #: fed, recorded and shown, what another caller than a controller uses, and what only one of the

@@ -26,8 +26,6 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
-__all__ = ["Change", "Operator", "changes"]
-
 Operator = Literal["comparison", "arithmetic", "connective", "condition", "constant", "statement"]
 
 _BOUNDARY: Final[Mapping[type[ast.cmpop], type[ast.cmpop]]] = {

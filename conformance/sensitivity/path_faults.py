@@ -29,8 +29,6 @@ from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.planning.timeline import Timeline
 from interp.robot.planning.tracks import Track, Tracks
 
-__all__ = ["faults"]
-
 _CYCLE: Final = 12_000
 
 

@@ -11,8 +11,6 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["Fault", "Plant", "constant", "group_in", "group_of", "on", "several"]
-
 #: Plants a fault for as long as the context lasts.
 Plant = Callable[[], AbstractContextManager[None]]
 #: Makes what is planted from what was there: the function as its class has it, or a value.

@@ -29,8 +29,6 @@ from grammar.syntax.unparse import expression
 from grammar.syntax.walk import BODIES, children, root_variable, walk
 from support.parallel.ordered_map import in_shares
 
-__all__ = ["Removal", "features", "named_by", "removals_record", "try_removals", "without"]
-
 _SETUP: Final = Setup("tree", "kinematic")
 _WORD: Final = re.compile(r"[$#]?[A-Z_]\w*(?:\.[A-Z]\w*)*")
 #: Words with nothing but blanks between them.

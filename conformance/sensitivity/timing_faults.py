@@ -15,8 +15,6 @@ from interp.controller.timers import Timers
 from interp.controller.variable_access import VariableAccess
 from interp.controller.waits import Waits
 
-__all__ = ["faults"]
-
 _IO: Final = ("io", "program")
 
 

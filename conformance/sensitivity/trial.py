@@ -25,8 +25,6 @@ from interp.controller.scheduler import Scheduler
 from interp.robot.api.control_core import ControlCore
 from support.parallel.ordered_map import ordered_map
 
-__all__ = ["Verdict", "all_faults", "try_faults"]
-
 #: No case takes more steps than this; a run that does is endless.
 _ENDLESS: Final = 60_000
 

@@ -26,8 +26,6 @@ from conformance.suite.registry import basis
 from grammar.syntax.source import Source
 from support.files.untrusted import read_text
 
-__all__ = ["CASES", "ENDINGS", "Case", "CaseError", "find_cases", "read_case", "selected"]
-
 #: The cases of this project.
 CASES: Final = Path(__file__).parents[1] / "cases"
 #: Ends of files that a program consists of.

@@ -12,18 +12,6 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, Literal, cast
 
-__all__ = [
-    "KINDS",
-    "PHASES",
-    "Anchor",
-    "Expectation",
-    "ExpectationError",
-    "Kind",
-    "Phase",
-    "When",
-    "read_expectation",
-]
-
 Phase = Literal["parse", "check", "run"]
 PHASES: Final[tuple[Phase, ...]] = ("parse", "check", "run")
 

@@ -21,8 +21,6 @@ from typing import Final
 
 from conformance.suite.case import CASES, Case, find_cases
 
-__all__ = ["FEATURES", "FOLDER", "cases", "covering", "drawn"]
-
 FOLDER: Final = CASES / "interaction"
 Row = Mapping[str, str]
 

@@ -14,8 +14,6 @@ from functools import cache
 from importlib import resources
 from types import MappingProxyType
 
-__all__ = ["Clause", "Rule", "basis", "registry"]
-
 
 @dataclass(frozen=True, slots=True)
 class Clause:

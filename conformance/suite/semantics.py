@@ -14,8 +14,6 @@ from conformance.suite.registry import Rule, registry
 from grammar.diagnostics.codes import by_slug
 from grammar.semantics.rules import is_confirmed
 
-__all__ = ["PAGE", "UNUSED", "codes_of", "page"]
-
 PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
 
 #: Codes that no check gives yet.

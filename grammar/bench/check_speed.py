@@ -33,8 +33,6 @@ from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
 
-__all__ = ["measure_check", "steps"]
-
 MB = 1_000_000
 ROUNDS = 3
 PHASES = (

@@ -12,8 +12,6 @@ from typing import Final
 from grammar.bench.planted_mistakes import cut, damaged, lines_of_tokens
 from grammar.syntax.source import Source
 
-__all__ = ["DAMAGES", "damaged_source"]
-
 #: Of the files that a kind concerns, the share that is damaged.
 _FILES = 0.3
 #: Of the lines of a damaged file, and of the characters, the share that is.

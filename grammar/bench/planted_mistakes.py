@@ -34,8 +34,6 @@ from grammar.syntax.source import Source
 from support.files.decode import decode
 from support.files.discovery import Found, IngestError, discover, read
 
-__all__ = ["KINDS", "cut", "damaged", "lines_of_tokens", "measure_planted"]
-
 #: What a slip can be.
 KINDS = (
     "name misspelt",

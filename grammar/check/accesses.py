@@ -16,8 +16,6 @@ from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, LEAVES, children, left_chain
 
-__all__ = ["Access", "Use", "accesses", "calls_of", "parts_of"]
-
 
 class Use(Enum):
     """What is done to a variable."""

@@ -15,8 +15,6 @@ from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 
-__all__ = ["AdvanceStop", "is_known_call", "stop_of"]
-
 _IN_STEP = "it is read or set in step with the robot"
 _WAITS = "the program goes on when the robot has come to it"
 #: Delivered with every controller, and written so that it does not stop without need [ADV-06].

@@ -20,8 +20,6 @@ from grammar.check.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.syntax import ast
 
-__all__ = ["check"]
-
 #: So many statements behind an approximated motion are looked at.
 _FARTHEST_LOOK = 200
 _MOTIONS = ast.Motion | ast.SplineBlock | ast.EmilyMotion

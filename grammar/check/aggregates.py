@@ -8,8 +8,6 @@ from grammar.semantics.operations import component, subscript
 from grammar.semantics.types import INT, UNKNOWN, Aggregate, Structure, Type
 from grammar.syntax import ast
 
-__all__ = ["aggregate"]
-
 
 def aggregate(checker: TypeChecker, node: ast.Aggregate, expected: Type) -> Type:
     """The type of an aggregate; its structure is that of its prefix, or else of its place.

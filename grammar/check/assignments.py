@@ -11,8 +11,6 @@ from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable
 
-__all__ = ["assign"]
-
 
 def assign(checker: TypeChecker, node: ast.Assignment) -> None:
     """Check an assignment in a routine."""

@@ -16,8 +16,6 @@ from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
 from grammar.semantics.types import UNKNOWN, Type, Verdict
 from grammar.syntax import ast
 
-__all__ = ["call"]
-
 
 def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
     """The type of the value of a call, `UNKNOWN` where there is none; its arguments are checked."""

@@ -13,8 +13,6 @@ from grammar.semantics.types import INT_MAX, INT_MIN
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain
 
-__all__ = ["Value", "constant", "integer_of"]
-
 #: A number, a truth value, a text, or a constant of an enumeration as ``#NAME`` in upper case.
 Value = int | float | bool | str
 

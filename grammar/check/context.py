@@ -23,8 +23,6 @@ from grammar.syntax.source import Source
 from grammar.syntax.walk import BODIES, bodies
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Context", "PlacedStatement", "RoutineBody", "placed"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedStatement:

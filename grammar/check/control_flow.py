@@ -12,8 +12,6 @@ from grammar.diagnostics.did_you_mean import did_you_mean
 from grammar.semantics.rules import is_confirmed
 from grammar.syntax import ast
 
-__all__ = ["check"]
-
 # Guessing costs time for each label, and one who has so many wrong has something else in mind.
 _MOST_GUESSES = 20
 _LOOPS = ast.For | ast.While | ast.Repeat | ast.Loop

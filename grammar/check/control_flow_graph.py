@@ -15,8 +15,6 @@ from grammar.syntax import ast
 from grammar.syntax.walk import bodies, without_parentheses
 from support.lazy_dataclass import dataclass
 
-__all__ = ["FlowGraph", "FlowNode", "flow_graph"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlowNode:

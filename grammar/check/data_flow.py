@@ -24,8 +24,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import BODIES, root_variable, walk, without_parentheses
 
-__all__ = ["check", "needed_parameters"]
-
 _WORD = re.compile(r"[A-Za-z_$][\w$]*")
 # A text, or a comment, which is none.
 _TEXT = re.compile(r';[^\r\n]*|"([^"\r\n]*)"')

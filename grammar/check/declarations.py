@@ -17,8 +17,6 @@ from grammar.semantics.symbols import Kind
 from grammar.semantics.types import INT, REAL, UNKNOWN
 from grammar.syntax import ast
 
-__all__ = ["check"]
-
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """What is wrong with the declarations of a file."""

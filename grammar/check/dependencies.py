@@ -19,8 +19,6 @@ from functools import cache
 from grammar.semantics.link import Project, words_of
 from grammar.semantics.symbols import Kind, ModuleTable
 
-__all__ = ["Contribution", "Needs", "contribution", "needs_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class Contribution:

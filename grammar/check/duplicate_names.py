@@ -16,8 +16,6 @@ from grammar.semantics.scopes import Found, Module
 from grammar.semantics.symbols import Duplicate, Kind, Table
 from grammar.syntax.references import Space
 
-__all__ = ["check"]
-
 #: Labels are the affair of `grammar.check.control_flow`; a routine may be announced again and
 #: again.
 _HARMLESS = frozenset({Kind.LABEL, Kind.EXTERNAL})

@@ -23,16 +23,6 @@ from grammar.syntax import ast
 from grammar.syntax.walk import left_chain, without_parentheses
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "NO_EFFECTS",
-    "Effects",
-    "LeftOut",
-    "Place",
-    "effects",
-    "effects_of_unread",
-    "of_project",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Place:

@@ -18,8 +18,6 @@ from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from grammar.syntax.references import calls_in
 
-__all__ = ["check"]
-
 # Statements that are looked at before the first motion; who needs more sets up a lot.
 _FARTHEST_LOOK = 2_000
 

@@ -41,8 +41,6 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Node
 from grammar.syntax.walk import left_chain, root_variable
 
-__all__ = ["type_checker"]
-
 _LOGICAL = LOGICAL | BITWISE
 _RELATIONS = EQUALITY | ORDER
 _BITS = 2**32 - 1

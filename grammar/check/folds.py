@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from grammar.check.context import Context
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 
-__all__ = ["check"]
-
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Where ;FOLD and ;ENDFOLD do not belong together."""

@@ -40,17 +40,6 @@ from grammar.syntax.ast import Node
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "CHECKS",
-    "Check",
-    "Checked",
-    "Findings",
-    "check",
-    "check_module",
-    "check_project",
-    "typed_module",
-]
-
 Check = Callable[[Context], Iterator[Diagnostic]]
 
 #: These type the expressions, for all that follow.

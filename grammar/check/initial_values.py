@@ -22,8 +22,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import root_variable
 
-__all__ = ["check"]
-
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Type the initial values of a data list and look at their places."""

@@ -15,8 +15,6 @@ from grammar.motion_kinds import SPLINE_MOTIONS
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 
-__all__ = ["check"]
-
 #: The one motion that is not the robot's but of external axes on their own.
 _ASYNCHRONOUS = "ASYPTP"
 _WORKSPACES = frozenset({"WSPACEGIVE", "WSPACETAKE"})

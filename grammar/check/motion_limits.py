@@ -14,8 +14,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import without_parentheses
 
-__all__ = ["check_motion_limit"]
-
 #: The machine data for each component that a program sets.
 _MAXIMA = {"$VEL": "$VEL_MA", "$ACC": "$ACC_MA"}
 #: m/s and m/s² that no robot reaches.

@@ -8,8 +8,6 @@ from grammar.check.context import Context
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.syntax import ast
 
-__all__ = ["LONGEST_NAME", "MOST_LOCAL_ROUTINES", "check"]
-
 LONGEST_NAME = 24
 MOST_LOCAL_ROUTINES = 255
 

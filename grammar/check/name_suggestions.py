@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from grammar.diagnostics.diagnostic import Fix
 from grammar.diagnostics.did_you_mean import nearest
 
-__all__ = ["NameSuggestions"]
-
 _MOST_NAMES = 3
 # A word of fewer letters is the beginning of too much.
 _SHORTEST = 3

@@ -31,21 +31,6 @@ from grammar.syntax.source import Source
 from support.files.decode import decode, digest
 from support.gc_pause import gc_paused
 
-__all__ = [
-    "LARGEST",
-    "CheckOptions",
-    "Content",
-    "FileResult",
-    "KnownFile",
-    "Reading",
-    "check_part",
-    "completed",
-    "needs",
-    "read_part",
-    "read_source",
-    "recheck",
-]
-
 #: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
 LARGEST = 24_000_000
 # Trees of so many bytes are kept between reading and checking; other files are read once more.

@@ -9,8 +9,6 @@ from grammar.check.project_check import read_source
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.syntax.source import Source
 
-__all__ = ["Repair", "edited", "repair"]
-
 # A line with more errors one behind the other is for people.
 _MOST_STEPS = 4
 

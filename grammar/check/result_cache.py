@@ -19,15 +19,6 @@ from support.files.discovery import Skipped
 from support.files.restricted_pickle import dumps, loads
 from support.files.result_store import ResultStore
 
-__all__ = [
-    "ProjectResult",
-    "known_files",
-    "known_records",
-    "read_result",
-    "result_record",
-    "state_of",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class ProjectResult:

@@ -9,8 +9,6 @@ from grammar.semantics.symbols import SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable
 
-__all__ = ["Side", "side_of", "written_side"]
-
 Side = Literal["inputs", "outputs"]
 
 _SIDES: dict[str, Side] = {

@@ -7,8 +7,6 @@ from grammar.check.signal_direction import written_side
 from grammar.check.type_checker import TypeChecker
 from grammar.syntax import ast
 
-__all__ = ["check_signal"]
-
 _WIDEST = 32
 
 

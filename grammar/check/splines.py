@@ -9,8 +9,6 @@ from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.syntax import ast
 
-__all__ = ["check"]
-
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Findings about spline blocks and spline motions."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 from grammar.syntax.ast import Node, Span
 from grammar.syntax.source import Source
 
-__all__ = ["head", "line_of"]
-
 
 def head(source: Source, node: Node) -> Span:
     """The span of a node as far as it lies on its first line, its comment left out."""

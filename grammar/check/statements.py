@@ -28,8 +28,6 @@ from grammar.semantics.types import (
 from grammar.syntax import ast
 from grammar.syntax.walk import children, without_parentheses
 
-__all__ = ["check"]
-
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Type all expressions in the routines of a file."""

@@ -10,8 +10,6 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.diagnostics.suppression import Malformed, Suppression, suppression, unsuppressed
 from grammar.syntax.source import Source
 
-__all__ = ["SuppressionComment", "apply_suppressions", "suppression_comments"]
-
 # Most files have no such comment, and looking at each comment takes time.
 _MARK = re.compile(r";[ \t]*krl[ \t]*:", re.IGNORECASE)
 

@@ -36,8 +36,6 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
 from grammar.syntax.walk import root_variable, without_parentheses
 
-__all__ = ["NO_CONSTANT", "Accepts", "Rule", "TypeChecker"]
-
 #: Whether a place of one type accepts a value of another.
 Accepts = Callable[[Type, Type], Verdict]
 #: The type of a node; the last argument is that of its place, `UNKNOWN` where it may be anything.

@@ -24,8 +24,6 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
-__all__ = ["check", "lacks_data_list", "references"]
-
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Tell the names that are certain to be unknown, each once in a file."""

@@ -16,8 +16,6 @@ from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.typos import Typos
 from grammar.syntax.references import Space
 
-__all__ = ["SLUGS", "WORDS", "UnresolvedName", "of_project"]
-
 #: The code of a name that nothing declares, and what it is called, by the space it belongs to.
 SLUGS: Mapping[Space | None, str] = {
     None: "no-such-component",

@@ -15,8 +15,6 @@ from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 
-__all__ = ["check", "is_priority"]
-
 #: Milliseconds or millimetres: how far a trigger can be shifted [TRG-03, TRG-04].
 _FARTHEST = 10_000_000
 _STOP_MESSAGE = "$STOPMESS"

@@ -12,8 +12,6 @@ from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change
 from grammar.comparison.renaming import names_in, renamed, renamings
 from grammar.syntax.source import Source
 
-__all__ = ["compare"]
-
 _DRIVES = frozenset({"r1", "steu"})
 
 _Pair = tuple[Content, Content]

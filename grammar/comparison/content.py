@@ -15,8 +15,6 @@ from grammar.syntax import ast
 from grammar.syntax.source import Source
 from grammar.syntax.unparse import expression
 
-__all__ = ["CodeLine", "Content", "Datum", "RoutineText", "content_of"]
-
 _TOKEN = re.compile(r'"[^"]*"|[$#]?[A-Za-z_]\w*|\d+\.?\d*(?:E[-+]?\d+)?|\.\d+|[<>=]=|<>|\S', re.I)
 _OPENERS = frozenset({"DEF", "DEFFCT"})
 _CLOSERS = frozenset({"END", "ENDFCT"})

@@ -7,8 +7,6 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import TypeVar
 
-__all__ = ["likest", "line_matcher", "similarity"]
-
 _K = TypeVar("_K", bound=Hashable)
 
 # Less is no likeness: short routines have much in common.

@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from grammar.comparison.content import Datum
 from grammar.syntax import ast
 
-__all__ = ["POINT_TYPES", "PointChange", "frame_numbers", "numbers_of", "point_change"]
-
 _POSES = frozenset({"FRAME", "POS", "E3POS", "E6POS"})
 _AXES = frozenset({"AXIS", "E3AXIS", "E6AXIS"})
 POINT_TYPES = _POSES | _AXES

@@ -14,8 +14,6 @@ from dataclasses import replace
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText
 from grammar.comparison.matching import line_matcher
 
-__all__ = ["names_in", "renamed", "renamings"]
-
 _NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
 
 

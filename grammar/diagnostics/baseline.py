@@ -13,8 +13,6 @@ from typing import Any
 
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 
-__all__ = ["Baseline", "LineOf"]
-
 #: The text of a line by path and number, empty where it is not known.
 LineOf = Callable[[str, int], str]
 

@@ -14,8 +14,6 @@ from functools import cache
 from importlib import resources
 from typing import Literal, get_args
 
-__all__ = ["DiagnosticCode", "Severity", "by_code", "by_slug", "code", "of_message"]
-
 #: From the gravest to the mildest. An error is what the controller refuses.
 Severity = Literal["error", "warning", "note"]
 

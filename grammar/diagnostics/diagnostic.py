@@ -13,8 +13,6 @@ from typing import Any, Protocol
 
 from grammar.diagnostics.codes import Severity, code
 
-__all__ = ["Diagnostic", "Fix", "Places", "Region", "diagnose", "in_order", "records"]
-
 
 class Places(Protocol):
     """A text that knows its lines: a `grammar.syntax.source.Source`, a `parser.tree.Tree`."""

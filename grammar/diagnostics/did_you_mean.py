@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import islice
 
-__all__ = ["did_you_mean", "nearest"]
-
 # Cost is bounded: so many names are looked at, and none that is longer.
 _MOST_NAMES = 20_000
 _LONGEST_NAME = 64

@@ -20,8 +20,6 @@ from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.node_plans import TooDeep
 from grammar.syntax.source import Source
 
-__all__ = ["Recovered", "recover"]
-
 # Every line that is blanked out costs a reading of the whole text.
 _MOST_ROUNDS = 60
 _LARGEST = 2_000_000

@@ -11,8 +11,6 @@ from grammar.diagnostics.open_blocks import OpenBlock
 from grammar.syntax.build import SyntaxFailure
 from grammar.syntax.source import Source
 
-__all__ = ["ErrorSite"]
-
 # Of a longer line only what is near the failure is looked at.
 _LONGEST_LINE = 2_000
 _TOKEN = re.compile(r'"[^"]*"|[$#]?\w+|:=|==|<>|!=|<=|>=|=<|=>|&&|\|\||//|\S')

@@ -11,8 +11,6 @@ from functools import cache
 
 from grammar.syntax.build import builder
 
-__all__ = ["in_words", "names", "statements"]
-
 _Words = frozenset[str]
 
 

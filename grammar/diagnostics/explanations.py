@@ -17,8 +17,6 @@ from typing import Any
 
 from grammar.diagnostics.codes import DiagnosticCode, by_code, by_slug
 
-__all__ = ["Explanation", "explanation"]
-
 
 @dataclass(frozen=True, slots=True)
 class Explanation:

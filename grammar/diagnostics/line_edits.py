@@ -17,8 +17,6 @@ from grammar.diagnostics.open_blocks import innermost, lead
 from grammar.parser.tree import Tree
 from grammar.syntax.build import builder
 
-__all__ = ["BRACKETS", "LineEdit", "bracket", "doubled", "is_one_slip", "keyword", "left_out"]
-
 # Longer lines are data, and trying takes as long as reading them.
 _LONGEST = 1_000
 #: The opening bracket of each closing one.

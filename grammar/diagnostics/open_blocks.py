@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.syntax.source import Source
 
-__all__ = ["OpenBlock", "innermost", "lead", "most_likely", "open_blocks"]
-
 _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.ASCII)
 
 

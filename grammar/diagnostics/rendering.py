@@ -16,8 +16,6 @@ from collections.abc import Callable, Iterable, Iterator
 
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 
-__all__ = ["rendered", "summary"]
-
 # Of a longer line only the part around the caret is shown, in characters.
 _LONGEST_LINE = 110
 _AHEAD_OF_CARET = 40

@@ -14,8 +14,6 @@ from urllib.parse import quote
 from grammar.diagnostics.codes import DiagnosticCode, by_code
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, in_order
 
-__all__ = ["sarif"]
-
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 

@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from grammar.diagnostics.codes import by_code
 from grammar.diagnostics.diagnostic import Diagnostic
 
-__all__ = ["Malformed", "Selection", "Suppression", "suppression", "unsuppressed"]
-
 _COMMENT = re.compile(
     r";+[ \t]*krl[ \t]*:[ \t]*(ignore(?:-file)?)(?![\w-])[ \t]*(?:\[([^\]]*)\])?(.*)",
     re.IGNORECASE | re.ASCII | re.DOTALL,

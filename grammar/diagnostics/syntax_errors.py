@@ -30,8 +30,6 @@ from grammar.motion_kinds import CIRCLES
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
-__all__ = ["MOST_TOLD", "syntax_findings"]
-
 #: Who has more lines that cannot be read has a file that is no KRL.
 MOST_TOLD = 1_000
 _LONGEST_TOKEN = 60

@@ -13,8 +13,6 @@ import re
 from collections.abc import Iterable, Iterator
 from enum import Enum
 
-__all__ = ["Series", "Typos"]
-
 # Shorter names are near too many others.
 _SHORTEST = 4
 _LONGEST = 64

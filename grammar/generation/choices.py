@@ -13,8 +13,6 @@ from itertools import accumulate
 from random import Random
 from typing import Generic, TypeVar
 
-__all__ = ["Choices", "SeededChoices", "Weighted"]
-
 _T = TypeVar("_T")
 
 

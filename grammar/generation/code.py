@@ -16,18 +16,6 @@ from grammar.generation.literals import Literals
 from grammar.generation.scope import Parameter, Scope
 from grammar.semantics.types import Type
 
-__all__ = [
-    "Code",
-    "Counter",
-    "ExpressionRule",
-    "Naming",
-    "Part",
-    "Size",
-    "Spelling",
-    "StatementRule",
-    "Style",
-]
-
 
 class Naming(Protocol):
     """Makes names that are not taken yet."""

@@ -14,20 +14,6 @@ from grammar.generation.scope import Variable
 from grammar.generation.statements import assignment
 from grammar.semantics.types import CHAR, INT, Array, Enumeration, Type
 
-__all__ = [
-    "backward_jump",
-    "branch",
-    "give_back",
-    "loop",
-    "loop_for",
-    "loop_repeat",
-    "loop_while",
-    "returned",
-    "statement",
-    "statements",
-    "switch",
-]
-
 #: Loops within blocks.
 _DEEPEST: Final = 5
 #: An upper limit that is not known.

@@ -15,31 +15,6 @@ from grammar.generation.literals import POSES, TEXT, Path
 from grammar.generation.scope import Parameter, Place, Places, Routine, Variable
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Structure, Type
 
-__all__ = [
-    "argument",
-    "array",
-    "atom",
-    "call_of",
-    "chain",
-    "constant",
-    "constant_comparison",
-    "constant_or_place",
-    "count",
-    "divisor",
-    "expression",
-    "factor",
-    "letter",
-    "letter_comparison",
-    "near_comparison",
-    "operand",
-    "pose",
-    "read",
-    "relation",
-    "target",
-    "text",
-    "truth",
-]
-
 _ORDERS: Final = ("==", "<>", "<", ">", "<=", ">=", "=>", "=<")
 _EQUAL: Final = ("==", "<>")
 #: Deep enough for the program stack to overflow.

@@ -12,8 +12,6 @@ from grammar.generation.literals import AXIS_TYPES, POSES, predefined, structure
 from grammar.generation.patterns import pattern, patterns
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
-__all__ = ["CONTROLLER_VALUES"]
-
 _READERS: Final[tuple[tuple[str, Type], ...]] = (
     *(("STRTOINT", INT), ("STRTOREAL", REAL), ("STRTOBOOL", BOOL), ("STRTOSTRING", CHAR)),
     *((f"STRTO{type_.name}", type_) for type_ in (*POSES, *AXIS_TYPES)),

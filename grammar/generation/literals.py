@@ -21,20 +21,6 @@ from grammar.semantics.types import (
     Type,
 )
 
-__all__ = [
-    "AXIS_TYPES",
-    "POSES",
-    "TEXT",
-    "Literals",
-    "Path",
-    "declarator",
-    "elements",
-    "parts",
-    "predefined",
-    "structure",
-    "type_name",
-]
-
 #: A text of any length.
 TEXT: Final = Array(CHAR, (None,))
 

@@ -18,17 +18,6 @@ from grammar.generation.scope import Routine
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.semantics.types import INT, REAL
 
-__all__ = [
-    "action_call",
-    "brake",
-    "interrupt",
-    "motion",
-    "motion_text",
-    "spline_block",
-    "spline_motion",
-    "trigger",
-]
-
 _PRIORITIES: Final = ("1", "4", "20", "39", "81", "-1")
 _NUMBERS: Final = (1, 2, 4, 5, 10, 39, 81, 128)
 _SINGLE: Final = ("SPTP", "SLIN", "SCIRC", "SPTP_REL", "SLIN_REL", "SCIRC_REL")

@@ -29,8 +29,6 @@ from grammar.generation.expressions import (
 from grammar.generation.literals import TEXT, predefined
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
-__all__ = ["line", "output", "pattern", "patterns"]
-
 _PLACE: Final = re.compile(r"<[^<>]+>|~|:=")
 _SCALARS: Final[Mapping[str, Type]] = {"INT": INT, "REAL": REAL, "BOOL": BOOL, "CHAR": CHAR}
 #: How deep expressions of a statement nest.

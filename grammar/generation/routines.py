@@ -12,19 +12,6 @@ from grammar.generation.literals import declarator, type_name
 from grammar.generation.scope import Parameter, Routine, Scope, Variable
 from grammar.semantics.types import Array, Enumeration, Structure, Type
 
-__all__ = [
-    "DEPTH",
-    "begin",
-    "constant_datum",
-    "datum",
-    "declare",
-    "declare_parameters",
-    "enumeration",
-    "parameters",
-    "routine_text",
-    "structure_definition",
-]
-
 #: The parameter that counts how often a routine may still call itself.
 DEPTH: Final = "N"
 #: Types that are declared without DECL as well [TYP-06].

@@ -10,8 +10,6 @@ from grammar.generation.choices import Choices
 from grammar.generation.literals import Path, parts
 from grammar.semantics.types import BOOL, Array, Enumeration, Structure, Type, is_position
 
-__all__ = ["Parameter", "Place", "Places", "Routine", "Scope", "Variable"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Variable:

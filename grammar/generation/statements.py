@@ -18,18 +18,6 @@ from grammar.generation.expressions import (
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, structure
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
-__all__ = [
-    "assign_text",
-    "assign_whole",
-    "assignment",
-    "call",
-    "channel",
-    "input_signal",
-    "proceed",
-    "set_advance",
-    "set_base",
-]
-
 _STATE: Final = structure("STATE_T")
 
 

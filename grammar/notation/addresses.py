@@ -19,8 +19,6 @@ from grammar.notation.model import (
     Rule,
 )
 
-__all__ = ["Address", "element_at", "sequence_at", "sequences", "spelled"]
-
 Address = tuple[int, ...]
 
 

@@ -26,26 +26,6 @@ from grammar.notation.rewriting import (
     without_rule,
 )
 
-__all__ = [
-    "AddAlternative",
-    "AddRule",
-    "AddToken",
-    "Edit",
-    "Insert",
-    "MakeOptional",
-    "Preamble",
-    "RemoveAlternative",
-    "RemoveElement",
-    "RemoveRule",
-    "Replace",
-    "SetComment",
-    "Widen",
-    "apply",
-    "describe",
-    "from_data",
-    "to_data",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Insert:

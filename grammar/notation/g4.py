@@ -34,12 +34,6 @@ from grammar.notation.unsupported import unsupported
 from grammar.notation.wellformed import problem
 from support.files.untrusted import read_bytes
 
-__all__ = [
-    "read",
-    "read_file",
-    "read_rule",
-]
-
 #: How deep elements may lie within one another. Whoever walks a rule may rely on it and recurse.
 _MAX_DEPTH = 100
 

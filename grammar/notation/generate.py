@@ -17,16 +17,6 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-__all__ = [
-    "ANTLR_VERSION",
-    "GRAMMAR",
-    "GenerationError",
-    "check",
-    "generate",
-    "main",
-    "run_antlr",
-]
-
 ANTLR_VERSION = "4.13.2"
 _LONGEST = 600  # seconds that ANTLR may take for a grammar
 HERE = Path(__file__).resolve().parents[1]

@@ -8,8 +8,6 @@ from grammar._generated import krl_grammar as generated
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 
-__all__ = ["krl_grammar"]
-
 
 def krl_grammar() -> Grammar:
     """What KRL.g4 holds: as it was generated, or read anew where the file has changed since.

@@ -13,21 +13,6 @@ from grammar.notation.addresses import Address, element_at, sequence_at, spelled
 from grammar.notation.g4 import read_rule
 from grammar.notation.model import Grammar, GrammarError, Group, Repeat, Rule
 
-__all__ = [
-    "commented",
-    "replaced",
-    "widened",
-    "with_alternative",
-    "with_insertion",
-    "with_optional",
-    "with_preamble",
-    "with_rule",
-    "with_token",
-    "without_alternative",
-    "without_element",
-    "without_rule",
-]
-
 
 def with_optional(rule: Rule, at: Address, count: int) -> str:
     """So many elements from an address on may be left out."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-__all__ = ["unsupported"]
-
 # What has other rules inside comes first; an action may have braces in braces, twice over.
 _ACTION = r"\{(?>[^{}]++|\{(?>[^{}]++|\{[^{}]*+\})*+\})*+\}"
 _PARTS = re.compile(

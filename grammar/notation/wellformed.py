@@ -18,8 +18,6 @@ from grammar.notation.model import (
     walk,
 )
 
-__all__ = ["problem", "shortest_lengths"]
-
 # Words that ANTLR's own language keeps for itself, so no rule can be called so.
 _RESERVED = frozenset(
     "catch channels finally fragment grammar import lexer locals mode options parser "

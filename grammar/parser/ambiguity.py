@@ -13,8 +13,6 @@ from collections.abc import Sequence
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import Recognizer, State
 
-__all__ = ["is_ambiguous"]
-
 _MOST_NODES = 200_000
 
 _Node = tuple[int, Configuration, bool]  # tokens read, where we are, whether a token was just read

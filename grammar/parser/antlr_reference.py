@@ -15,8 +15,6 @@ from antlr4.error.ErrorListener import ErrorListener
 from antlr4.error.Errors import ParseCancellationException
 from antlr4.error.ErrorStrategy import BailErrorStrategy
 
-__all__ = ["Refusal", "accepts", "refusal", "refusal_by"]
-
 
 @dataclass(frozen=True, slots=True)
 class Refusal:

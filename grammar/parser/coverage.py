@@ -27,8 +27,6 @@ from grammar.notation.model import Alternative, Element, Grammar, Group, Referen
 from grammar.parser.ordered_network import FIRST, LAST, OrderedAutomaton, Step, ordered_automaton
 from grammar.parser.tree import Outline, Tree
 
-__all__ = ["Branch", "GrammarCoverage", "Share", "branches"]
-
 _HOW_OFTEN: Mapping[str, tuple[str, ...]] = {
     "?": ("absent", "present"),
     "*": ("none", "one", "more"),

@@ -27,8 +27,6 @@ from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack
 from grammar.parser.lexer import Lexer
 from grammar.parser.ordered_network import ordered_automaton
 
-__all__ = ["Action", "Begin", "Derivation", "Deriver"]
-
 _END = -1  # what comes after a rule, as a position
 
 

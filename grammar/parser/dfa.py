@@ -29,8 +29,6 @@ from grammar.notation.model import (
     normalised,
 )
 
-__all__ = ["CharAutomaton", "automaton_of", "pattern_of"]
-
 #: Character ranges that differ by case in ASCII; ANTLR's caseInsensitive adds the other case.
 _CASE_OFFSET = ord("a") - ord("A")
 

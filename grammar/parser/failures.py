@@ -29,8 +29,6 @@ from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.sentences import Sentences
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Failure", "FailureContext", "FailureFinder", "Form"]
-
 # A failing line is tried again without 1, 2, 3 … tokens; on enormous lines only so far.
 _LONGEST_GAP = 64
 # How many lines that say something decide where reading goes on.

@@ -24,8 +24,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable
 from itertools import islice
 
-__all__ = ["Automaton", "Configuration", "Core", "Stack", "Tail"]
-
 # Deep stacks within one line (nested parentheses) are cut as well, so that each level does not
 # become a core of its own.
 _DEEP = 96

@@ -34,8 +34,6 @@ from grammar.parser.dfa import (
     pattern_of,
 )
 
-__all__ = ["ABSENT", "EOF", "ERROR", "SKIPPED", "Lexer", "lexer_of", "regex_of"]
-
 #: Kinds below zero are not tokens of the grammar.
 SKIPPED = -1
 ERROR = -2

@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from grammar.parser.lazy_automaton import Core, Tail
 from grammar.parser.recognizer import Recognizer, State
 
-__all__ = ["LineReader", "Spot"]
-
 
 class Spot(dict[int, "Spot | None"]):
     """A state between two lines; the same state is the same object.

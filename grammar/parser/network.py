@@ -15,15 +15,6 @@ from grammar.notation.model import Element, Grammar, Group, Literal, Reference, 
 from grammar.parser.lexer import Lexer, lexer_of
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "Network",
-    "RuleAutomaton",
-    "is_left_recursive",
-    "may_be_empty",
-    "network_of",
-    "with_rule",
-]
-
 Symbol = str  # the name of a token or a rule
 
 

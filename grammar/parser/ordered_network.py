@@ -15,8 +15,6 @@ from grammar.notation.addresses import Address
 from grammar.notation.model import Alternative, CharSet, Element, Grammar, Group, Repeat, Rule
 from support.lazy_dataclass import dataclass
 
-__all__ = ["FIRST", "LAST", "OrderedAutomaton", "Sign", "Step", "ordered_automaton"]
-
 #: States of every rule.
 FIRST, LAST = 0, 1
 

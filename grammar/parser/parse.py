@@ -21,8 +21,6 @@ from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.tree import Outline, Tree
 
-__all__ = ["Parser", "Stop"]
-
 # Memory stays flat on corpora of any size: lines that are built alike, and the outlines in them,
 # are remembered up to this number, and enormous lines not at all.
 _MOST_REMEMBERED = 20_000

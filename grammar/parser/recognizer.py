@@ -19,12 +19,6 @@ from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack,
 from grammar.parser.lexer import EOF, SKIPPED
 from grammar.parser.network import Network, Reach, may_be_empty, network_of
 
-__all__ = [
-    "Frames",
-    "Recognizer",
-    "State",
-]
-
 #: A state without the automaton that holds it: each configuration as its position and the frames
 #: below it from the top down, sorted. Means the same in every recogniser of the same grammar.
 Frames = tuple[tuple[int, ...], ...]

@@ -23,8 +23,6 @@ from grammar.notation.model import (
 from grammar.notation.wellformed import shortest_length, shortest_lengths
 from grammar.parser.lexer import lexer_of
 
-__all__ = ["Sentences", "Speller"]
-
 
 class Sentences:
     """Derives sentences from the parser rules of a grammar."""

@@ -18,8 +18,6 @@ from itertools import groupby
 from grammar.notation.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
 from grammar.parser.tree import ParseNode, Token, Tree
 
-__all__ = ["Expression", "ExpressionError", "Shortener", "read", "write"]
-
 #: A token's text, or the name of a rule and what it consists of.
 Expression = str | tuple["Expression", ...]
 

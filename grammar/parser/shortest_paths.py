@@ -14,8 +14,6 @@ from functools import cached_property
 from grammar.parser.network import Network
 from grammar.parser.recognizer import Frames
 
-__all__ = ["Paths"]
-
 _Way = tuple[int, ...]
 
 

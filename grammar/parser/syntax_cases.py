@@ -38,8 +38,6 @@ from grammar.parser.parse import Parser, Stop
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sexpr import ExpressionError, Shortener, read, write
 
-__all__ = ["CaseReader", "SyntaxCase", "SyntaxCaseError", "main", "read_cases"]
-
 _BAR = re.compile(r"={3,}")
 _RULE = re.compile(r"-{3,}")
 _MARK = ":error"

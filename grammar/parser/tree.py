@@ -21,8 +21,6 @@ from functools import cached_property
 
 from grammar.parser.lexer import Lexer
 
-__all__ = ["Outline", "ParseNode", "Token", "Tree"]
-
 _LINE_END = re.compile(r"\r\n|\r|\n")
 
 

@@ -33,20 +33,6 @@ from grammar.semantics.types import (
     without_index,
 )
 
-__all__ = [
-    "assignable",
-    "case_label",
-    "condition",
-    "declarable",
-    "index",
-    "initial",
-    "integer",
-    "number",
-    "passable",
-    "selector",
-    "target",
-]
-
 _ROUNDED = Verdict(True, ("ARI-03",), "this REAL value is rounded to an INT", is_lossless=False)
 
 

@@ -14,8 +14,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import root_variable
 
-__all__ = ["DeclaredTypes"]
-
 #: Structures of structures go no deeper on any controller; hostile files may go as deep as they are
 #: long.
 _DEEPEST = 40

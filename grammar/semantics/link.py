@@ -49,8 +49,6 @@ from grammar.syntax.references import Space
 from support.files.discovery import DRIVE_FOLDERS, is_drive
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Clash", "File", "Project", "Workspace", "extended", "link", "words_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class File:

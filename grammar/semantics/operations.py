@@ -31,18 +31,6 @@ from grammar.semantics.types import (
     without_index,
 )
 
-__all__ = [
-    "ARITHMETIC",
-    "BITWISE",
-    "EQUALITY",
-    "LOGICAL",
-    "ORDER",
-    "binary",
-    "component",
-    "subscript",
-    "unary",
-]
-
 #: The operators, as they are written in upper case; the remaining one is ``:``.
 ARITHMETIC = frozenset({"+", "-", "*", "/"})
 LOGICAL = frozenset({"AND", "OR", "EXOR"})

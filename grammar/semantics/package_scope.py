@@ -27,8 +27,6 @@ from grammar.semantics.types import UNKNOWN
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 
-__all__ = ["PackageScope", "called_packages"]
-
 _NO_SPAN = (0, 0)
 #: What takes anything, by whether it has a value; of the parameters nothing certain is known.
 _OF_INLINE_FORMS = {

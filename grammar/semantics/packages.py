@@ -17,15 +17,6 @@ from importlib import resources
 
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "PackageParameter",
-    "PackageRoutine",
-    "PackageType",
-    "PackageVariable",
-    "Packages",
-    "load_packages",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class PackageParameter:

@@ -26,15 +26,6 @@ from grammar.semantics.types import (
 )
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "Message",
-    "PredefinedFunction",
-    "PredefinedParameter",
-    "Release",
-    "System",
-    "SystemVariable",
-]
-
 #: A release of the controller's software, KSS: 8.6 is ``(8, 6)``.
 Release = tuple[int, int]
 

@@ -21,8 +21,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import PLANS, Space
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Resolution", "Use", "resolve"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Use:

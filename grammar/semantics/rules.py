@@ -12,8 +12,6 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib import resources
 
-__all__ = ["is_confirmed", "tiers"]
-
 _UNCONFIRMED = frozenset("RX")
 
 

@@ -34,23 +34,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "REST",
-    "Answer",
-    "Found",
-    "Globals",
-    "MaybeElsewhere",
-    "Module",
-    "NotFound",
-    "Outer",
-    "PartlyRead",
-    "Reason",
-    "Scope",
-    "SystemScope",
-    "nearest",
-]
-
-
 #: Among the words of a file: its end is missing, so that it may have declared any name.
 REST = "*"
 

@@ -28,8 +28,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space, calls_in
 from grammar.syntax.walk import BODIES, bodies
 
-__all__ = ["table_of"]
-
 #: Machine data that limit what programs set; their values are kept.
 MAXIMA = frozenset({"$VEL_MA", "$ACC_MA"})
 

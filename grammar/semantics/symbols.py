@@ -25,22 +25,6 @@ from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "Access",
-    "Duplicate",
-    "ImportSymbol",
-    "Kind",
-    "ModuleTable",
-    "ParameterSymbol",
-    "RoutineSymbol",
-    "RoutineTable",
-    "SignalSymbol",
-    "Symbol",
-    "Table",
-    "TypeReference",
-    "TypeSymbol",
-]
-
 Indices = tuple[ast.Expression | None, ...]
 
 

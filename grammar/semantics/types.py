@@ -18,38 +18,6 @@ from dataclasses import field
 from grammar.semantics.rules import is_confirmed
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "AXES",
-    "BOOL",
-    "CARTESIAN",
-    "CHAR",
-    "FINE",
-    "INT",
-    "INT_MAX",
-    "INT_MIN",
-    "REAL",
-    "SCALARS",
-    "UNKNOWN",
-    "Aggregate",
-    "Array",
-    "Constant",
-    "Enumeration",
-    "Member",
-    "Scalar",
-    "Structure",
-    "Text",
-    "Type",
-    "Typed",
-    "Unknown",
-    "Verdict",
-    "is_axes",
-    "is_cartesian",
-    "is_number",
-    "is_position",
-    "is_same",
-    "without_index",
-]
-
 #: What an INT holds [TYP-01].
 INT_MIN, INT_MAX = -(2**31), 2**31 - 1
 

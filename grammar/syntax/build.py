@@ -26,8 +26,6 @@ from grammar.syntax.ast import Span
 from grammar.syntax.node_plans import MAX_DEPTH, Plan, TooDeep, draft
 from grammar.syntax.statement_rules import CHAINS, RULES
 
-__all__ = ["BLOCK_RULES", "Builder", "SyntaxFailure", "builder", "read_module"]
-
 # Memory stays flat on corpora of any size: a plan takes some kilobytes.
 _MOST_REMEMBERED = 20_000
 _WIDEST_REMEMBERED = 1_000

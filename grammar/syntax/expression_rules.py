@@ -8,8 +8,6 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, separated, value_of, values_of
 
-__all__ = ["EXPRESSION_RULES", "literal", "type_name"]
-
 # Types whose names are keywords: they are kept in upper case.
 _KEYWORD_TYPES = frozenset("INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())
 # More digits tell a checker nothing: the number is too large.

@@ -31,8 +31,6 @@ from grammar.syntax.spacing import Gap, Setting, Spacing, set_line
 from grammar.syntax.unparse import indent
 from grammar.syntax.walk import same
 
-__all__ = ["Formatter", "FormatterDefect", "formatter"]
-
 _ROUTINES = frozenset({"procedure", "function"})
 # Set as tables, or by the controller's own templates: nothing between their tokens changes.
 _AS_WRITTEN = _ROUTINES | {"dataList", "declaration", "initialisation"}

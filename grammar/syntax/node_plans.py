@@ -20,22 +20,6 @@ from typing import Any, NamedTuple
 from grammar.parser.tree import Outline
 from grammar.syntax.ast import Span
 
-__all__ = [
-    "MAX_DEPTH",
-    "Draft",
-    "DraftPart",
-    "Plan",
-    "Rule",
-    "TooDeep",
-    "Value",
-    "after",
-    "draft",
-    "has",
-    "separated",
-    "value_of",
-    "values_of",
-]
-
 #: How deep nodes may lie within a line, chains of operators counted once. Whoever walks an
 #: expression may rely on it and recurse, but for `grammar.syntax.walk.left_chain`.
 MAX_DEPTH = 200

@@ -13,8 +13,6 @@ from typing import Any
 
 from grammar.syntax import ast
 
-__all__ = ["PLANS", "Space", "calls_in"]
-
 
 class Space(Enum):
     """Which names can meet: a type and a variable may be called alike."""

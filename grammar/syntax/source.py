@@ -20,8 +20,6 @@ from functools import cached_property
 from itertools import takewhile
 from pathlib import PurePosixPath
 
-__all__ = ["Comment", "Fold", "Source"]
-
 _LINE_END = re.compile(r"\r\n|\r|\n")
 # A string that is not closed ends nowhere: its quotation mark is a token alone.
 _COMMENT = re.compile(r'"[^"\r\n]*"|&[^\r\n]*|(;[^\r\n]*)')

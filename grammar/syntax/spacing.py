@@ -17,8 +17,6 @@ from typing import NamedTuple
 from grammar.parser.lexer import Lexer
 from grammar.parser.tree import Outline
 
-__all__ = ["Gap", "Setting", "Spacing", "set_line"]
-
 # Memory stays flat on corpora of any size.
 _MOST_REMEMBERED = 200_000
 _WIDEST_REMEMBERED = 1_000

@@ -17,9 +17,6 @@ from grammar.syntax.ast import Span
 from grammar.syntax.expression_rules import EXPRESSION_RULES, literal, type_name
 from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, after, has, value_of, values_of
 
-__all__ = ["CHAINS", "RULES"]
-
-
 # ----------------------------------------------------------------------------------- declarations
 
 

@@ -18,8 +18,6 @@ from typing import Any, NamedTuple
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, left_chain
 
-__all__ = ["expression", "indent", "unparse"]
-
 _INDENT = "  "
 # A file of a megabyte may hold 100,000 nested blocks; indented in full it would have gigabytes.
 _DEEPEST = 60

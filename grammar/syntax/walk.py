@@ -8,19 +8,6 @@ from dataclasses import fields
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
 
-__all__ = [
-    "BODIES",
-    "LEAVES",
-    "bodies",
-    "children",
-    "left_chain",
-    "root_variable",
-    "same",
-    "walk",
-    "without_parentheses",
-]
-
-
 _NAMES: dict[type, tuple[str, ...]] = {}
 
 

@@ -24,8 +24,6 @@ from interp.robot.simulation.factory import ROBOTS, RobotName, make_robot
 from interp.robot.simulation.tracking import Tracking
 from interp.values.poses import Pose
 
-__all__ = ["AIMS", "STEPS", "drive", "measure", "motions"]
-
 #: Simulated seconds a second that are aimed at.
 AIMS: Final[dict[str, float]] = {"kinematic": 200.0, "mujoco": 20.0}
 #: How often `measure` tells that it goes on.

@@ -25,8 +25,6 @@ from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.values.faults import Fault
 
-__all__ = ["LAWS", "Travelled", "draw", "exact", "measure", "straight", "travel"]
-
 #: What is measured of each program, and the most that keeps the law.
 LAWS: Final[dict[str, float]] = {
     "time": 1.0,

@@ -26,8 +26,6 @@ from interp.program.load import CheckedProgram, Limits, Routine, load_all
 from interp.tree import TreeExecutor, system_values
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 
-__all__ = ["Effort", "Ending", "Stage", "Trial", "Unread", "trials"]
-
 #: How far a routine has come: it cannot be called, has errors, names what is not there, has what is
 #: not compiled, is no sound bytecode, or nothing is wrong with it. What is unlinked or refused runs
 #: all the same, until that is reached.

@@ -43,8 +43,6 @@ from interp.port.requests import (
 from interp.values.faults import Fault, RuntimeFailure, fault
 from interp.values.values import ArrayValue, EnumValue, StructureValue
 
-__all__ = ["Difference", "Entered", "Evaluated", "Observed", "Prober", "difference", "observe"]
-
 #: One of so many requests is a reason to look at conditions, or to enter an action.
 _PROBED: Final = 6
 #: One of so many requests that can fail does.

@@ -32,8 +32,6 @@ from interp.port.requests import Crash, End, Fail, Write
 from interp.program.load import Limits, load
 from interp.values.faults import LinkError
 
-__all__ = ["MEASURED", "MeasurementError", "measure_executors", "steps"]
-
 ROUNDS = 3
 _LIMITS = Limits(statements=2**31 - 1, per_slice=1_000_000)
 #: The tree takes at least so many seconds for the work of a kernel, where any amount takes so long.

@@ -31,17 +31,6 @@ from interp.session import RunResult, RunSetup, run_program, submit_of
 from interp.standins.uses import FOLDER
 from interp.values.faults import FAULTS, Fault, LinkError
 
-__all__ = [
-    "PATIENCE",
-    "MainProgram",
-    "Ran",
-    "Result",
-    "is_of_controller",
-    "main_programs",
-    "run_main",
-    "survey_profile",
-]
-
 #: Folders of a backup that hold what the controller and its packages bring along.
 _NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
 #: Requests of the submit program in a cycle: it goes round many times a second all the same.

@@ -35,8 +35,6 @@ from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 from support.parallel.sticky_pool import StickyPool
 
-__all__ = ["Bounds", "Chance", "Origin", "Part", "Surveyed", "damaged", "remaining", "survey"]
-
 #: Statements of one program: what computes longer without end is known to do so by then.
 _STATEMENTS: Final = 3_000_000
 

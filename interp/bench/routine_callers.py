@@ -17,8 +17,6 @@ from grammar.syntax.source import Source
 from interp.program.load import CheckedProgram, Routine
 from interp.program.variables import is_complete, is_complete_parameter
 
-__all__ = ["Callers", "with_callers"]
-
 #: What an array has where a parameter does not tell its size.
 _LENGTH: Final = 8
 #: So many values at most are given to one variable.

@@ -29,8 +29,6 @@ from interp.port.requests import (
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import ArrayValue, StructureValue, copied, has_value, zero
 
-__all__ = ["Outcome", "StubController", "run"]
-
 #: What is drawn from the seed.
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN"})
 

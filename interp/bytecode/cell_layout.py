@@ -36,30 +36,6 @@ from interp.port.requests import Path
 from interp.values.faults import LinkError
 from interp.values.values import ArrayValue, EnumValue, StructureValue, Value, converted
 
-__all__ = [
-    "Plain",
-    "Raw",
-    "array_at",
-    "array_sizes",
-    "bits_of",
-    "cells_of",
-    "elements",
-    "is_word_of",
-    "kind_at",
-    "offset_of",
-    "path_to",
-    "raw_of",
-    "raw_of_word",
-    "real_of",
-    "row_of",
-    "shared_cells",
-    "shown",
-    "size",
-    "value_at",
-    "value_of",
-    "word_of",
-]
-
 #: What a cell holds when it has a value.
 Raw = int | float | bool
 #: The types that one cell holds.

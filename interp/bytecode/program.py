@@ -20,34 +20,6 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw, kind_at, raw_of_word, size
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "BASIC_TYPES",
-    "Argument",
-    "Ask",
-    "Builtin",
-    "Changed",
-    "Choice",
-    "Code",
-    "CodeKind",
-    "Constant",
-    "Data",
-    "Handle",
-    "Import",
-    "Input",
-    "Instruction",
-    "Items",
-    "Local",
-    "Mode",
-    "Parameter",
-    "Program",
-    "Record",
-    "Slot",
-    "inputs_of",
-    "printable",
-    "stack_cells",
-    "variables",
-]
-
 #: The types that every program begins with.
 BASIC_TYPES: tuple[Type, ...] = tuple(SCALARS.values())
 

@@ -16,8 +16,6 @@ from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import Continue, Request, StopAdvance
 from interp.values.faults import Fault
 
-__all__ = ["AdvanceRun"]
-
 
 class AdvanceRun:
     """Synchronises programs with the motion queue."""

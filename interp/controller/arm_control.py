@@ -7,8 +7,6 @@ from interp.controller.variables import Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 
-__all__ = ["ArmControl"]
-
 
 class ArmControl:
     """Stops and starts the arm through its control core."""

@@ -20,8 +20,6 @@ from interp.controller.state import ControllerState
 from interp.controller.trace import path_text
 from interp.port.requests import At, Path
 
-__all__ = ["OPERATOR", "AutomaticInputs"]
-
 #: What the person at the panel and the cell do, as lines of a script.
 OPERATOR: Final = """\
 on HALT after 1 press START

@@ -33,8 +33,6 @@ from interp.values.values import (
 )
 from support.lazy_dataclass import dataclass
 
-__all__ = ["COMMANDS", "Channels", "Waiting", "state_value"]
-
 _LONGEST: Final = 2047
 _READ_VARIABLES: Final = 6
 _WRITTEN_VALUES: Final = 4

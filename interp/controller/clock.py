@@ -10,8 +10,6 @@ from itertools import count
 
 from support.lazy_dataclass import dataclass
 
-__all__ = ["ActionQueue", "Clock", "TimedAction", "microseconds"]
-
 
 def microseconds(seconds: float) -> int:
     """Seconds as whole µs, to the nearest."""

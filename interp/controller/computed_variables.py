@@ -18,8 +18,6 @@ from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.values.values import single
 
-__all__ = ["connect_computed"]
-
 
 def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQueue) -> None:
     """Connect them all; those of positions are connected by `interp.controller.positions`."""

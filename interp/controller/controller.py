@@ -45,8 +45,6 @@ from interp.robot.kinematics.machine_data import MachineData
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-__all__ = ["ArmState", "Controller"]
-
 #: Of all waits the longest are told, each with its first variables.
 _MOST_WAITS, _MOST_NAMES = 5, 4
 

@@ -12,8 +12,6 @@ from interp.controller.tasks import ALWAYS, Answer, Task
 from interp.port.requests import CodeHandle, Path, SetCyclicFlag, SwitchSignal
 from interp.values.faults import Fault
 
-__all__ = ["CyclicEvaluation"]
-
 #: Which entry of a profile limits the number of cyclic signals, and the message where it does.
 _SIGNAL_LIMITS: Final = {
     "ANIN": ("analog_inputs", 1543),

@@ -23,26 +23,6 @@ from interp.port.requests import Path
 from interp.values.faults import RuntimeFailure
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "Action",
-    "Answer",
-    "Asked",
-    "Assign",
-    "AtTime",
-    "Becomes",
-    "Cause",
-    "Halted",
-    "Literal",
-    "Press",
-    "Received",
-    "Script",
-    "ScriptError",
-    "ScriptStep",
-    "Send",
-    "Shown",
-    "Word",
-]
-
 
 class ScriptError(RuntimeFailure):
     """A script cannot be understood; the text is one line that names the place."""

@@ -18,8 +18,6 @@ from interp.controller.tasks import ALWAYS, Answer, Blocked, Level, Task
 from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
 from interp.robot.api.commands import CallCommand
 
-__all__ = ["InterruptUnit"]
-
 #: Priorities that the system assigns, for PRIO=-1 [TRG-06].
 _SYSTEM: Final = range(40, 81)
 

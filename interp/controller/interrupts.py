@@ -17,8 +17,6 @@ from interp.controller.messages import own_fault
 from interp.port.requests import At, CodeHandle, DeclareInterrupt
 from interp.values.values import ArrayValue, StructureValue, set_text, zero
 
-__all__ = ["Interrupt", "Interrupts", "interrupt_list", "is_usable", "module_name"]
-
 #: Numbers that programs may use; 3 is the system's own, in files that come with a controller
 #: [INT-02]. For those of triggers see TRG-06.
 _RANGES: Final = (range(1, 40), range(81, 129))

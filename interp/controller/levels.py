@@ -16,8 +16,6 @@ from interp.port.requests import At, CodeHandle, End, SwitchSignal
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
 
-__all__ = ["Levels"]
-
 
 class Levels:
     """Pushes and pops the levels of programs."""

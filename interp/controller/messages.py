@@ -15,8 +15,6 @@ from interp.controller.trace import TaskName, Trace
 from interp.port.requests import At
 from interp.values.faults import Fault
 
-__all__ = ["Messages", "message_fault", "own_fault"]
-
 #: What no message at hand says, in our words.
 _OWN: Final = {
     "interrupt_number": ("an interrupt cannot have this number", "INT-02"),

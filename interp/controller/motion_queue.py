@@ -48,8 +48,6 @@ from support.lazy_dataclass import dataclass
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-__all__ = ["MotionQueue", "PlannedPoint", "TriggerCall"]
-
 #: What triggers that call a routine may have as PRIO [TRG-06].
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
 #: The most in mm or ms that a trigger may be away from its point [TRG-03, TRG-04].

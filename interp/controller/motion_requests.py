@@ -9,8 +9,6 @@ from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import At, Move, MoveEmily, MoveSpline
 from interp.values.faults import Fault
 
-__all__ = ["MotionRequests"]
-
 
 class MotionRequests:
     """Answers them; triggers are answered by the motion queue itself."""

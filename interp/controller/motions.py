@@ -36,8 +36,6 @@ from interp.robot.arm import (
 from interp.values.poses import IDENTITY
 from interp.values.values import ArrayValue, StructureValue
 
-__all__ = ["MotionBuilder", "PlannedMotion", "is_complete", "target_of"]
-
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 _KINDS: Final = frozenset({"PTP", "LIN", "CIRC", "SPTP", "SLIN", "SCIRC", "SPL"})

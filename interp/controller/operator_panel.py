@@ -9,8 +9,6 @@ from interp.controller.messages import Messages
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
 
-__all__ = ["OperatorPanel"]
-
 #: The kind of messages that stop the arm until they are acknowledged.
 _STOPPING: Final = "acknowledgement"
 

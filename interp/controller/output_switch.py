@@ -13,8 +13,6 @@ from interp.controller.signals import Change, Signals
 from interp.controller.variables import Variables
 from interp.port.requests import Path, Value
 
-__all__ = ["OutputSwitch"]
-
 
 class OutputSwitch:
     """Switches outputs for a control core."""

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
     from interp.robot.simulation.tracking import Tracking
 
-__all__ = ["FramesInForce", "Positions", "axes_value", "pose_of", "pose_value", "word_of"]
-
 #: Degrees or mm by which an axis may miss a home position beside its tolerance.
 _HOME: Final = 1e-3
 

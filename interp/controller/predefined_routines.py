@@ -39,8 +39,6 @@ from interp.values.values import (
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
 
-__all__ = ["PredefinedRoutines"]
-
 #: The result, ``None`` for procedures, and the values of all arguments after the call.
 Reply = tuple[Value | None, Sequence[Value | None]]
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")

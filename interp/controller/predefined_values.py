@@ -6,8 +6,6 @@ from grammar.semantics.predefined import System
 from grammar.semantics.types import Enumeration, Structure
 from interp.values.values import EnumValue, StructureValue, constant, empty
 
-__all__ = ["empty_structure", "word"]
-
 
 def empty_structure(type_name: str) -> StructureValue:
     """A structure of which no member has a value."""

@@ -18,9 +18,6 @@ from interp.values.faults import RuntimeFailure
 from support.files.untrusted import DocumentError, read_text, toml_of
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Profile", "ProfileError", "profile_names"]
-
-
 _T = TypeVar("_T")
 
 

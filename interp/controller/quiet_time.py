@@ -17,8 +17,6 @@ from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
 from interp.port.requests import Poll, Request, Wait
 
-__all__ = ["QuietTime"]
-
 #: Slices in a row in which a program only computes, until it counts as endless where nothing else
 #: could end it: half a million statements, more than programs have a use for between two requests.
 _MOST_SLICES: Final = 500

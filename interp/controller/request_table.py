@@ -9,8 +9,6 @@ from interp.controller.tasks import Answer, Task
 from interp.port.requests import Request
 from interp.values.faults import Fault
 
-__all__ = ["RequestTable"]
-
 _Request = TypeVar("_Request", bound=Request)
 
 

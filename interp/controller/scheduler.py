@@ -34,8 +34,6 @@ from support.lazy_dataclass import dataclass
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-__all__ = ["HOUR", "Ending", "RunOutcome", "Scheduler"]
-
 #: How a run ended: at the end of the program; at a HALT that nobody ends; by a fault; because the
 #: program used up its statements; because the time is over; by a defect of ours.
 Ending = Literal["end", "halt", "fault", "budget", "time", "crash"]

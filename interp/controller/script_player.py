@@ -31,8 +31,6 @@ from interp.port.requests import Path, Value
 from interp.values.faults import Fault, LinkError
 from interp.values.values import constant, single
 
-__all__ = ["ScriptPlayer"]
-
 
 class ScriptPlayer:
     """Plays one script.

@@ -17,8 +17,6 @@ from interp.port.requests import Path, Value
 from interp.values.faults import fault
 from interp.values.values import single
 
-__all__ = ["ALWAYS_FALSE", "ALWAYS_TRUE", "Change", "Signals"]
-
 ALWAYS_TRUE: Final = 1025
 ALWAYS_FALSE: Final = 1026
 _SHORTEST: Final = 0.1

@@ -9,8 +9,6 @@ from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
 from interp.port.requests import SplineStop
 
-__all__ = ["SplineStops"]
-
 
 class SplineStops:
     """Stops the arm where it passes such a place; it comes to rest behind it."""

@@ -17,8 +17,6 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.values.json_form import to_json
 from interp.values.values import EnumValue
 
-__all__ = ["ControllerState"]
-
 #: The kinds of trace events that the arrays of signals have.
 _SIGNAL_KINDS: Final = {"$IN": "in", "$ANIN": "in", "$OUT": "out", "$ANOUT": "anout"}
 

@@ -18,8 +18,6 @@ from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
 from support.lazy_dataclass import dataclass
 
-__all__ = ["ALWAYS", "PROGRAM", "Answer", "Blocked", "Level", "LevelKind", "Task"]
-
 #: The priority of what nothing interrupts: plain actions of triggers, cyclic signals.
 ALWAYS: Final = 0
 #: The priority of a program that no interrupt has interrupted.

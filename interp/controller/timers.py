@@ -16,8 +16,6 @@ from interp.port.requests import Path, Value
 from interp.values.faults import fault
 from interp.values.values import StructureValue
 
-__all__ = ["Timers", "date_members"]
-
 
 @dataclass(slots=True)
 class _Timer:

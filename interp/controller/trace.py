@@ -16,8 +16,6 @@ from interp.port.events import EVERY_KIND, Kind
 from interp.port.requests import At, Path, Value
 from interp.values.json_form import to_json
 
-__all__ = ["KINDS", "WORLD_KINDS", "TaskName", "TaskSink", "Trace", "TraceEvent", "path_text"]
-
 TaskName = Literal["robot", "submit"]
 
 #: What executors tell in a trace that is not full.

@@ -14,8 +14,6 @@ from interp.port.requests import Read, SwitchSignal, Write
 from interp.values.faults import fault
 from interp.values.values import ArrayValue, StructureValue, set_text
 
-__all__ = ["VariableAccess"]
-
 
 class VariableAccess:
     """Answers requests to read and to write."""

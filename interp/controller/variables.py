@@ -32,8 +32,6 @@ from interp.values.values import (
 )
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Computed", "Live", "Snapshot", "Variables", "part"]
-
 #: The advance values of all variables that exist twice, by name.
 Snapshot = Mapping[str, Any]
 _UNKNOWN_SIZE: Final = 128

@@ -16,8 +16,6 @@ from interp.controller.tasks import Answer, Blocked, Task
 from interp.port.requests import Confirm, Halt, Poll, Read, Request, Slice, Wait
 from interp.values.json_form import to_json
 
-__all__ = ["Waits"]
-
 #: A program that has only read variables for so long, in µs, gets so many requests in a slice.
 _IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5

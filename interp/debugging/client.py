@@ -13,21 +13,6 @@ from interp.controller.trace import TaskName
 from interp.port.requests import At
 from interp.values.values import Value
 
-__all__ = [
-    "Back",
-    "Breakpoint",
-    "Command",
-    "Go",
-    "Position",
-    "Quit",
-    "Restart",
-    "Select",
-    "StepCommand",
-    "Stop",
-    "Watch",
-    "Way",
-]
-
 #: A moment of a run: how many statements of all programs have begun, and how many times a statement
 #: was about to begin since then. Moments of the same program and the same changes compare.
 Position = tuple[int, int]

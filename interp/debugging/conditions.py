@@ -33,8 +33,6 @@ from interp.values.values import (
     single,
 )
 
-__all__ = ["evaluated", "parsed", "place_of", "root_of"]
-
 _Look = Callable[[str], Seen | None]
 #: What a signal of a name stands for: one variable, or all from the first to the last.
 _Signal = Callable[[str], tuple[ast.Expression, ast.Expression | None] | None]

@@ -43,8 +43,6 @@ from interp.program.statement_paths import routine_at, statement_lines
 from interp.values.faults import LinkError, RuntimeFailure
 from interp.values.values import converted
 
-__all__ = ["Client", "Debugger", "World"]
-
 #: Called where a program stops; may look around in the debugger, and set what it likes there.
 Client = Callable[["Debugger", Stop], Command]
 _T = TypeVar("_T")

@@ -16,8 +16,6 @@ from interp.port.inspection import Inspectable
 from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, Value
 from interp.values.faults import Fault
 
-__all__ = ["DebuggedExecutor"]
-
 
 class Hook(Protocol):
     """What is shown the statements and faults of debugged executors: the debugger."""

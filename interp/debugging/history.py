@@ -19,8 +19,6 @@ from interp.debugging.executor import DebuggedExecutor
 from interp.port.requests import Path
 from interp.values.values import Value
 
-__all__ = ["START", "Assigned", "Change", "History", "Selected"]
-
 START: Final[Position] = (0, 0)
 #: More than there are.
 _MANY: Final = 1 << 62

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from interp.values.faults import LinkError
 
-__all__ = ["is_hit"]
-
 
 def is_hit(hits: str | None, count: int) -> bool:
     """Whether the hit of a number counts; raises `LinkError` for what says nothing about hits."""

@@ -15,8 +15,6 @@ from interp.program.statement_paths import routine_at
 from interp.standins.uses import FOLDER
 from interp.values.faults import LinkError
 
-__all__ = ["Names", "names_in", "signal_in"]
-
 _DATA: Final = frozenset({Kind.VARIABLE, Kind.CONSTANT, Kind.PARAMETER, Kind.IMPORT})
 
 

@@ -10,8 +10,6 @@ from grammar.syntax import ast
 from interp.program.load import Routine
 from interp.program.statement_paths import way_to
 
-__all__ = ["reason_against"]
-
 
 def reason_against(routine: Routine, here: int, line: int) -> str:
     """Why a program cannot go on at a line when it is at another; empty where it can."""

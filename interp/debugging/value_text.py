@@ -8,8 +8,6 @@ from grammar.semantics.types import CHAR
 from interp.values.json_form import real_text
 from interp.values.values import ArrayValue, EnumValue, StructureValue, Value, has_value, text_of
 
-__all__ = ["value_text"]
-
 _MOST_ELEMENTS: Final = 10
 
 

@@ -41,7 +41,5 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-__all__ = ["AVAILABLE"]
-
 #: Whether the machine in C was built.
 AVAILABLE: bool = find_spec("interp.native._core") is not None

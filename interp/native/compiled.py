@@ -29,8 +29,6 @@ from interp.native.register_code import CALLS, Step, roles_of
 from interp.native.register_flow import INTERPRETED, RegisterFlow
 from support.files.user_cache import user_cache
 
-__all__ = ["CompiledMachine", "compiler", "keep", "library_of", "source_of"]
-
 _HERE: Final = Path(__file__).parent
 _HEADERS: Final = (
     *("compiled.h", "steps.h", "array_operations.h", "machine.h", "register_code.h"),

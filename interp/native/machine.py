@@ -28,8 +28,6 @@ from interp.port.requests import Request
 from interp.program.load import Limits
 from interp.values.faults import FAULTS, LinkError, fault
 
-__all__ = ["Machine"]
-
 
 class _Stop(IntEnum):
     """Why C has stopped; as ``enum krl_stop`` has it."""

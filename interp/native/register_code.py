@@ -9,8 +9,6 @@ from typing import Final, NamedTuple
 from interp.bytecode.program import Program
 from interp.native._core import Core
 
-__all__ = ["CALLS", "ENDS", "Step", "listing", "roles_of"]
-
 CALLS: Final = ("CALL", "CALL_COPY")
 #: Behind these the next step does not follow.
 ENDS: Final = ("JUMP", "RETURN", "RETURN_VALUE", "END_ACTION", "FAIL")

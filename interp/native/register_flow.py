@@ -10,8 +10,6 @@ from collections.abc import Collection, Mapping, Sequence
 
 from interp.native.register_code import CALLS, ENDS, Step, roles_of
 
-__all__ = ["INTERPRETED", "RegisterFlow"]
-
 #: Steps that are left to the interpreter.
 INTERPRETED = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
 #: NEG_REAL is not among them: it does not look at its result.

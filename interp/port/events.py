@@ -17,8 +17,6 @@ from typing import Final, Literal, Protocol
 from interp.port.requests import At, Path, Value
 from support.lazy_dataclass import dataclass
 
-__all__ = ["EVERY_KIND", "ExecutorEvent", "Kind", "Recorder", "Sink", "wanting"]
-
 #: The words of the trace.
 Kind = Literal["line", "assign", "call", "return", "branch"]
 EVERY_KIND: Final = frozenset[Kind](("line", "assign", "call", "return", "branch"))

@@ -15,8 +15,6 @@ from interp.port.events import Sink
 from interp.port.requests import CodeHandle, Path, Request, Value
 from interp.values.faults import Fault
 
-__all__ = ["Executor", "Reader"]
-
 #: Reads a system variable at once, for conditions; raises `interp.values.faults.Fault`.
 Reader = Callable[[Path], Value]
 

@@ -14,8 +14,6 @@ from interp.port.requests import At
 from interp.values.values import Value
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Inspectable", "Seen", "StackFrame"]
-
 
 @dataclass(frozen=True, slots=True)
 class Seen:

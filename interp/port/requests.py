@@ -14,43 +14,6 @@ from typing import Any
 
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "Asking",
-    "At",
-    "BrakeArm",
-    "CodeHandle",
-    "Confirm",
-    "Continue",
-    "Crash",
-    "DeclareInterrupt",
-    "End",
-    "Fail",
-    "Halt",
-    "Invoke",
-    "Move",
-    "MoveEmily",
-    "MoveSpline",
-    "Path",
-    "Poll",
-    "Read",
-    "Request",
-    "Resume",
-    "SetCyclicFlag",
-    "SetTrigger",
-    "Skip",
-    "Slice",
-    "SplineItem",
-    "SplineRange",
-    "SplineStop",
-    "StopAdvance",
-    "SwitchInterrupt",
-    "SwitchSignal",
-    "Text",
-    "Value",
-    "Wait",
-    "Write",
-]
-
 #: INT, REAL, BOOL, CHAR, an enumeration, a structure or an array, as `interp.values.values` has
 #: them.
 Value = Any

@@ -28,8 +28,6 @@ from interp.standins.unreadable_lines import readable
 from interp.values.faults import LinkError
 from support.lazy_dataclass import dataclass
 
-__all__ = ["CheckedProgram", "Limits", "Routine", "Unit", "load", "load_all"]
-
 #: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
 #: an interpreter may use Python's own stack for them.
 MOST_BLOCKS = 50

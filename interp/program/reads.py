@@ -9,8 +9,6 @@ from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 from interp.program.load import Unit
 
-__all__ = ["is_constant_output", "is_variable", "signal_name"]
-
 _CONSTANT = (
     ast.IntegerLiteral,
     ast.RealLiteral,

@@ -8,8 +8,6 @@ from grammar.syntax import ast
 from grammar.syntax.walk import bodies
 from interp.program.load import CheckedProgram, Routine
 
-__all__ = ["routine_at", "statement_lines", "way_to"]
-
 
 def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
     """A routine of a file by its name."""

@@ -14,8 +14,6 @@ from grammar.syntax import ast
 from interp.port import requests
 from support.lazy_dataclass import dataclass
 
-__all__ = ["STATEMENT_REQUESTS", "Part", "StatementRequest"]
-
 
 @dataclass(frozen=True, slots=True)
 class Part:

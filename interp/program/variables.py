@@ -19,25 +19,6 @@ from grammar.syntax.references import Space
 from interp.program.load import CheckedProgram, Routine, Unit
 from interp.values.faults import LinkError
 
-__all__ = [
-    "MOST_CELLS",
-    "cells",
-    "cells_of_routine",
-    "data_lists",
-    "data_variables",
-    "first_values",
-    "is_complete",
-    "is_complete_parameter",
-    "is_referable",
-    "mismatched",
-    "signal_ends",
-    "too_large",
-    "untyped",
-    "untyped_parameter",
-    "untyped_result",
-    "untyped_value",
-]
-
 #: All variables of a program together hold at most so many scalars.
 MOST_CELLS = 1 << 20
 

@@ -3,5 +3,3 @@
 `frames` and `machine` need nothing beyond Python. `kinematics` and all that builds upon it need the
 extra `arm`, and are imported only by those who move an arm.
 """
-
-__all__: list[str] = []

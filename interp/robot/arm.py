@@ -23,21 +23,6 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-__all__ = [
-    "Approximation",
-    "Arm",
-    "ArmEvent",
-    "EventKind",
-    "Load",
-    "Motion",
-    "Place",
-    "Position",
-    "Samples",
-    "Settings",
-    "SplinePart",
-    "Target",
-]
-
 #: The members of a target that the program gave: X…C, S, T, E1…E6 or A1…A6, in upper case. What it
 #: left out is missing and keeps the value of the target before [MOT-16].
 Target = Mapping[str, float]

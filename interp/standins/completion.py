@@ -33,8 +33,6 @@ from interp.standins.unset_data import unset_data, with_values
 from interp.standins.uses import FOLDER, DataUse, Uses
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Completed", "StandIn", "complete", "summary"]
-
 _LIST: Final = "STANDIN"
 _ROUNDS: Final = 4
 #: At the end of a name: the value that variables of its type begin with, LDEFAULT for instance.

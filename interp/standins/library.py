@@ -19,8 +19,6 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Datum", "Library", "load_library"]
-
 _SHARED = ("bas_spline.src", "ir_stopm.src")
 
 

@@ -40,8 +40,6 @@ from grammar.semantics.types import (
 from interp.robot.models.stand_in import Places
 from interp.standins.uses import DataUse, RoutineUse
 
-__all__ = ["Signatures"]
-
 _ROBOT_AXES: Final = tuple(f"A{number}" for number in range(1, 7))
 _AXES: Final = frozenset(_ROBOT_AXES)
 _EXTERNAL: Final = frozenset({f"E{number}" for number in range(1, 7)})

@@ -18,8 +18,6 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 
-__all__ = ["UNREADABLE", "Readable", "readable"]
-
 #: What is called in place of a statement that cannot be read: a name that nobody gives.
 UNREADABLE: Final = "UNREADABLE__LINE"
 _DECLARES: Final = frozenset(

@@ -22,8 +22,6 @@ from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 
-__all__ = ["Unset", "unset_data", "with_values"]
-
 #: Makes a value, as it is written, of a type and for a name.
 MakeValue = Callable[[Type, str], str]
 

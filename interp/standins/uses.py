@@ -35,8 +35,6 @@ from grammar.syntax.references import Space
 from grammar.syntax.walk import left_chain, walk
 from support.lazy_dataclass import dataclass
 
-__all__ = ["FOLDER", "DataUse", "RoutineUse", "Uses"]
-
 #: The folder that stand-ins seem to lie in; no file of a backup lies there.
 FOLDER = "<stand-in>"
 

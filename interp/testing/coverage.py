@@ -17,8 +17,6 @@ from interp.program.load import CheckedProgram, Unit
 from interp.program.statement_paths import statement_lines
 from interp.standins.uses import FOLDER
 
-__all__ = ["Coverage", "CoverageRecord", "FileCoverage", "coverage_of"]
-
 _ENTERED: Final = "entered"
 _PASSED: Final = "zero times"
 

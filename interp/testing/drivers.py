@@ -19,8 +19,6 @@ from grammar.syntax.source import Source
 from interp.program.load import CheckedProgram, Routine
 from interp.standins.uses import FOLDER
 
-__all__ = ["RESULT", "VALUES", "Driver", "DriverError", "with_drivers"]
-
 #: What a driver calls the result of the function that it calls.
 RESULT: Final = "KRL_RESULT"
 #: The routine in which variables can be looked at once a run is over; it waits at its first line.

@@ -31,8 +31,6 @@ from interp.values.builtins import BUILTINS, WORLD, Surroundings, call, reads_te
 from interp.values.faults import LinkError, fault
 from interp.values.values import Value, copied, known, type_of
 
-__all__ = ["Calls"]
-
 
 class Calls(Expressions):
     """What calls do in one frame."""

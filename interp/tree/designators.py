@@ -29,8 +29,6 @@ from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import LinkError, fault
 from interp.values.values import Value, copied, index
 
-__all__ = ["Designators"]
-
 _MOST_SIGNALS = 8
 
 

@@ -33,8 +33,6 @@ from interp.tree.run import Call, Frame, Guard, ProgramState, Steps
 from interp.tree.statements import Resumed, Selected, Statements
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 
-__all__ = ["TreeExecutor"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Interrupted:

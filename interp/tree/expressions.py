@@ -40,8 +40,6 @@ from interp.values.values import (
     single,
 )
 
-__all__ = ["Expressions"]
-
 
 class Expressions(Designators):
     """What expressions are in one frame."""

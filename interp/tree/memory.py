@@ -21,8 +21,6 @@ from interp.tree.run import Frame, ProgramState, at_once
 from interp.values.faults import Fault, LinkError
 from interp.values.values import Value, copied
 
-__all__ = ["fill_data", "system_values"]
-
 
 @dataclass(slots=True)
 class _Data:

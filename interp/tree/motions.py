@@ -26,8 +26,6 @@ from interp.tree.run import Steps
 from interp.values.faults import LinkError
 from interp.values.values import Value, copied, text_of
 
-__all__ = ["Motions"]
-
 
 class Motions(Calls):
     """The statements that ask the world to do something."""

@@ -8,8 +8,6 @@ from collections.abc import Callable
 from interp.tree.places import LocalPlace, Place, element, member
 from interp.values.faults import Fault, LinkError
 
-__all__ = ["find_text"]
-
 _WRITTEN = re.compile(
     r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
     re.IGNORECASE | re.ASCII,

@@ -25,18 +25,6 @@ from interp.values.values import (
     member_place,
 )
 
-__all__ = [
-    "LocalPlace",
-    "Place",
-    "SystemPlace",
-    "element",
-    "fresh",
-    "is_left_out",
-    "member",
-    "of_type",
-    "sized",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class LocalPlace:

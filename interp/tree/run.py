@@ -23,8 +23,6 @@ from interp.tree.places import LocalPlace, Place, SystemPlace
 from interp.values.builtins import Randomness
 from interp.values.faults import BudgetExhausted, LinkError
 
-__all__ = ["Call", "Frame", "Guard", "Handed", "ProgramState", "Steps", "at_once"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Call:

@@ -24,8 +24,6 @@ from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 from interp.values.operators import apply
 from interp.values.values import Value, converted, known
 
-__all__ = ["Resumed", "Selected", "Statements"]
-
 
 @dataclass(slots=True, eq=False)
 class _Goto(Exception):  # none of these is an error

@@ -46,19 +46,6 @@ from interp.values.values import (
 )
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "BUILTINS",
-    "FUNCTIONS",
-    "WORLD",
-    "PredefinedFunction",
-    "Randomness",
-    "Reply",
-    "Surroundings",
-    "call",
-    "reads_text",
-]
-
-
 # ------------------------------------------------------------------------------- numbers
 
 

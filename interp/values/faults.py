@@ -10,16 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-__all__ = [
-    "FAULTS",
-    "BudgetExhausted",
-    "Fault",
-    "FaultKind",
-    "LinkError",
-    "RuntimeFailure",
-    "fault",
-]
-
 
 class RuntimeFailure(Exception):
     """Anything that ends a run; its text is one clear line."""

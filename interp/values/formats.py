@@ -49,8 +49,6 @@ from interp.values.values import (
     text_of,
 )
 
-__all__ = ["sread", "swrite"]
-
 #: No text is longer [FCT-04], so no width or precision needs to be.
 _LONGEST = 2047
 #: The most variables of one call.

@@ -16,8 +16,6 @@ from interp.values.faults import fault
 from interp.values.poses import Pose
 from interp.values.values import StructureValue, copied, known, single
 
-__all__ = ["DEGREE", "RADIAN", "composed", "inverted", "radians"]
-
 #: A degree in radians, and a radian in degrees.
 DEGREE = math.pi / 180
 RADIAN = 180 / math.pi

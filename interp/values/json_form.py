@@ -35,8 +35,6 @@ from interp.values.values import (
     text_of,
 )
 
-__all__ = ["Json", "from_json", "real_text", "rendered", "to_json"]
-
 #: What `json.dumps` takes.
 Json = Any
 

@@ -37,20 +37,6 @@ from interp.values.geometric_operator import composed
 from interp.values.values import EnumValue, StructureValue, Value, integer, rounded, single
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "BINARY",
-    "PRIMITIVES",
-    "UNARY",
-    "Kind",
-    "Primitive",
-    "Selection",
-    "apply",
-    "apply_unary",
-    "kind_of",
-    "kind_of_value",
-    "select",
-]
-
 #: What primitives tell apart. FRAME is any pose: FRAME, POS, E3POS, E6POS.
 Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
 

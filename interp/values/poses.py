@@ -11,8 +11,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["IDENTITY", "Pose", "Row", "sine_cosine"]
-
 Row = tuple[float, float, float, float]
 
 _LOCKED = 1e-12

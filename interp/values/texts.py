@@ -26,8 +26,6 @@ from interp.values.values import (
     text_of,
 )
 
-__all__ = ["DECIMAL", "INTEGER", "TEXTS", "Outcome", "integer_of", "real_of"]
-
 #: The result, and the new values of arguments by place.
 Outcome = tuple[Value | None, Mapping[int, Value]]
 

@@ -50,32 +50,6 @@ from grammar.semantics.types import (
 from interp.values.faults import LinkError, fault
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "REAL_MAX",
-    "ArrayValue",
-    "EnumValue",
-    "StructureValue",
-    "Value",
-    "constant",
-    "converted",
-    "copied",
-    "empty",
-    "fill",
-    "has_value",
-    "index",
-    "integer",
-    "known",
-    "letters",
-    "member_place",
-    "position_type",
-    "rounded",
-    "set_text",
-    "single",
-    "text_of",
-    "type_of",
-    "zero",
-]
-
 #: The largest REAL [TYP-02].
 REAL_MAX: Final = 3.4028234663852886e38
 

@@ -1,3 +1,1 @@
 """One module a command. Each imports what it needs inside the command, to start quickly."""
-
-__all__: list[str] = []

@@ -6,8 +6,6 @@ from typing import Annotated, Final
 
 import typer
 
-__all__ = ["app"]
-
 #: Where each command is, in the order of the help: a function, or an app with commands of its own.
 _COMMANDS: Final = {
     "recover": "krl.commands.recover:recover",

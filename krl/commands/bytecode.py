@@ -11,8 +11,6 @@ from krl.output_files import check_files
 from krl.program_loading import compile_project
 from support.files.atomic_write import write_atomic
 
-__all__ = ["assemble_file", "compile_file", "disassemble_image"]
-
 _LARGEST = 64 << 20  # bytes; no program that fits into the machine is nearly as large
 _MOST_TOLD = 20
 

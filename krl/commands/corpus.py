@@ -13,8 +13,6 @@ from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, sh
 if TYPE_CHECKING:
     from recovery.corpus.public import PublicSource
 
-__all__ = ["app"]
-
 CORPUS = Path("corpus")
 """In the working folder: the corpus is data of a checkout and does not travel with the package."""
 

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from interp.debugging.debugger import Debugger
     from krl.debug_prompt import Prompt
 
-__all__ = ["debug"]
-
 
 @with_run_options
 def debug(

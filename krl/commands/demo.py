@@ -10,8 +10,6 @@ from krl.commands.run import run
 from krl.errors import InputError, one_line
 from krl.run_options import Robot
 
-__all__ = ["demo"]
-
 _NAME, _SUBMIT = "search_demo", "count_parts"
 #: In an installed package, and in a checkout.
 _PLACES = (

@@ -14,8 +14,6 @@ from krl.output_files import check_files, write_json
 if TYPE_CHECKING:
     from grammar.syntax.source import Source
 
-__all__ = ["diff"]
-
 Record = Mapping[str, Any]
 
 _LONGEST = 160

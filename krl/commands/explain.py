@@ -10,8 +10,6 @@ from krl.errors import FINE, InputError
 if TYPE_CHECKING:
     from grammar.diagnostics.explanations import Explanation
 
-__all__ = ["explain"]
-
 
 def explain(
     code: Annotated[

@@ -13,8 +13,6 @@ from support.files.atomic_write import write_atomic
 if TYPE_CHECKING:
     from support.files.discovery import Found, Skipped
 
-__all__ = ["format_programs"]
-
 
 _LONGEST = 60  # characters of a token in a message
 

@@ -14,8 +14,6 @@ from krl.progress import progress_bar
 if TYPE_CHECKING:
     from conformance.differential.campaign import Finding, Findings
 
-__all__ = ["fuzz"]
-
 _SHOWN = 5
 
 

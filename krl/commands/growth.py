@@ -22,8 +22,6 @@ from krl.survey_summary import share
 if TYPE_CHECKING:
     from recovery.records import GrowthRecord, StepRecord
 
-__all__ = ["growth"]
-
 _DEFAULT_OUT = Path("reports", "out", "growth")
 _BIGGEST = 14
 _LEFT = 5

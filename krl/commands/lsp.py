@@ -11,8 +11,6 @@ import typer
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 
-__all__ = ["Bounded", "lsp"]
-
 _LARGEST = 64_000_000
 _LONGEST_LINE = 1_000
 

@@ -20,8 +20,6 @@ from krl.output_files import write_json
 if TYPE_CHECKING:
     from reports.nightly_failures import Failure
 
-__all__ = ["nightly"]
-
 _DEFAULT_OUT = Path("reports", "out", "nightly")
 _DEFAULT_HISTORY = Path("reports", "history.jsonl")
 #: Programs that the fuzzer runs where there is an hour; other lengths have their share.

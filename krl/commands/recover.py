@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from recovery.records import StartRecord, SurveyRecord
     from recovery.survey.survey import Survey
 
-__all__ = ["recover"]
-
 _DEFAULT_NEGATIVES = Path("corpus", "negatives")
 _DEFAULT_OUT = Path("reports", "out", "recover")
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
 
-__all__ = ["recover_auto"]
-
 # How many generated negatives edits are tried by, drawn evenly from more, and their seed, which is
 # none that a bench or the comparison with the target uses.
 _NEGATIVES = 1_500

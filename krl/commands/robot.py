@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
     from interp.values.poses import Pose
 
-__all__ = ["app"]
-
 app = typer.Typer(help="Ask what an arm does, by its machine data.")
 
 _COMPONENTS = "xyzabc"

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
 
-__all__ = ["run"]
-
 
 class Level(StrEnum):
     """What the trace tells."""

@@ -11,8 +11,6 @@ from krl.errors import InputError
 from krl.extras import ARM, expected_extras
 from krl.run_options import ExecutorOption
 
-__all__ = ["run_tests"]
-
 _PLUGIN = "krl.program_tests.pytest_plugin"
 #: What pytest says where all have passed, some have failed, and none was there.
 _PASSED, _FAILED, _NONE = 0, 1, 5

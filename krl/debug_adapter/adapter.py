@@ -16,8 +16,6 @@ from krl.debug_adapter.inspection import Inspection
 from krl.errors import InputError, one_line
 from krl.run_options import RunOptions
 
-__all__ = ["Adapter"]
-
 _CAPABILITIES: Final[Json] = {
     "supportsConfigurationDoneRequest": True,
     "supportsConditionalBreakpoints": True,

@@ -5,8 +5,6 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["Arguments", "Handler", "Refused"]
-
 _E = TypeVar("_E", bound=Enum)
 
 

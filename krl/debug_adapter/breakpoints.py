@@ -11,8 +11,6 @@ from krl.debug_adapter.arguments import Arguments, Handler
 from krl.debug_adapter.connection import Json
 from krl.debug_adapter.debuggee import TASKS, Debuggee
 
-__all__ = ["Breakpoints"]
-
 
 class Breakpoints:
     """What the client wants its program to stop at, from one run to the next."""

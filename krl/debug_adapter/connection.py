@@ -7,8 +7,6 @@ from typing import Any, BinaryIO, Final
 
 from krl.errors import InputError
 
-__all__ = ["Connection", "Json"]
-
 #: An object of JSON.
 Json = dict[str, Any]
 _LARGEST: Final = 64_000_000

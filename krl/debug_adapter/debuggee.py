@@ -27,8 +27,6 @@ from krl.errors import InputError
 from krl.run_notes import run_notes
 from krl.run_options import RunOptions, expected_errors, prepared_run
 
-__all__ = ["ARM", "FRAMES", "TASKS", "Debuggee"]
-
 _REASONS: Final = {
     "watch": "data breakpoint",
     "fault": "exception",

@@ -6,8 +6,6 @@ from interp.program.load import CheckedProgram, Unit
 from krl.debug_adapter.connection import Json
 from krl.program_loading import project_root
 
-__all__ = ["ProgramFiles"]
-
 
 class ProgramFiles:
     """Those of a program that began with ``file``, which lie in its project or in an archive."""

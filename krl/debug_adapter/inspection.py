@@ -6,8 +6,6 @@ from krl.debug_adapter.arguments import Arguments, Handler, Refused
 from krl.debug_adapter.connection import Json
 from krl.debug_adapter.debuggee import ARM, FRAMES, TASKS, Debuggee
 
-__all__ = ["Inspection"]
-
 
 class Inspection:
     """Answers what a client asks about a program; all but threads and sources need a stop."""

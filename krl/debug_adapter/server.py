@@ -14,8 +14,6 @@ from krl.debug_adapter.connection import Connection
 from krl.extras import ARM, expected_extras
 from krl.run_options import RunOptions
 
-__all__ = ["serve"]
-
 
 def serve(file: Path | None, options: RunOptions, port: int | None) -> None:
     """Serve the client at the other end of standard input and output, or those of a port in turn.

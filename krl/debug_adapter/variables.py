@@ -13,8 +13,6 @@ from interp.values.faults import RuntimeFailure
 from interp.values.values import ArrayValue, StructureValue, Value
 from krl.debug_adapter.connection import Json
 
-__all__ = ["Variables"]
-
 #: What the scope of the system shows.
 _SYSTEM: Final = (
     *("$POS_ACT", "$AXIS_ACT", "$VEL_ACT", "$TOOL", "$BASE", "$IPO_MODE", "$OV_PRO", "$ADVANCE"),

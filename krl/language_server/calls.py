@@ -13,8 +13,6 @@ from grammar.syntax.references import Space
 from krl.language_server.symbols import nodes_in, parameter, signature
 from krl.language_server.workspace import Looked, certain
 
-__all__ = ["ArgumentHint", "Signature", "argument_hints", "signature_at"]
-
 _TOKEN = re.compile(r'"[^"]*"|;.*|[$A-Za-z_][\w$]*|\S')
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
 

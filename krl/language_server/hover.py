@@ -16,8 +16,6 @@ from grammar.syntax.source import Source
 from krl.language_server.symbols import signature
 from krl.language_server.workspace import Looked, OpenProject
 
-__all__ = ["Definition", "definition", "found_at", "hover"]
-
 _WORD = re.compile(r"\$?[A-Za-z_][A-Za-z0-9_$]*")
 _MOST_RULES = 6
 _TIERS = {

@@ -21,8 +21,6 @@ from krl.language_server.hover import found_at
 from krl.language_server.symbols import seen_everywhere, type_name
 from krl.language_server.workspace import Looked, OpenProject, certain
 
-__all__ = ["Candidate", "RenameError", "completions", "highlights", "places", "renaming"]
-
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
 _MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)\.\w*$")
 

@@ -18,20 +18,6 @@ from grammar.syntax.source import Source
 from krl.language_server.names import Candidate
 from krl.language_server.symbols import Outline
 
-__all__ = [
-    "action",
-    "characters",
-    "completion_item",
-    "diagnostic",
-    "document_symbol",
-    "encoded",
-    "location",
-    "path_of",
-    "position_of",
-    "range_of",
-    "workspace_symbol",
-]
-
 _SEVERITIES = {
     "error": lsp.DiagnosticSeverity.Error,
     "warning": lsp.DiagnosticSeverity.Warning,

@@ -8,8 +8,6 @@ from typing import Final
 from grammar.semantics.symbols import Kind
 from krl.language_server.workspace import Looked
 
-__all__ = ["MODIFIERS", "TYPES", "semantic_tokens"]
-
 #: Types and modifiers of the protocol, in the order of their numbers there.
 TYPES: Final = (
     "function", "variable", "parameter", "property", "enumMember", "type", "struct", "enum", "event"

@@ -30,8 +30,6 @@ from krl.language_server.workspace import Looked, OpenProject
 from krl.program_loading import project_root
 from krl.project_settings import FILE_NAME
 
-__all__ = ["server"]
-
 _AtPlace = (
     lsp.HoverParams
     | lsp.DefinitionParams

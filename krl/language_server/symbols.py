@@ -12,18 +12,6 @@ from grammar.syntax.references import PLANS
 from grammar.syntax.source import Source
 from krl.language_server.workspace import Looked, OpenProject
 
-__all__ = [
-    "Outline",
-    "folds",
-    "nodes_in",
-    "outline",
-    "parameter",
-    "seen_everywhere",
-    "signature",
-    "type_name",
-    "wanted",
-]
-
 _MOST_SYMBOLS = 500
 _BLOCKS = (
     ast.Routine,

@@ -31,8 +31,6 @@ from support.files.decode import decode
 from support.files.untrusted import read_bytes
 from support.gc_pause import gc_paused
 
-__all__ = ["MOST_FILES", "Looked", "OpenProject", "certain"]
-
 #: More files than the largest backup has; a folder with more is somebody's whole disk.
 MOST_FILES = 5_000
 _NONE = Settings(Path())

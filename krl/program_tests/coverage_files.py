@@ -10,8 +10,6 @@ from reports.coverage_page import CoveredFile
 from support.files.decode import decode
 from support.files.untrusted import read_bytes
 
-__all__ = ["covered_files"]
-
 
 def covered_files(records: Sequence[CoverageRecord]) -> list[CoveredFile]:
     """The files with statements, by paths from the working folder where they lie below it."""

@@ -32,8 +32,6 @@ from krl.program_tests.recording import compared, recording_of
 from krl.program_tests.test_files import Expected, ProgramTest, TestFileError
 from support.files.untrusted import read_text
 
-__all__ = ["Outcome", "run_test"]
-
 _WORDS: Final = re.compile(r"[A-Za-z_$][\w$]*")
 _CALLED: Final = re.compile(r"calls ([A-Za-z_$][\w$]*)", re.IGNORECASE)
 _ROOT: Final = re.compile(r"value ([A-Za-z_]\w*)", re.IGNORECASE)

@@ -16,8 +16,6 @@ import pytest
 if TYPE_CHECKING:
     from krl.program_tests.test_files import ProgramTest
 
-__all__ = ["ProgramTestFile", "ProgramTestItem"]
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The options of `krl test`, for pytest."""

@@ -17,8 +17,6 @@ from krl.program_tests.test_files import ProgramTest
 from support.files.atomic_write import write_atomic
 from support.files.untrusted import read_text
 
-__all__ = ["compared", "recording_of"]
-
 
 def recording_of(done: RunResult, lengths: Mapping[str, int]) -> list[str]:
     """The lines of a run; ``lengths`` are how many lines the files of the program have.

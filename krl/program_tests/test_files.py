@@ -19,8 +19,6 @@ from interp.controller.input_script import Script, ScriptError
 from interp.testing.drivers import RESULT
 from support.files.untrusted import DocumentError, read_text, toml_of
 
-__all__ = ["Expected", "ProgramTest", "TestFileError", "is_test_file", "read_tests"]
-
 #: Words of expectations that name what they are about; all others are about a line.
 _NAMED: Final = frozenset(
     "value out anout message interrupt fault passes avoids speed pose axes limits smooth halt ends"

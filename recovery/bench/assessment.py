@@ -36,8 +36,6 @@ from recovery.survey.unreserved_keywords import unreserved_keywords
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Assessment", "BenchMaterial", "assess", "assess_all", "covering", "figures"]
-
 _CLUSTERS_LOOKED_AT = 5
 _PROPOSALS_LOOKED_AT = 5
 # Failing texts by which the proposals of a cluster are compared: those that are left out are read

@@ -23,8 +23,6 @@ from grammar.notation.edits import (
 from grammar.notation.g4 import read
 from grammar.notation.model import Element, Grammar, GrammarError, Literal, Reference, Repeat
 
-__all__ = ["Mutant", "combined", "mutants"]
-
 
 @dataclass(frozen=True, slots=True)
 class Mutant:

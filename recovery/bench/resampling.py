@@ -21,8 +21,6 @@ from grammar.blocks import BLOCKS
 from grammar.parser.lexer import EOF, Lexer
 from grammar.parser.recognizer import Recognizer, State
 
-__all__ = ["Template", "Written", "readable", "spread", "templates", "write_corpus"]
-
 # What may hold digits or words that are no numbers and no names comes first, and stays as it is.
 _PIECE = re.compile(
     r"""[;&][^\r\n]* | "[^"\r\n]*"? | '[^'\r\n]*'? | [$\#]\w+

@@ -15,8 +15,6 @@ from recovery.negatives.negatives import Negative
 from support.files.decode import decode
 from support.files.discovery import Skipped, discover, read
 
-__all__ = ["choose_mutants", "material_for"]
-
 
 def material_for(
     grammar: Grammar, roots: Sequence[Path], negatives: Sequence[Negative], seed: int

@@ -20,8 +20,6 @@ from recovery.survey.survey import survey_texts
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["rankings", "same_ranking"]
-
 _SEED = "PYTHONHASHSEED"
 _MOST_PROCESSES = 2
 

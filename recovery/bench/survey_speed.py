@@ -29,8 +29,6 @@ from support.files.discovery import Found, IngestError, Skipped, discover, read
 from support.measure.isolated import call_isolated
 from support.measure.peak_memory import peak_memory
 
-__all__ = ["measure", "steps"]
-
 MB = 1_000_000
 ROUNDS = 3
 #: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from grammar.notation.edits import Edit
 
-__all__ = ["Cause", "NegativeCounter", "Proposal", "no_negatives"]
-
 
 @dataclass(frozen=True, slots=True)
 class Proposal:

@@ -45,8 +45,6 @@ from recovery.tuning import (
 from support.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["find_causes", "merged_by_edits", "merged_by_first_word", "merged_by_reason"]
-
 
 def find_causes(
     recognizer: Recognizer,

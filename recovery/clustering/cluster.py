@@ -22,8 +22,6 @@ from recovery.survey.signature import Signature, SignatureBuilder
 from recovery.survey.survey import Survey, SurveyedFile
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Cluster", "Clusters", "Member", "cluster"]
-
 
 @dataclass(frozen=True, slots=True)
 class Member:

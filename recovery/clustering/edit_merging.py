@@ -17,8 +17,6 @@ from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_MERGED_EDITS
 
-__all__ = ["are_one_change", "combined_edits", "merged_as_choice", "merged_as_form"]
-
 # Words of a text, a choice of words taken for one.
 _WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 

@@ -19,8 +19,6 @@ from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_READ_TWICE, MOST_READINGS, MOST_RECOGNIZERS_KEPT
 
-__all__ = ["EditTrial", "TrialResult", "edited"]
-
 
 @dataclass(frozen=True, slots=True)
 class TrialResult:

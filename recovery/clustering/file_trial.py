@@ -22,8 +22,6 @@ from recovery.tuning import (
     MOST_REREAD_TEXT,
 )
 
-__all__ = ["FailingFile", "FileTrial"]
-
 
 @dataclass(frozen=True, slots=True)
 class FailingFile:

@@ -19,8 +19,6 @@ from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.tuning import GENERATED_NEGATIVES, NEGATIVES_SEED
 
-__all__ = ["negative_counter", "required_tokens"]
-
 
 def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> NegativeCounter:
     """Counts what edits of ``grammar`` accept; negatives that it accepts already do not count.

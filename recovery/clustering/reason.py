@@ -14,8 +14,6 @@ from recovery.proposals.keywords import Vocabulary
 from recovery.proposals.rule_matcher import RuleMatcher
 from recovery.survey.signature import Signature
 
-__all__ = ["AS_NAME", "Reason", "ReasonFinder"]
-
 #: Words and kinds of token; means nothing but that equal ones are one reason.
 Reason = tuple[str, ...]
 

@@ -15,8 +15,6 @@ from functools import cached_property
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import FILES_PER_WORD, MOST_SEARCHED_TEXT
 
-__all__ = ["ParsedFiles", "no_parsed_files"]
-
 #: A file that can be read: its length in characters, and what gives its text.
 ParsedFile = tuple[int, Callable[[], str]]
 

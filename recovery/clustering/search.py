@@ -47,8 +47,6 @@ from recovery.tuning import (
     WIDE_PER_SITE,
 )
 
-__all__ = ["CauseSearch"]
-
 
 class CauseSearch:
     """Searches edits for the lines of one grammar."""

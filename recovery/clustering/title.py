@@ -15,8 +15,6 @@ from recovery.clustering.cause import Proposal
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import MOST_EXPECTED, MOST_LISTED, MOST_TOLD
 
-__all__ = ["TitleWriter"]
-
 _CLOSER = {"(": ")", "[": "]", "{": "}"}
 
 

@@ -12,8 +12,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
 
-__all__ = ["BlobReader", "GitError", "RefusedError", "fetch_all", "fetch_commit", "find_mirror"]
-
 _MIRROR_DEPTH = 3
 """How many folders below OWNER+NAME a mirror's git directory may lie."""
 

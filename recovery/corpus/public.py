@@ -28,16 +28,6 @@ from support.files.atomic_write import write_atomic
 from support.files.discovery import SUFFIXES
 from support.files.untrusted import read_bytes, read_text, toml_of
 
-__all__ = [
-    "Fetched",
-    "KrlFile",
-    "PublicSource",
-    "SourceListError",
-    "absent",
-    "fetch",
-    "read_sources",
-]
-
 """The file name endings of KRL, in lower case."""
 
 _COLUMNS = ["repository", "path", "bytes", "sha256", "kind", "quality"]

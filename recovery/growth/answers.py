@@ -18,8 +18,6 @@ from recovery.records import ClusterRecord, ConstructRecord
 from recovery.survey.survey import Survey
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Answers", "answered"]
-
 
 class Answers(TypedDict):
     """The clusters of a start, and the constructs that answered them."""

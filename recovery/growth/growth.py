@@ -27,8 +27,6 @@ from support.files.discovery import Skipped
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["LedgerSteps", "growth"]
-
 #: Each construct with the grammar after it, as `recovery.ledger.ledger.replay` gives them.
 LedgerSteps = Sequence[tuple[Construct, Grammar]]
 

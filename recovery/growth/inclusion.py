@@ -13,8 +13,6 @@ from collections.abc import Mapping
 from grammar.notation.model import Grammar, Literal, Rule
 from grammar.parser.network import Network, RuleAutomaton
 
-__all__ = ["fixed_texts_added", "occurs"]
-
 
 def fixed_texts_added(
     old: Network, new: Network, grammars: tuple[Grammar, Grammar]

@@ -24,8 +24,6 @@ from recovery.survey.failing_line import failures_of, source_lines
 from support.files.decode import decode, digest
 from support.files.discovery import Skipped, read
 
-__all__ = ["Remaining", "ambiguous_lines", "remaining"]
-
 _REASONS = Path(__file__).with_name("remaining.tsv")
 _EXAMPLES = 20
 _LONGEST_LINE = 1_000

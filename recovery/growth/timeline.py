@@ -28,8 +28,6 @@ from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Content", "Timeline", "contents_of", "read_through"]
-
 _BLOCK_BYTES = 8 << 20
 _RUNS = 16  # a block is read in so many pieces, so that progress shows
 _RUNS_A_PROCESS = 4  # or in more, so that the last processes to end end together

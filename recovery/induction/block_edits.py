@@ -14,8 +14,6 @@ from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms
 from recovery.induction.symbols import Symbol, Token
 
-__all__ = ["BlockEdits"]
-
 
 class BlockEdits:
     """Infers blocks of the corpus that the grammar does not have."""

@@ -25,8 +25,6 @@ from recovery.tuning import (
     FILES_WITH_ONE_DAMAGED,
 )
 
-__all__ = ["BlockLines", "SourceFile", "blocks_of", "find_blocks"]
-
 #: A line as its leading word, empty where it has none, and its tokens.
 _Line = tuple[str, tuple[Token, ...]]
 #: Distinct lines with the origins that have them.

@@ -15,8 +15,6 @@ from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import BRACKETS, Symbol, bracket_pairs
 from recovery.tuning import MISSING_RUN
 
-__all__ = ["BracketEdits"]
-
 
 class BracketEdits:
     """Infers contents of brackets, where what is missing is no operator."""

@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Generic, TypeVar
 
-__all__ = ["Factor", "chain_of"]
-
 _S = TypeVar("_S", bound=Hashable)
 
 

@@ -13,8 +13,6 @@ from grammar.parser.sentences import Sentences, Speller
 from recovery.language import KRL, CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 
-__all__ = ["Comparison", "Share", "compared", "within_reach"]
-
 _SENTENCES = 1_000
 _NEGATIVES = 10_000
 # Other than the seed of the negatives by which edits are tried.

@@ -9,8 +9,6 @@ from random import Random
 from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.language import CorpusFile
 
-__all__ = ["CorpusLines", "held_out"]
-
 
 def held_out(
     files: Sequence[CorpusFile], fraction: float, seed: int

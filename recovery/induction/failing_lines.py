@@ -16,8 +16,6 @@ from recovery.language import CorpusFile
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN
 
-__all__ = ["FailingLines", "Occurrences"]
-
 
 @dataclass(slots=True)
 class Occurrences:

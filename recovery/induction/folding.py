@@ -39,8 +39,6 @@ from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolRead
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import FOLDING_SYMBOLS
 
-__all__ = ["Folding", "size"]
-
 
 def size(grammar: Grammar) -> int:
     """How many symbols the parser rules of a grammar write."""

@@ -19,8 +19,6 @@ from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
 from recovery.tuning import MOST_SAMPLES, READ_TOGETHER_SHARE, SHORT_LIST, SHORT_LIST_KINDS
 
-__all__ = ["LONG_LIST", "FormWriter", "samples_of", "split_at_commas"]
-
 #: So many items are more than a short list has.
 LONG_LIST = SHORT_LIST + 1
 _COMMA = "','"

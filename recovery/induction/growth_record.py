@@ -19,8 +19,6 @@ from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force
 
-__all__ = ["Growth", "without", "without_some"]
-
 _MOST_REFUSED = 40
 _LONGEST_EDIT = 1_000
 

@@ -21,8 +21,6 @@ from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms
 from recovery.proposals.edit_site import LinePattern
 
-__all__ = ["Inference"]
-
 
 class Inference:
     """Infers edits of one grammar from its failing lines."""

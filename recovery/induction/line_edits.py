@@ -18,8 +18,6 @@ from recovery.induction.symbols import Symbol
 from recovery.proposals.edit_site import places_of
 from recovery.tuning import ALIKE_SHARE
 
-__all__ = ["LineEdits"]
-
 
 class LineEdits:
     """Infers forms of lines by their first word, or first sign where they begin with a name."""

@@ -10,8 +10,6 @@ from grammar.notation.addresses import Address, sequences
 from grammar.notation.model import Element, Group, Reference, Repeat, walk
 from recovery.induction.line_symbols import LineSymbols
 
-__all__ = ["LineHosts", "words_of"]
-
 
 class LineHosts:
     """Where lines stand in the grammar of some failing lines."""

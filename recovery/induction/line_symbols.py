@@ -20,8 +20,6 @@ from recovery.induction.symbols import (
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 
-__all__ = ["PREFIXES", "WORD", "LineSymbols"]
-
 #: What is written as a keyword is.
 WORD = re.compile(r"\b[A-Z_][A-Z0-9_]*\b")
 #: Signs that may stand ahead of an operand.

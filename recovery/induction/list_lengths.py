@@ -18,8 +18,6 @@ from grammar.parser.tree import Tree
 from recovery.induction.steps import Inferred
 from recovery.tuning import ITEMS_BEHIND_THE_FIRST, SHORT_LIST_EXAMPLES
 
-__all__ = ["bounded_lists"]
-
 
 def bounded_lists(
     recognizer: Recognizer, start: Grammar, texts: Iterable[str]

@@ -13,8 +13,6 @@ from grammar.notation.edits import AddAlternative
 from grammar.parser.lexer import Lexer
 from recovery.induction.chain import Factor, chain_of
 
-__all__ = ["split_literals"]
-
 _SIGNS = frozenset("+-")
 #: A class of characters and the last character before it that is no digit and no sign.
 _Class = tuple[str, str]

@@ -10,8 +10,6 @@ from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Repl
 from grammar.notation.model import Grammar, Reference, Repeat
 from recovery.induction.steps import Evidence, Taken
 
-__all__ = ["NAMES", "names_kept", "softened", "with_names"]
-
 #: The rule of names that is made where the token of names has none of its own.
 NAMES = "name"
 

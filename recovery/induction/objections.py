@@ -14,8 +14,6 @@ from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.survey.failing_line import source_lines
 from recovery.tuning import GAIN_PER_NEGATIVE
 
-__all__ = ["Judge"]
-
 
 @dataclass(frozen=True, slots=True)
 class Judge:

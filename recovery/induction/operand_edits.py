@@ -15,8 +15,6 @@ from recovery.induction.symbols import BRACKETS
 from recovery.proposals.edit_site import configurations_of, places_of
 from recovery.tuning import LEVEL_SYMBOLS
 
-__all__ = ["OperandEdits"]
-
 
 class OperandEdits:
     """Infers what may be an operand; ``operators`` and ``operator_lines`` are those it finds."""

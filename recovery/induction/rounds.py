@@ -53,9 +53,6 @@ from recovery.tuning import (
     UNBOUNDED_SYMBOLS,
 )
 
-__all__ = ["Induction"]
-
-
 #: What a round looks for: what is missing within lines, whole lines and blocks, what is alike.
 _Step = Literal["inner", "outer", "fold"]
 _STEPS: tuple[_Step, ...] = get_args(_Step)

@@ -14,8 +14,6 @@ from recovery.induction.steps import Evidence, Reading, Refused, Taken, joined
 from recovery.language import CorpusFile
 from recovery.tuning import GRAMMARS_KEPT
 
-__all__ = ["Failures", "ShownFiles", "reading"]
-
 #: The failures of each file, in its order.
 Failures = Sequence[Sequence[Failure]]
 

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 
-__all__ = ["Evidence", "Inferred", "Reading", "Refused", "Round", "Taken", "joined"]
-
 
 @dataclass(frozen=True, slots=True)
 class Inferred:

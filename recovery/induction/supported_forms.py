@@ -14,8 +14,6 @@ from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.symbols import BRACKETS, Symbol, operands_of
 from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
-__all__ = ["SupportedForms", "optional"]
-
 
 class SupportedForms:
     """Writes forms of failing lines in which all neighbours are such in enough origins."""

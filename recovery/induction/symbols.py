@@ -17,17 +17,6 @@ from grammar.parser.recognizer import Recognizer
 from recovery.proposals.keywords import Vocabulary
 from recovery.proposals.rule_matcher import RuleMatcher
 
-__all__ = [
-    "BRACKETS",
-    "Operand",
-    "OperandRules",
-    "Symbol",
-    "SymbolReader",
-    "Token",
-    "bracket_pairs",
-    "operands_of",
-]
-
 #: Signs that come in pairs.
 BRACKETS: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
 # Signs behind a name at the head of a line.

@@ -33,9 +33,6 @@ from recovery.tuning import (
     WOULD_BE_SHARE,
 )
 
-__all__ = ["WouldBeKeywords", "names_read"]
-
-
 # Signs behind a name that is called, indexed or has members.
 _BEHIND_NAMES = frozenset("([.")
 

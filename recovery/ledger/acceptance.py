@@ -22,8 +22,6 @@ from recovery.ledger.regeneration import Generator, parser_of
 from support.files.atomic_write import write_together
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Acceptance", "AcceptanceRefused", "GrammarPaths", "prepare", "write"]
-
 
 @dataclass(frozen=True, slots=True)
 class GrammarPaths:

@@ -20,8 +20,6 @@ from recovery.survey.survey import Survey, survey
 from support.files.decode import decode
 from support.files.discovery import Found, Skipped, discover, read
 
-__all__ = ["Corpora", "GrammarMeasurement"]
-
 # What `recovery.negatives.language_facts` takes for more than a name.
 _KEYWORDS = (
     RESERVED

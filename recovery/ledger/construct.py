@@ -12,18 +12,6 @@ from pathlib import Path
 
 from grammar.notation.edits import Edit
 
-__all__ = [
-    "ACCEPTED",
-    "GROUNDS",
-    "PROPOSED",
-    "REJECTED",
-    "STATES",
-    "Construct",
-    "Effect",
-    "Evidence",
-    "LedgerError",
-]
-
 PROPOSED, ACCEPTED, REJECTED = "proposed", "accepted", "rejected"
 #: Why a construct may enter the grammar, the weakest first.
 GROUNDS = ("recurring", "corroborated", "documented", "confirmed")

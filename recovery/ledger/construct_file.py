@@ -27,8 +27,6 @@ from recovery.ledger.construct import (
 )
 from support.files.untrusted import DocumentError, read_bytes, toml_of
 
-__all__ = ["is_rule_id", "name_from", "parse", "quoted", "read", "text_of"]
-
 _FILE_NAME = re.compile(r"(?:(?P<number>\d{4})-)?(?P<name>[a-z0-9]+(?:-[a-z0-9]+)*)\.toml")
 _RULE_ID = re.compile(r"[A-Z]{3}-\d\d")
 _VERDICT = re.compile(r"(?:accepted|refused: \S.*)?")

@@ -10,8 +10,6 @@ from grammar.notation.model import Grammar
 from recovery.ledger.construct import Construct, Evidence
 from recovery.records import ConstructRecord
 
-__all__ = ["START_RECORD", "construct_record"]
-
 #: The restrictive start as a step of the growth, with the same fields.
 START_RECORD: ConstructRecord = {
     "number": 0,

@@ -12,8 +12,6 @@ from recovery.ledger.construct import Construct, Evidence, LedgerError
 from recovery.ledger.construct_file import name_from, parse, text_of
 from recovery.ledger.evidence import place
 
-__all__ = ["propose"]
-
 _PLACES_SEEN = 10
 _FIGURES = {
     "restores": "files that parse with this edit alone",

@@ -25,8 +25,6 @@ from recovery.negatives.negatives import Negative
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import Survey, SurveyedFile
 
-__all__ = ["Evaluation", "evaluate", "losses"]
-
 # Mended lines looked at for second readings, the shortest first, and the longest of them in tokens.
 _LINES_READ = 60
 _LONGEST_READ = 200

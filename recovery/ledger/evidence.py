@@ -18,15 +18,6 @@ from recovery.ledger.construct import Evidence
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import Survey, SurveyedFile
 
-__all__ = [
-    "RestoredLine",
-    "broken_files",
-    "place",
-    "restored_files",
-    "restored_lines",
-    "with_counts",
-]
-
 _PLACES_SEEN = 10
 
 

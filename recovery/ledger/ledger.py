@@ -19,18 +19,6 @@ from recovery.ledger.construct import Construct, LedgerError
 from recovery.ledger.construct_file import read
 from support.files.atomic_write import JournalError, finish
 
-__all__ = [
-    "UNFINISHED",
-    "Ledger",
-    "broken_examples",
-    "findings",
-    "grown",
-    "in_force",
-    "is_wording",
-    "preliminary_of",
-    "replay",
-]
-
 #: In the folder of the ledger: what an acceptance was about to write when it was killed.
 UNFINISHED = ".unfinished.json"
 

@@ -25,8 +25,6 @@ from grammar.notation.model import (
     Rule,
 )
 
-__all__ = ["Decision", "decisions", "share_decided"]
-
 #: Tokens looked at; decisions that need more are not distinguished.
 _FARTHEST = 2
 _WIDEST = 60

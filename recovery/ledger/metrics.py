@@ -25,8 +25,6 @@ from grammar.notation.model import (
 )
 from recovery.ledger.lookahead import decisions, share_decided
 
-__all__ = ["MEANINGS", "metrics"]
-
 #: What each metric says, in a line.
 MEANINGS: Mapping[str, str] = {
     "TERM": "tokens that the rules use",

@@ -18,19 +18,6 @@ from typing import Protocol
 from recovery.ledger.construct import ACCEPTED, REJECTED, Construct
 from recovery.negatives.tokens import SourceLine, lines
 
-__all__ = [
-    "CommandOracle",
-    "ExampleProgram",
-    "Oracle",
-    "OracleAnswer",
-    "OracleError",
-    "OracleVerdict",
-    "as_bytes",
-    "programs_of",
-    "reason_to_ask",
-    "verdict_on",
-]
-
 _HEADS = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 _LONGEST_MESSAGE = 200
 

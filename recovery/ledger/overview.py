@@ -11,8 +11,6 @@ from recovery.ledger.construct_record import construct_record
 from recovery.ledger.ledger import Ledger, grown, in_force
 from recovery.ledger.oracle import reason_to_ask
 
-__all__ = ["ConstructRow", "counts_of", "difference", "page_of", "row_of"]
-
 
 class ConstructRow(TypedDict):
     """A construct in a list; ``waits`` says why an oracle should be asked, if it should."""

@@ -18,8 +18,6 @@ from grammar.notation.model import Grammar
 from grammar.parser import antlr_reference
 from recovery.ledger.construct import Construct
 
-__all__ = ["Generator", "disagreements", "parser_of"]
-
 #: Makes the parser of a grammar file in a folder, as `grammar.notation.generate.generate` does.
 Generator = Callable[[Path, Path], None]
 

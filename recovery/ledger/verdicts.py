@@ -14,8 +14,6 @@ from recovery.ledger.oracle import ExampleProgram, OracleAnswer, OracleError, as
 from support.files.atomic_write import write_together
 from support.files.untrusted import DocumentError, read_bytes, toml_of
 
-__all__ = ["FORM", "RecordedOracle", "write_bundle"]
-
 #: The name of the form in a bundle.
 FORM = "verdicts.toml"
 _ACCEPTED = "accepted"

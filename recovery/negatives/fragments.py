@@ -14,8 +14,6 @@ from grammar.blocks import BLOCKS, CLOSERS
 from recovery.negatives.language_facts import violation
 from recovery.negatives.tokens import SourceLine, lines
 
-__all__ = ["Fragment", "FragmentPool", "fragment_pool"]
-
 #: Lines, each indented by two blanks or more.
 Fragment = tuple[str, ...]
 

@@ -20,8 +20,6 @@ from recovery.negatives.language_facts import CLOSER_OF, adjacent, violation
 from recovery.negatives.negatives import Negative
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, SourceToken, line
 
-__all__ = ["evenly", "generate"]
-
 #: One spoilt version of a program, or nothing where the way does not fit.
 _Mutation = Callable[[list[str], random.Random], list[str] | None]
 

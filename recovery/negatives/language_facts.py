@@ -21,8 +21,6 @@ from itertools import pairwise
 from grammar.blocks import BLOCKS, CLOSERS
 from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
-__all__ = ["CLOSER_OF", "Violation", "adjacent", "violation"]
-
 
 @dataclass(frozen=True, slots=True)
 class Violation:

@@ -17,8 +17,6 @@ from grammar.parser.lexer import EOF, SKIPPED, Lexer
 from grammar.parser.recognizer import Recognizer, State
 from support.files.untrusted import read_bytes
 
-__all__ = ["Negative", "NegativeError", "NegativeSet", "Phase", "load"]
-
 #: What has to reject the program: the grammar, the static checker, or the run.
 Phase = Literal["parse", "check", "run"]
 

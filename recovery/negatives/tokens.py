@@ -10,8 +10,6 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-__all__ = ["RESERVED", "RESERVED_FIRST", "SourceLine", "SourceToken", "line", "lines"]
-
 #: Words that are never names.
 RESERVED = frozenset(
     "AND OR EXOR NOT B_AND B_OR B_EXOR B_NOT IF THEN ELSE ENDIF FOR ENDFOR WHILE ENDWHILE UNTIL "

@@ -22,9 +22,6 @@ from recovery.tuning import (
     PHRASE_LEVELS,
 )
 
-__all__ = ["common_phrases"]
-
-
 _Span = tuple[Word, ...]
 
 

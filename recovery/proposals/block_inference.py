@@ -22,9 +22,6 @@ from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES, MOST_MIDDLES
 
-__all__ = ["Block", "BlockFinder", "is_balanced"]
-
-
 _Line = tuple[str, tuple[Word, ...]]  # its leading word, its tokens without the line end
 
 

@@ -34,8 +34,6 @@ from recovery.tuning import (
     UNLIKELY_COST,
 )
 
-__all__ = ["Candidate", "CandidateFinder"]
-
 
 @dataclass(frozen=True, slots=True)
 class Candidate:

@@ -17,8 +17,6 @@ from grammar.notation.model import Alternative, Element, Group, Literal, Referen
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import USUAL_PART, WORD_LIST_PART
 
-__all__ = ["Before", "Collocations", "last_two", "symbols_in"]
-
 #: The two symbols before a place, the nearer one last; empty where a rule begins.
 Before = tuple[str, str]
 

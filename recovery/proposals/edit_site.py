@@ -13,8 +13,6 @@ from grammar.parser.recognizer import Recognizer, State
 from recovery.proposals.segmentation import Word
 from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 
-__all__ = ["EditSite", "LinePattern", "RankedEdits", "configurations_of", "places_of"]
-
 #: Edits that need no phrase, with their rank: how much they accept.
 RankedEdits = tuple[int, tuple[Edit, ...]]
 

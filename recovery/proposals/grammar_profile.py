@@ -30,8 +30,6 @@ from grammar.parser.recognizer import Recognizer
 from recovery.proposals.keywords import Vocabulary
 from recovery.tuning import HUB_ALTERNATIVES, SAME_TEXT_BONUS, WIDTH_PER_DOUBLING
 
-__all__ = ["GrammarProfile"]
-
 _NAMES = re.compile(r"\w+")
 
 

@@ -13,8 +13,6 @@ from grammar.notation.model import Element, Group, Literal, Reference, walk
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import WORD_LIST_PART
 
-__all__ = ["Vocabulary"]
-
 
 class Vocabulary:
     """The reserved words of one grammar, and the rules that are made of them."""

@@ -20,8 +20,6 @@ from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Similarity
 from recovery.tuning import LINE_LOOP_COST, SITE_COST, UNLIKELY_COST
 
-__all__ = ["LineSiteFinder"]
-
 
 class LineSiteFinder:
     """Finds the edit sites of one grammar for whole lines."""

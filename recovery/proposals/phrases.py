@@ -26,8 +26,6 @@ from recovery.tuning import (
     USUAL_RULE_COST,
 )
 
-__all__ = ["Phraser"]
-
 
 class Phraser:
     """Writes phrases with the rules of one grammar."""

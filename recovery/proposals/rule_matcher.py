@@ -12,8 +12,6 @@ from functools import cached_property
 from grammar.parser.recognizer import Recognizer, State
 from recovery.tuning import LONGEST_BEGINNING_KEPT, MOST_ANSWERS_KEPT, WORD_LIST_PART
 
-__all__ = ["RuleMatcher"]
-
 
 class RuleMatcher:
     """Matches tokens against the rules of one grammar."""

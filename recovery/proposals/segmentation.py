@@ -16,8 +16,6 @@ from recovery.tuning import (
     TOKEN_COST,
 )
 
-__all__ = ["Segmenter", "Word"]
-
 #: A token of a line: its kind and, where it is a name meant as a keyword, that keyword.
 Word = tuple[int, str | None]
 

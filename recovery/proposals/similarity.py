@@ -21,8 +21,6 @@ from recovery.tuning import (
     SIMILARITY_STEPS,
 )
 
-__all__ = ["Similarity"]
-
 
 class Similarity:
     """Compares alternatives under one grammar."""

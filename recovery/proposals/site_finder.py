@@ -43,8 +43,6 @@ from recovery.tuning import (
     WIDEN_FIRST_WORD_COST,
 )
 
-__all__ = ["EditSiteFinder"]
-
 
 class EditSiteFinder:
     """Finds the edit sites of one grammar."""

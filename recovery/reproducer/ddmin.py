@@ -12,9 +12,6 @@ from typing import TypeVar
 
 from recovery.tuning import EXHAUSTIVE_ITEMS, SUBSTITUTED_ITEMS
 
-__all__ = ["minimized", "without_loops", "without_stretches"]
-
-
 _T = TypeVar("_T")
 
 

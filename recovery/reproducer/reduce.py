@@ -29,8 +29,6 @@ from recovery.reproducer.same_failure import (
 )
 from recovery.tuning import LONGEST_GAP, MOST_CONFIGURATIONS
 
-__all__ = ["Reducer", "Reproducer"]
-
 
 @dataclass(frozen=True, slots=True)
 class Reproducer:

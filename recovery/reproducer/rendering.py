@@ -17,8 +17,6 @@ from grammar.parser.sentences import Speller
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import MOST_NAMES
 
-__all__ = ["FRAME", "AbstractToken", "TokenRenderer"]
-
 #: What tokens around a failing line are named; names that occur in one are in upper case.
 FRAME = "frame"
 

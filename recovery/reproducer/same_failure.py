@@ -14,8 +14,6 @@ from grammar.parser.recognizer import Recognizer
 from recovery.reproducer.rendering import FRAME, AbstractToken, TokenRenderer
 from recovery.tuning import LONGEST_GAP, MOST_TOKENS_READ, TEST_COST
 
-__all__ = ["FailureMode", "SameFailure", "failure_mode", "kinds_in", "line_at"]
-
 
 class FailureMode(NamedTuple):
     """What makes two failures alike: the offending token and what the grammar was doing.

@@ -7,8 +7,6 @@ from functools import lru_cache
 
 from grammar.parser.failures import Failure, FailureFinder, Form
 
-__all__ = ["FailingLine", "failures_of", "source_lines"]
-
 _LONGEST_LINE_KEPT = 1_000
 _WORDS_KEPT = 24
 

@@ -12,8 +12,6 @@ from recovery.survey.failing_line import FailingLine
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 
-__all__ = ["Kept", "keep", "key_of", "recall"]
-
 #: What is kept of a content: its failures with their forms, or why it is no KRL.
 Kept = tuple[tuple[FailingLine, ...], tuple[Form, ...]] | str
 

@@ -24,8 +24,6 @@ from recovery.tuning import (
     KEYWORD_SHARE,
 )
 
-__all__ = ["Signature", "SignatureBuilder"]
-
 _ELLIPSIS = "…"
 # Signs that no plain name at the beginning of a line has behind it, but a keyword can.
 _BEGINS_OPERAND = frozenset("{-+")

@@ -27,8 +27,6 @@ from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Survey", "SurveyedFile", "survey", "survey_texts"]
-
 # One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
 _TASK_BYTES = 1 << 20
 _TASK_FILES = 64

@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from grammar.parser.lexer import Lexer
 from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
 
-__all__ = ["UnreservedKeyword", "unreserved_keywords"]
-
 
 @dataclass(frozen=True, slots=True)
 class UnreservedKeyword:

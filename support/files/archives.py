@@ -26,18 +26,6 @@ from typing import IO
 from support.files.untrusted import open_file
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "ArchiveError",
-    "Member",
-    "close_archives",
-    "is_archive",
-    "members",
-    "read",
-    "read_whole",
-    "too_large",
-    "why",
-]
-
 MB = 1 << 20
 MAX_FILE_BYTES = 64 * MB
 """One file, packed or not. The longest KRL file known has about 1 MB; point tables may have ten."""

@@ -19,8 +19,6 @@ from pathlib import Path
 
 from support.files.untrusted import json_of, read_bytes
 
-__all__ = ["JournalError", "atomic_path", "finish", "write_atomic", "write_together"]
-
 
 @contextlib.contextmanager
 def atomic_path(target: Path) -> Iterator[Path]:

@@ -9,8 +9,6 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from typing import Final
 
-__all__ = ["code_digest"]
-
 _SUFFIXES: Final = (".py", ".g4", ".lark", ".tsv", ".toml", ".dat", ".src", ".xml")
 # Cases are input: they travel with the work and are not what it is done with.
 _INPUT: Final = "cases"

@@ -13,8 +13,6 @@ import re
 from dataclasses import dataclass
 from itertools import islice
 
-__all__ = ["Source", "decode", "digest"]
-
 EVIDENCE_LINES = 2_000
 """Lines looked at for KRL statements when no line opens a module. Openers are sought everywhere."""
 

@@ -19,17 +19,6 @@ from support.files.archives import ArchiveError, is_archive
 from support.files.untrusted import open_file
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "DRIVE_FOLDERS",
-    "Found",
-    "IngestError",
-    "Skipped",
-    "discover",
-    "is_drive",
-    "printable",
-    "read",
-]
-
 SUFFIXES = (".src", ".dat", ".sub")
 """How names of KRL files end, in any case of letters."""
 

@@ -21,8 +21,6 @@ from support.files.code_digest import code_digest
 from support.files.user_cache import user_cache
 from support.gc_pause import gc_paused
 
-__all__ = ["kept"]
-
 #: Characters: what is made of less is made sooner than the digest of the code is.
 _FEWEST: Final = 10_000
 _MOST_KEPT: Final = 200 << 20  # bytes

@@ -16,8 +16,6 @@ from functools import cache, lru_cache
 from importlib import import_module
 from typing import Any
 
-__all__ = ["dumps", "loads"]
-
 
 def dumps(value: object) -> bytes:
     """The value as bytes."""

@@ -15,8 +15,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-__all__ = ["ResultStore"]
-
 # What a damaged file raises: Python cannot read an error message of SQLite that quotes the damage.
 _DAMAGE = (sqlite3.Error, UnicodeDecodeError)
 

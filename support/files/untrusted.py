@@ -16,18 +16,6 @@ import tomllib
 from pathlib import Path
 from typing import Any, Final
 
-__all__ = [
-    "MOST_BYTES",
-    "MOST_DOTS",
-    "MOST_TOML",
-    "DocumentError",
-    "json_of",
-    "open_file",
-    "read_bytes",
-    "read_text",
-    "toml_of",
-]
-
 #: No document that a person writes is nearly as large; recordings may have some MB.
 MOST_BYTES: Final = 64 << 20
 # `tomllib` needs seconds for a dotted key of thousands of parts, and minutes for tens of thousands.

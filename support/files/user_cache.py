@@ -6,8 +6,6 @@ import os
 import sys
 from pathlib import Path
 
-__all__ = ["user_cache"]
-
 
 def user_cache() -> Path | None:
     """The folder of this user, which need not exist; ``None`` where there can be none."""

@@ -10,8 +10,6 @@ from typing import Final, TypeVar
 
 from support.measure.peak_memory import peak_memory
 
-__all__ = ["Cost", "Growth", "measure_growth"]
-
 _T = TypeVar("_T")
 
 _NOTICEABLE_S: Final = 0.2

@@ -7,8 +7,6 @@ from typing import ParamSpec, TypeVar
 
 from support.parallel.processes import process_pool
 
-__all__ = ["call_isolated"]
-
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 

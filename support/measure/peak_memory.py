@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-__all__ = ["peak_memory"]
-
 if sys.platform == "win32":
     import ctypes
     from ctypes import wintypes

@@ -13,8 +13,6 @@ from typing import Any, Final, Generic, TypeVar
 from support.files.code_digest import code_digest
 from support.parallel.workers import Workers, WorkersError
 
-__all__ = ["connected"]
-
 _T = TypeVar("_T")
 
 #: What a result may depend on.

@@ -11,8 +11,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from threading import Thread, current_thread, main_thread
 
-__all__ = ["run_limited"]
-
 
 def run_limited(
     command: Sequence[str],

@@ -16,8 +16,6 @@ from support.parallel.dask_cluster import connected
 from support.parallel.processes import LocalWorkers
 from support.parallel.workers import Pending, Workers, WorkersError
 
-__all__ = ["check_scheduler", "in_shares", "ordered_map"]
-
 _T = TypeVar("_T")
 _Item = TypeVar("_Item")
 _Ts = TypeVarTuple("_Ts")

@@ -14,8 +14,6 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 from types import ModuleType
 from typing import TypeVar, TypeVarTuple
 
-__all__ = ["LocalWorkers", "process_pool"]
-
 _T = TypeVar("_T")
 _Ts = TypeVarTuple("_Ts")
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["Progress", "no_progress"]
-
 #: Is given a number: of things there are to do, or of things done since the last call.
 Progress = Callable[[int], object]
 

@@ -13,8 +13,6 @@ from typing import ParamSpec, Self, TypeVar
 
 from support.parallel.processes import process_pool
 
-__all__ = ["StickyPool"]
-
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 

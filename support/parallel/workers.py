@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
-__all__ = ["Pending", "Workers", "WorkersError"]
-
 _T = TypeVar("_T")
 _T_co = TypeVar("_T_co", covariant=True)
 

@@ -19,8 +19,6 @@ from tests.soak.given import (
     runnable,
 )
 
-__all__ = ["ENTRIES"]
-
 SCRIPT = "t=0.5 IN[1]=TRUE\non OUT[3]=TRUE after 0.2 IN[7]=TRUE\nfulfil waits after 1\n"
 #: A grammar that is damaged in no time, and reads the two programs that it is measured with.
 GRAMMAR = (REPOSITORY / "tests" / "small.g4").read_text(encoding="utf-8")

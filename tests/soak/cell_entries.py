@@ -8,8 +8,6 @@ from pathlib import Path
 from tests.soak.foundry import Foundry
 from tests.soak.given import PROGRAM, REPOSITORY, Entry, Given, krl, put, runnable
 
-__all__ = ["ENTRIES"]
-
 SCRIPT = "t=0.5 IN[1]=TRUE\non OUT[3]=TRUE after 0.2 IN[7]=TRUE\nstop at 2\n"
 POINTS = [{"id": 1, "x": 600, "y": 0, "z": 700, "a": 0, "b": 90, "c": 0, "s": 2}]
 PROFILE = (REPOSITORY / "interp" / "controller" / "profiles" / "kss8.toml").read_text(

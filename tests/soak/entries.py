@@ -14,8 +14,6 @@ from tests.soak import (
 )
 from tests.soak.given import Entry
 
-__all__ = ["ENTRIES"]
-
 ENTRIES: dict[str, Entry] = {
     **language_entries.ENTRIES,
     **survey_entries.ENTRIES,

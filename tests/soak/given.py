@@ -8,21 +8,6 @@ from pathlib import Path
 
 from tests.soak.foundry import Foundry
 
-__all__ = [
-    "OK",
-    "PROGRAM",
-    "REPOSITORY",
-    "Entry",
-    "Given",
-    "Maker",
-    "archive",
-    "krl",
-    "named",
-    "program",
-    "put",
-    "runnable",
-]
-
 REPOSITORY = Path(__file__).parents[2]
 
 

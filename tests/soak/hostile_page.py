@@ -23,8 +23,6 @@ from support.files import archives, untrusted
 from tests.soak.entries import ENTRIES
 from tests.soak.pieces import KINDS
 
-__all__ = ["growth_section", "page", "told"]
-
 REPOSITORY = Path(__file__).parents[2]
 PAGE = REPOSITORY / "docs" / "hostile.md"
 MB = 1 << 20

@@ -8,8 +8,6 @@ from pathlib import Path
 from tests.soak.foundry import Foundry
 from tests.soak.given import REPOSITORY, Entry, Given, krl, put
 
-__all__ = ["ENTRIES"]
-
 NIGHT = {
     "date": "2026-01-01",
     "steps": {"fuzz": {"status": "ok", "seconds": 1.5, "page": ""}},

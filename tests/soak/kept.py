@@ -11,8 +11,6 @@ from krl.cli import main
 from tests.soak.foundry import Foundry
 from tests.soak.given import OK, REPOSITORY, put
 
-__all__ = ["CONSTRUCTS", "damaged", "short_ledger", "surveyed"]
-
 #: The files of the ledger, in its order.
 CONSTRUCTS = sorted((REPOSITORY / "grammar" / "constructs").glob("*.toml"))
 

@@ -10,8 +10,6 @@ from tests.soak.foundry import Foundry
 from tests.soak.given import Entry, Given, archive, krl, program
 from tests.soak.kept import damaged
 
-__all__ = ["ENTRIES"]
-
 
 def check_again(folder: Path, foundry: Foundry) -> Given:
     """Findings that were kept, and damaged."""

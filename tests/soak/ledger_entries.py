@@ -12,8 +12,6 @@ from tests.soak.foundry import Foundry
 from tests.soak.given import REPOSITORY, Entry, Given, archive, krl, put
 from tests.soak.kept import CONSTRUCTS, surveyed
 
-__all__ = ["ENTRIES"]
-
 PRELIMINARY = REPOSITORY / "grammar" / "preliminary.g4"
 FORM = (
     'by = ""\nwhen = 2026-03-31\nrelease = "KSS 8"\n'

@@ -38,8 +38,6 @@ from krl.project_settings import read_baseline, read_settings
 from support.files import archives
 from support.files.decode import decode
 
-__all__ = ["KEPT", "READERS", "kept"]
-
 KEPT = Path(__file__).parent / "reader_inputs"
 
 

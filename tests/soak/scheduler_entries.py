@@ -10,8 +10,6 @@ from pathlib import Path
 from tests.soak.foundry import Foundry
 from tests.soak.given import PROGRAM, Entry, Given, krl, put
 
-__all__ = ["ENTRIES"]
-
 #: Nothing of it may reach a machine of somebody else: hosts are this one or cannot be.
 ADDRESSES = [
     "tcp://nothing.invalid:8786",

@@ -9,8 +9,6 @@ from tests.soak.foundry import Foundry
 from tests.soak.given import OK, REPOSITORY, Entry, Given, archive, krl, program, put
 from tests.soak.kept import damaged, short_ledger
 
-__all__ = ["ENTRIES", "GRAMMAR"]
-
 GRAMMAR = (REPOSITORY / "grammar" / "KRL.g4").read_text(encoding="utf-8")
 
 

@@ -8,8 +8,6 @@ from pathlib import Path
 from tests.soak.foundry import Foundry
 from tests.soak.given import PROGRAM, Entry, Given, krl, put
 
-__all__ = ["ENTRIES"]
-
 WORDS = (
     "recover check run growth conform fuzz construct corpus robot bench --json --out --jobs 0 -1 "
     "99999999999999 nothing/here.src /dev/null --seed x compile asm -- - é --help --io --profile"

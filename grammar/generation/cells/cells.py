@@ -26,8 +26,6 @@ from grammar.generation.cells.system import (
 )
 from grammar.generation.choices import SeededChoices, Weighted
 
-__all__ = ["File", "files"]
-
 
 @dataclass(frozen=True, slots=True)
 class File:

@@ -28,8 +28,6 @@ from grammar.semantics.types import (
     Type,
 )
 
-__all__ = ["Data"]
-
 
 class Data:
     """Declarations for a data list, written while they are made.

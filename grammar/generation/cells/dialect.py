@@ -9,8 +9,6 @@ from enum import Enum
 from grammar.generation.choices import Choices, Weighted
 from grammar.generation.code import Spelling
 
-__all__ = ["Dialect", "Generation", "Letters", "a_dialect", "a_way_to_store"]
-
 
 class Generation(Enum):
     """Of the controller; the value is the release that its inline forms name."""

@@ -17,8 +17,6 @@ from grammar.generation.motions import (
 from grammar.generation.patterns import line
 from grammar.semantics.types import REAL
 
-__all__ = ["Forms"]
-
 _PARAMS = (
     ";Params IlfProvider=kukaroboter.basistech.inlineforms.movement.{provider}; "
     "Kuka.IsGlobalPoint=False; Kuka.PointName={point}; Kuka.BlendingEnabled={blend}; "

@@ -17,18 +17,6 @@ from grammar.generation.choices import Choices
 from grammar.generation.scope import Routine, Scope
 from grammar.semantics.types import INT, REAL
 
-__all__ = [
-    "Cell",
-    "Module",
-    "as_data_list",
-    "as_program",
-    "library",
-    "process",
-    "public_data",
-    "sequence",
-]
-
-
 #: Of each kind of name that a program sees of those of the cell.
 _MOST_NAMES: Final = 6
 

@@ -12,8 +12,6 @@ from importlib import resources
 from grammar.generation.choices import Choices
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
 
-__all__ = ["LONGEST", "Names", "Vocabulary", "Writing", "vocabulary"]
-
 LONGEST = 24
 """Characters of a name [TYP-05]."""
 

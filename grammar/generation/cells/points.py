@@ -5,8 +5,6 @@ from __future__ import annotations
 from grammar.generation.cells.dialect import Dialect, Generation
 from grammar.generation.choices import Choices
 
-__all__ = ["Taught", "axis_position", "frame", "position"]
-
 # Status and Turn that belong together on usual robots [POS-04, POS-05, POS-07].
 _BRANCHES = ((2, 2), (2, 35), (2, 3), (6, 19), (6, 27), (6, 51), (2, 10), (6, 50))
 _BITS = tuple((f"'B{s:03b}'", f"'B{t:06b}'") for s, t in _BRANCHES)

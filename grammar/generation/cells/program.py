@@ -27,8 +27,6 @@ from grammar.generation.routines import (
 from grammar.generation.scope import Parameter, Routine, Scope
 from grammar.semantics.types import INT, REAL, Array
 
-__all__ = ["Program"]
-
 _INTERRUPTS: Final = (*range(4, 40), *range(81, 129))
 _LASTING: Final = pattern("<lasting> <AND|OR|AND NOT> $IN[<1-512>]")
 _SIZE: Final = Size(statements=6, depth=2)

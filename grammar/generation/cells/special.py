@@ -14,8 +14,6 @@ from grammar.generation.motions import spline_block
 from grammar.generation.scope import Routine
 from grammar.semantics.types import Array, Structure, Type
 
-__all__ = ["old_machine", "painting", "path", "search", "serial", "splines", "table_filler"]
-
 # A turn by three degrees. Plain arithmetic gives the same digits on every machine.
 _COS, _SIN = 0.9986295347545738, 0.05233595624294383
 

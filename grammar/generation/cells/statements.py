@@ -11,8 +11,6 @@ from grammar.generation.patterns import output
 from grammar.generation.statements import proceed
 from grammar.semantics.types import INT
 
-__all__ = ["ask", "careful", "fold", "message", "remark", "set_output"]
-
 
 def _names(code: Code) -> Names:
     assert isinstance(code.names, Names)

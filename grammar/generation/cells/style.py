@@ -32,8 +32,6 @@ from grammar.generation.patterns import line, patterns
 from grammar.generation.scope import Parameter
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
-__all__ = ["E6AXIS", "E6POS", "FRAME", "LOCALS", "RESULTS", "style_of"]
-
 FRAME, E6POS, E6AXIS = structure("FRAME"), structure("E6POS"), structure("E6AXIS")
 _MODE_OP: Final = predefined("MODE_OP")
 RESULTS: Final = Weighted[Type]((4, INT), (4, REAL), (4, BOOL), (1, E6POS), (1, FRAME))

@@ -12,8 +12,6 @@ from grammar.generation.cells.points import frame
 from grammar.generation.scope import Routine, Variable
 from grammar.semantics.types import BOOL, INT
 
-__all__ = ["cell_program", "controller", "globals_of_cell", "submit", "system_routines"]
-
 _OPENERS = (
     *("DEF ", "DEFFCT ", "GLOBAL DEF ", "GLOBAL DEFFCT "),
     *("IF ", "FOR ", "WHILE ", "REPEAT", "LOOP", "SWITCH "),

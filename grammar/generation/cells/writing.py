@@ -9,8 +9,6 @@ from pathlib import Path
 from grammar.generation.cells.cells import files
 from support.parallel.progress import Progress, no_progress
 
-__all__ = ["Written", "write_cells"]
-
 
 @dataclass(frozen=True, slots=True)
 class Written:

@@ -17,8 +17,6 @@ from grammar.generation.expressions import (
 from grammar.generation.literals import TEXT
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
-__all__ = ["format_text", "scan_text"]
-
 _FORMATS: Final[tuple[tuple[Type, tuple[str, ...]], ...]] = (
     (INT, ("%d", "%5d", "%x", "%-4d|", "%+d", "%03d", "%c", "%u", "%#x", "%.3i")),
     (REAL, ("%f", "%8.3f", "%.2f", "%e", "%g", "%+.1f", "%d")),

@@ -31,8 +31,6 @@ from grammar.generation.scope import Parameter, Routine, Scope, Variable
 from grammar.generation.statements import channel
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
-__all__ = ["Sample", "generate", "seeded"]
-
 
 @dataclass(frozen=True, slots=True)
 class Sample:

@@ -27,8 +27,6 @@ from grammar.generation.patterns import line, patterns
 from grammar.generation.scope import Parameter
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
-__all__ = ["CLOSED", "PLAIN", "RESULTS"]
-
 PLAIN: Final[tuple[Type, ...]] = (INT, INT, REAL, REAL, BOOL, CHAR, COLOUR)
 RESULTS: Final = Weighted[Type](
     (5, INT),

@@ -16,8 +16,6 @@ from grammar.semantics.types import (
     Structure,
 )
 
-__all__ = ["COLOUR", "MODE", "POINT", "RECORD", "STATE"]
-
 COLOUR: Final = Enumeration("COLOUR_T", ("RED", "GREEN", "BLUE", "END"))
 MODE: Final = Enumeration("MODE_T", ("IDLE", "BUSY"))
 POINT: Final = Structure(

@@ -8,8 +8,6 @@ from grammar.generation.code import Code
 from grammar.generation.expressions import atom, expression, operand, read
 from grammar.semantics.types import CHAR, INT, REAL, Type
 
-__all__ = ["assigned_value"]
-
 #: What is too large for an INT, or for a REAL, or nearly so.
 _TOO_LARGE: Final = (
     *("2147483647+?", "?-2147483647-2", "99999*99999+?", "-2147483647-1-?", "1.0E30*1.0E30+?"),

@@ -10,8 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["HERE", "Kernel", "kernels_in"]
-
 #: The kernels of this project.
 HERE = Path(__file__).parent
 

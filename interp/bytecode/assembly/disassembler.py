@@ -41,8 +41,6 @@ from interp.bytecode.program import (
 )
 from interp.values.faults import FAULTS
 
-__all__ = ["disassemble"]
-
 _FAULTS = {kind.code: slug for slug, kind in FAULTS.items()}
 
 

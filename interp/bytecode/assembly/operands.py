@@ -12,8 +12,6 @@ from interp.bytecode.instruction_set.table import shape
 from interp.bytecode.program import Instruction, Mode, Parameter, Slot
 from interp.values.faults import FAULTS
 
-__all__ = ["Operands"]
-
 _FAULTS = {slug: kind.code for slug, kind in FAULTS.items()}
 
 

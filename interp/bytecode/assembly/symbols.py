@@ -9,8 +9,6 @@ from interp.bytecode.assembly.syntax import Key, Line, key, path_text
 from interp.bytecode.cell_layout import offset_of, size
 from interp.bytecode.program import BASIC_TYPES, Mode
 
-__all__ = ["Symbols", "constant_place", "constant_word", "looked_up", "part_offset"]
-
 
 class Symbols:
     """What can be named: types, labels of texts and entries, variables, code objects.

@@ -20,23 +20,6 @@ from interp.port.requests import Path
 from interp.values.faults import Fault
 from interp.values.values import single
 
-__all__ = [
-    "AssemblyError",
-    "Key",
-    "Label",
-    "Line",
-    "key",
-    "label_text",
-    "labels",
-    "name_text",
-    "path_text",
-    "real_text",
-    "real_word",
-    "split",
-    "string_text",
-]
-
-
 #: A name, and the how manieth it is of those that are called so.
 Label = tuple[str, int]
 

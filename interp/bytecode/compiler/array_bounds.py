@@ -11,8 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-__all__ = ["Bound", "Origin", "Sizes"]
-
 #: A parameter: the number of its code object, and its place in the head of the routine from 0.
 Origin = tuple[int, int]
 #: So many elements, or as many as a parameter has.

@@ -49,8 +49,6 @@ from interp.program.variables import (
     untyped_result,
 )
 
-__all__ = ["Calls", "Formals", "formals_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class Formals:

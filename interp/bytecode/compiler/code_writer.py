@@ -25,8 +25,6 @@ from interp.bytecode.program import (
 from interp.bytecode.verifier.successors import ENDS
 from support.lazy_dataclass import dataclass
 
-__all__ = ["CopyBuffer", "Label", "Writer"]
-
 
 @dataclass(slots=True, eq=False)
 class Label:

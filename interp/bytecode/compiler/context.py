@@ -17,8 +17,6 @@ from interp.bytecode.program import CodeKind
 from interp.program.load import CheckedProgram, Routine, Unit
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Binding", "CodeObjects", "Context", "Deferred", "Refusal", "Shared"]
-
 #: What stands for a system variable in a routine: its path, ``None`` for each index.
 Binding = tuple[tuple[str | int | None, ...], Type] | None
 #: What is executed or evaluated later than where it stands: an action or a condition.

@@ -24,8 +24,6 @@ from interp.bytecode.compiler.locations import (
 )
 from interp.values.values import letters
 
-__all__ = ["ControlFlow"]
-
 
 class ControlFlow:
     """Makes the code of statements that hold others, and of those that leave them.

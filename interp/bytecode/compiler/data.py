@@ -25,8 +25,6 @@ from interp.program.load import CheckedProgram
 from interp.program.variables import data_lists, data_variables, first_values
 from interp.values.faults import LinkError, fault
 
-__all__ = ["declare_data", "initial_values"]
-
 
 def declare_data(program: CheckedProgram, tables: Tables) -> None:
     """Give the variables of all data lists their cells.

@@ -35,8 +35,6 @@ from interp.bytecode.compiler.memory import Memory
 from interp.program.variables import signal_ends, untyped
 from interp.values.faults import LinkError
 
-__all__ = ["Designators", "Evaluation", "literal"]
-
 _MOST_SIGNALS = 8
 
 

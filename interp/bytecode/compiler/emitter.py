@@ -8,8 +8,6 @@ from interp.bytecode.compiler.context import Context
 from interp.bytecode.program import Argument, Ask
 from interp.values.faults import FAULTS, LinkError
 
-__all__ = ["Emitter", "Ended"]
-
 
 class Ended(Exception):
     """What comes next on this way is never reached, so nothing more of it is made."""

@@ -45,9 +45,6 @@ from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
 from interp.values.values import constant, letters, position_type, single
 
-__all__ = ["Expressions"]
-
-
 #: Calls a function and gives its value.
 Call = Callable[[ast.Call], Value]
 

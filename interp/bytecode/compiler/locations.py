@@ -6,24 +6,6 @@ from grammar.semantics.types import Type
 from interp.bytecode.compiler.array_bounds import Bound
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "DataCells",
-    "FrameCells",
-    "IndexCell",
-    "Location",
-    "Pushed",
-    "PushedView",
-    "Reference",
-    "ReferenceParameter",
-    "Scalar",
-    "SystemVariable",
-    "Text",
-    "Value",
-    "View",
-    "ViewParameter",
-    "is_view_of",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class FrameCells:

@@ -29,8 +29,6 @@ from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
 from interp.program.variables import is_complete, untyped_value
 from interp.values.values import single
 
-__all__ = ["Memory"]
-
 #: How a value of one type becomes one of another.
 _CONVERSIONS: dict[tuple[Type, Type], tuple[Op, ...]] = {
     (INT, REAL): (Op.INT_TO_REAL,),

@@ -38,8 +38,6 @@ from interp.values.operators import apply_unary
 from interp.values.values import EnumValue, constant, converted, integer, letters, single
 from interp.values.values import Value as Known
 
-__all__ = ["Motions"]
-
 #: What stands in a spline block.
 _Item = ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
 

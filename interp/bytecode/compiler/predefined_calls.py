@@ -51,8 +51,6 @@ from interp.values.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
 from interp.values.faults import LinkError
 from interp.values.values import letters
 
-__all__ = ["BY_TEXT", "PredefinedCalls"]
-
 #: Functions that are given the name of a variable as a text [TYP-18].
 BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
 

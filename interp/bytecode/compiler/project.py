@@ -36,8 +36,6 @@ from interp.program.load import CheckedProgram, Routine
 from interp.program.variables import MOST_CELLS, cells_of_routine, is_complete, too_large
 from interp.values.faults import LinkError
 
-__all__ = ["Compiled", "Project", "compile_program"]
-
 
 @dataclass(frozen=True, slots=True)
 class Compiled:

@@ -29,8 +29,6 @@ from interp.bytecode.program import Argument, CodeKind, Constant, Input, Mode
 from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.values.faults import FAULTS
 
-__all__ = ["Statements"]
-
 
 class Statements:
     """Makes the code of statements, and of whole code objects."""

@@ -11,8 +11,6 @@ from interp.bytecode.cell_layout import size
 from interp.bytecode.program import BASIC_TYPES, Ask, Builtin, Data
 from interp.values.faults import LinkError
 
-__all__ = ["Tables"]
-
 _T = TypeVar("_T", bound=Hashable)
 
 

@@ -28,8 +28,6 @@ from enum import IntEnum
 
 from interp.bytecode.program import CodeKind, Mode
 
-__all__ = ["KINDS", "MODES", "SECTIONS", "PartTag", "TypeTag"]
-
 SECTIONS = ("STRS", "TYPE", "TEXT", "ASKS", "BLTN", "DATA", "INIT", "CODE", "IMPT")
 #: Modes and kinds of code objects by their numbers.
 MODES = tuple(Mode)

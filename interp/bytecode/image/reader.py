@@ -40,8 +40,6 @@ from interp.bytecode.program import (
 )
 from interp.values.faults import LinkError
 
-__all__ = ["ImageError", "read_image"]
-
 _T = TypeVar("_T")
 
 _DEEPEST = 64

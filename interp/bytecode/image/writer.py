@@ -31,8 +31,6 @@ from interp.bytecode.program import (
     Record,
 )
 
-__all__ = ["write_image"]
-
 _T = TypeVar("_T")
 
 

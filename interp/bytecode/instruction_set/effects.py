@@ -33,8 +33,6 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = ["SCALARS", "EffectStep", "steps_of"]
-
 #: The scalar types by their numbers in every program.
 SCALARS = ("INT", "REAL", "BOOL", "CHAR")
 

@@ -20,8 +20,6 @@ from interp.bytecode.instruction_set.table import (
 )
 from interp.values.faults import FAULTS
 
-__all__ = ["outdated", "products", "stack_effects_in_c"]
-
 _ROOT = Path(__file__).resolve().parents[3]
 
 _MADE_BY = (

@@ -28,17 +28,6 @@ from interp.program.variables import MOST_CELLS
 from interp.values.faults import FAULTS
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "FORMAT",
-    "MAGIC",
-    "MAX_CELLS",
-    "OPERAND_KINDS",
-    "OperandKind",
-    "Shape",
-    "instructions",
-    "shape",
-]
-
 #: How an image begins, and the version of the format and the instruction set: a change of either
 #: makes it another one.
 MAGIC: Final = b"KRLI"

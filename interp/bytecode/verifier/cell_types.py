@@ -9,8 +9,6 @@ from interp.bytecode.cell_layout import kind_at, path_to
 from interp.bytecode.program import Code, Mode, Parameter, Program, Slot
 from interp.bytecode.verifier.stack_types import Refused, StackItem, item_of
 
-__all__ = ["CellTypes"]
-
 
 class CellTypes:
     """The cells that one code object reaches; raises `Refused` for what is not there."""

@@ -15,8 +15,6 @@ from interp.bytecode.verifier.stack_types import Refused, Stack
 from interp.bytecode.verifier.successors import ENDS, targets
 from interp.bytecode.verifier.wellformed import VerificationError
 
-__all__ = ["Flow"]
-
 
 class Flow:
     """The stacks of one code object of a well-formed program. ``Flow(…).stacks()`` finds them."""

@@ -31,8 +31,6 @@ from interp.bytecode.program import (
 from interp.port import requests
 from interp.values.builtins import BUILTINS, reads_text
 
-__all__ = ["call_mismatch", "may_be_missing", "request_mismatch"]
-
 #: What a field of a request may be, by its annotation.
 _KINDS: Mapping[str, str] = {
     "Path": "path",

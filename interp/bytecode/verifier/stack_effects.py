@@ -44,8 +44,6 @@ from interp.bytecode.verifier.stack_types import (
 )
 from interp.bytecode.verifier.stack_types import reference as reference_to
 
-__all__ = ["StackEffects", "at_target"]
-
 _MOST_DIMENSIONS = 3
 _INT = SCALARS.index("INT")
 

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from interp.bytecode.program import Input, Mode, Parameter
 
-__all__ = ["NOTHING", "Refused", "Stack", "StackItem", "item_of", "reference", "view_of"]
-
 
 class Refused(Exception):
     """An instruction does not fit what it works on; the message says why, but not where."""

@@ -8,8 +8,6 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.instruction_set.table import instructions, shape
 from interp.bytecode.program import Instruction
 
-__all__ = ["ENDS", "successors", "targets"]
-
 #: What nothing follows.
 ENDS = frozenset(Op(one.number) for one in instructions() if "ends" in one.flags)
 

@@ -43,8 +43,6 @@ from interp.bytecode.verifier.signatures import call_mismatch, request_mismatch
 from interp.values.faults import LinkError
 from interp.values.values import single
 
-__all__ = ["VerificationError", "check_form"]
-
 _MOST_DIMENSIONS = 3
 #: Types, and parts of requests, lie at most so deep in one another.
 _DEEPEST = 64

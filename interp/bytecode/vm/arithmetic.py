@@ -20,8 +20,6 @@ from interp.values.geometric_operator import composed
 from interp.values.operators import PRIMITIVES, Primitive
 from interp.values.values import StructureValue, single
 
-__all__ = ["ArithmeticRules"]
-
 
 class ArithmeticRules:
     """Makes the operations that compute."""

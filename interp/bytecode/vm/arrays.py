@@ -14,8 +14,6 @@ from interp.bytecode.vm.data_movement import load
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
 
-__all__ = ["ArrayRules"]
-
 
 class ArrayRules:
     """Makes the operations that work on arrays."""

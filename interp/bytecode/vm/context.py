@@ -9,8 +9,6 @@ from typing import Protocol
 from interp.bytecode.program import Instruction, Program
 from interp.bytecode.vm.state import Operation, State
 
-__all__ = ["Hooks", "Rule", "Runtime", "Site"]
-
 #: Makes an operation of the place of an instruction and its operands.
 Rule = Callable[..., Operation]
 

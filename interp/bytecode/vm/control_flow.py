@@ -13,8 +13,6 @@ from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import FAULTS, LinkError, fault
 
-__all__ = ["ControlRules"]
-
 
 class ControlRules:
     """Makes the operations that decide what comes next."""

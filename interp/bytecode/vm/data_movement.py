@@ -11,8 +11,6 @@ from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import fault
 
-__all__ = ["MovementRules", "load"]
-
 
 class MovementRules:
     """Makes the operations that move what lies in cells."""

@@ -43,8 +43,6 @@ from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Machine"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Open:

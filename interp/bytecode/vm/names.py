@@ -25,9 +25,6 @@ from interp.port.requests import Path
 from interp.values.faults import LinkError
 from interp.values.values import Value
 
-__all__ = ["InFrame", "Names"]
-
-
 _WRITTEN = re.compile(
     r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
     re.IGNORECASE | re.ASCII,

@@ -23,8 +23,6 @@ from interp.bytecode.program import (
 from interp.port import requests
 from interp.port.requests import At, CodeHandle, Value
 
-__all__ = ["Part", "RequestBuilder"]
-
 #: Makes a part from the inputs, as values, and the place of the request.
 Part = Callable[[Sequence[Value | None], At], Any]
 

@@ -24,8 +24,6 @@ from interp.values.builtins import FUNCTIONS, Surroundings, call
 from interp.values.faults import BudgetExhausted, LinkError
 from interp.values.values import converted, text_of
 
-__all__ = ["NOT_IN_CONDITIONS", "Services"]
-
 #: Why a condition faults that does more than compute and read.
 NOT_IN_CONDITIONS = "a condition can only compute and read"
 

@@ -9,8 +9,6 @@ from interp.bytecode.cell_layout import Raw
 from interp.port.executor import Reader
 from interp.port.requests import Request
 
-__all__ = ["Call", "Completion", "Operation", "State"]
-
 #: An instruction made ready to run. It gives the next one, or ``None`` where the machine stops.
 Operation = Callable[[], Optional["Operation"]]
 #: Takes the reply to a request and gives the operation to go on with.

@@ -19,8 +19,6 @@ from enum import Enum
 from interp.bytecode.vm.state import State
 from interp.program.load import Limits
 
-__all__ = ["Counter", "Guard", "Pause"]
-
 
 class Guard(Enum):
     """Whether ON_ERROR_PROCEED holds."""

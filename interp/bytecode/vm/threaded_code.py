@@ -21,8 +21,6 @@ from interp.bytecode.vm.control_flow import ControlRules
 from interp.bytecode.vm.data_movement import MovementRules
 from interp.bytecode.vm.state import Operation, State
 
-__all__ = ["ThreadedCode"]
-
 
 class ThreadedCode:
     """The code objects of a program, made ready when they are first called.

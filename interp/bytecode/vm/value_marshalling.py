@@ -30,8 +30,6 @@ from interp.bytecode.program import (
 from interp.bytecode.vm.state import State
 from interp.values.values import Value, converted, known
 
-__all__ = ["Block", "Change", "Entry", "arguments_of"]
-
 #: What lay on the stack for an entry, the reference for a large result last.
 Block = Sequence[Any]
 

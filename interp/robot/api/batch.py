@@ -13,8 +13,6 @@ from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.arm import Arm
 from interp.values.faults import Fault
 
-__all__ = ["BatchCore"]
-
 _MOST_HELD = 256
 """Motions in a batch: a program may loop over approximated motions for ever (a choice of ours)."""
 

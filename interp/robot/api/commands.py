@@ -26,22 +26,6 @@ from interp.robot.arm import ArmEvent, Motion, Place
 from interp.values.faults import Fault
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "CallCommand",
-    "Command",
-    "CommandError",
-    "CommandState",
-    "CoreEvent",
-    "Effect",
-    "Event",
-    "Link",
-    "MotionCommand",
-    "OutputCommand",
-    "Transaction",
-    "WaitCommand",
-    "What",
-]
-
 #: What an event does to a command: ``cancel`` ends it gently, a motion by its own braking ramp;
 #: ``stop`` ends it at once, a motion by the hardest ramp.
 Effect = Literal["start", "cancel", "stop"]

@@ -32,8 +32,6 @@ from interp.robot.api.commands import (
 from interp.robot.arm import Arm, ArmEvent
 from interp.values.faults import Fault
 
-__all__ = ["ControlCore", "Switch"]
-
 #: Switches an output at a time in µs; may raise `Fault`.
 Switch = Callable[[Path, Value, int], None]
 

@@ -10,8 +10,6 @@ from interp.port.requests import At
 from interp.robot.api.commands import MotionCommand
 from interp.robot.arm import Motion, Place, Settings
 
-__all__ = ["MotionFactory"]
-
 _MEMBERS: Final = frozenset(
     (*"XYZABCST", *(f"{letter}{number}" for letter in "AE" for number in range(1, 7)))
 )

@@ -9,8 +9,6 @@ from interp.robot.kinematics.machine_data import MachineData, MachineDataError, 
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
 
-__all__ = ["kinematics_of"]
-
 
 def kinematics_of(machine: MachineData) -> Kinematics:
     """Closed forms for a central wrist and for palletisers that have one, else numbers.

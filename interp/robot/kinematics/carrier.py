@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-__all__ = ["Carrier"]
-
 
 @dataclass(frozen=True, slots=True)
 class Carrier:

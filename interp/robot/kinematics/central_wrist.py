@@ -25,8 +25,6 @@ from interp.values.poses import sine_cosine
 if TYPE_CHECKING:
     from py_opw_kinematics import Robot
 
-__all__ = ["BRANCHES", "CentralWrist"]
-
 BRANCHES = 8
 """Ways to reach a pose: shoulder in front or behind, elbow up or down, wrist turned over or not."""
 

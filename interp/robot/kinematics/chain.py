@@ -5,8 +5,6 @@ from __future__ import annotations
 from interp.values.poses import IDENTITY, Pose
 from support.lazy_dataclass import dataclass
 
-__all__ = ["Chain", "Joint", "Point"]
-
 Point = tuple[float, float, float]
 
 

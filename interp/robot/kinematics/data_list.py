@@ -12,8 +12,6 @@ from typing import Any
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 
-__all__ = ["DataListError", "Key", "Value", "read_data_list"]
-
 #: A name in upper case and its indices: ``("$LENGTH_A",)``, ``("$AXIS_DIR", 3)``.
 Key = tuple[str | int, ...]
 #: A number, a truth value, a text, ``#NAME`` of an enumeration, or the components of an aggregate

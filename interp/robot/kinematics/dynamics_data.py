@@ -13,8 +13,6 @@ from dataclasses import replace
 from interp.robot.kinematics.data_list import read_data_list
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 
-__all__ = ["with_torques"]
-
 _GEARS = 37
 _CLOSE = 0.5  # mm
 

@@ -29,20 +29,6 @@ from interp.robot.kinematics.data_list import DataListError, Key, Value, read_da
 from interp.values.poses import IDENTITY, Pose
 from support.lazy_dataclass import dataclass
 
-__all__ = [
-    "ROBOT_AXES",
-    "Axis",
-    "AxisKind",
-    "CartesianLimits",
-    "Dynamics",
-    "MachineData",
-    "MachineDataError",
-    "Palletising",
-    "WristLink",
-    "read_machine",
-    "with_axis_limits_of",
-]
-
 ROBOT_AXES = 6
 _MOST_EXTERNAL = 6
 _LINKS = ("TA1KR", "TA2A1", "TA3A2", "TFLA3")

@@ -21,8 +21,6 @@ from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, Machin
 from interp.robot.kinematics.solver import Array, matrix_of
 from interp.values.faults import Fault
 
-__all__ = ["NumericKinematics"]
-
 _STARTS = 96
 _WAYS = 16
 _ROUNDS = 60

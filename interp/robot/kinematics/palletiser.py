@@ -19,8 +19,6 @@ from interp.robot.kinematics.central_wrist import CentralWrist
 from interp.robot.kinematics.machine_data import MachineDataError, Palletising
 from interp.robot.kinematics.solver import Array, matrix_of
 
-__all__ = ["Palletiser"]
-
 _WAYS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
 _FLAT = 1e-6

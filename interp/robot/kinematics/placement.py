@@ -20,8 +20,6 @@ from interp.values.poses import IDENTITY, Pose
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Array
 
-__all__ = ["IpoMode", "Placement"]
-
 
 class IpoMode(Enum):
     """$IPO_MODE: which frame the path is planned in."""

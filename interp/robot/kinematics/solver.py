@@ -17,8 +17,6 @@ import numpy.typing as npt
 from interp.robot.kinematics.machine_data import MachineData
 from interp.values.poses import Pose
 
-__all__ = ["Array", "Kinematics", "matrix_of"]
-
 Array = npt.NDArray[np.float64]
 
 

@@ -20,19 +20,6 @@ from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = [
-    "Singularity",
-    "Solution",
-    "TargetStatus",
-    "check_limits",
-    "check_path",
-    "follow",
-    "ptp_target",
-    "singularities",
-    "solve",
-    "turn_of",
-]
-
 Axes = tuple[float, ...]
 
 _ALL_BITS = 7

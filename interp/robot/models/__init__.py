@@ -11,8 +11,6 @@ from pathlib import Path
 
 from interp.robot.kinematics.machine_data import MachineData, read_machine
 
-__all__ = ["DEFAULT", "default_machine", "model_file"]
-
 #: The arm of whoever brings no machine data of their own.
 DEFAULT = "kr6r900"
 

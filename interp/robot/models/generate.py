@@ -5,8 +5,6 @@ from __future__ import annotations
 from interp.robot.models import DEFAULT, default_machine, model_file
 from interp.robot.simulation.mujoco_model import mjcf_of
 
-__all__ = ["generated"]
-
 
 def generated() -> str:
     """The text of the model, with a word on where it is from."""

@@ -37,8 +37,6 @@ from interp.values.poses import Pose
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
 
-__all__ = ["Places", "arm_or_stand_in", "fitting_arm", "machine_data_of", "understood"]
-
 _NUMBER: Final = r"\s*([-+]?\d*\.?\d+(?:E[-+]?\d+)?)\b"
 _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_NUMBER}", re.I)
 _AXIS: Final = re.compile(rf"[{{,]\s*A([1-6]){_NUMBER}", re.I)

@@ -26,21 +26,6 @@ from interp.values.faults import Fault
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-__all__ = [
-    "BlendedAxes",
-    "BlendedOthers",
-    "Curve",
-    "InStep",
-    "JointLine",
-    "JointSpline",
-    "Others",
-    "Piecewise",
-    "PosePathCurve",
-    "Rates",
-    "tool_positions",
-    "tool_tangents",
-]
-
 #: First to third derivatives of axes by u, each ``(n, axes)``.
 Rates = tuple[Array, Array, Array]
 

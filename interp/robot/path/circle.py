@@ -10,8 +10,6 @@ import numpy as np
 from interp.robot.kinematics.solver import Array
 from interp.values.faults import Fault
 
-__all__ = ["Circle", "circle_through"]
-
 _SAME = 1e-6  # mm: points that are one
 _STRAIGHT = 1e-6
 """Sine of the angle at a point, below which three points lie on a line."""

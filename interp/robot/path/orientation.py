@@ -16,8 +16,6 @@ import numpy.typing as npt
 
 from interp.robot.kinematics.solver import Array
 
-__all__ = ["Carried", "Orientation", "Turning", "about", "angle_between", "turning"]
-
 _PARALLEL = 1e-12
 _MANY = 3  # dimensions of an array of matrices
 _DIRECTION = np.array([1.0, 0.0, 0.0])

@@ -18,8 +18,6 @@ from interp.robot.path.orientation import Orientation
 from interp.robot.path.transition import Transition
 from interp.robot.path.way import Way
 
-__all__ = ["Arc", "Blend", "PosePath", "StraightLine", "poses_of"]
-
 
 class PosePath(Protocol):
     """A path of poses."""

@@ -25,8 +25,6 @@ from interp.robot.path.way import Way
 if TYPE_CHECKING:
     from scipy.spatial.transform import RotationSpline
 
-__all__ = ["Free", "Knot", "Segment", "chains_of", "pose_paths_of"]
-
 _BEND = 1e-6  # radians between tangents that count as one
 _SHORT = 1e-3  # mm of path below which the tool does little but turn, and stands on either side
 _SAMPLES = 129

@@ -20,8 +20,6 @@ from interp.robot.kinematics.targets import Singularity, TargetStatus, check_lim
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = ["Goal", "Programmed", "check_numbers", "check_start"]
-
 _COMPONENTS = ("X", "Y", "Z", "A", "B", "C")
 _AXES = tuple(f"A{i}" for i in range(1, ROBOT_AXES + 1))
 _EXTERNALS = tuple(f"E{i}" for i in range(1, 7))

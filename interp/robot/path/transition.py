@@ -20,8 +20,6 @@ import numpy as np
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.way import Way
 
-__all__ = ["Cubics", "Overlap", "Rounding", "Transition", "chained"]
-
 _ROUNDS = 60
 _EXACT = 1e-15
 _UNEVEN = 2.0

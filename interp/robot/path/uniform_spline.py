@@ -12,8 +12,6 @@ import numpy as np
 
 from interp.robot.kinematics.solver import Array
 
-__all__ = ["Table"]
-
 _MAPPED = 129
 """Points above which the map takes more room than it is worth."""
 

@@ -8,8 +8,6 @@ import numpy as np
 
 from interp.robot.kinematics.solver import Array
 
-__all__ = ["Way"]
-
 #: Nodes and weights of Gauss on 0 to 1, which integrate polynomials of degree 9 exactly.
 _NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]
 _PARTS = 32

@@ -16,8 +16,6 @@ from interp.robot.path.pose_path import PosePath, poses_of
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = ["WristCurve"]
-
 _MAIN = 3
 _STEP = 1e-5  # degrees
 _EXACT = 1e-9  # mm

@@ -34,8 +34,6 @@ from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedul
 from interp.robot.planning.straight_run import StraightPart, StraightRun, extended, straight_through
 from interp.robot.planning.tracks import Piece, Track, reduced_paths
 
-__all__ = ["Joint", "Zone", "blend_of", "wants_blend", "zone_of"]
-
 _HALF = 0.5
 _SMALLEST = 1e-6
 """Share of a path below which there is nothing to blend."""

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from interp.robot.arm import ArmEvent, Motion, Position, Samples
     from interp.robot.planning.planned_arm import PlannedArm
 
-__all__ = ["DeferredArm"]
-
 
 class DeferredArm:
     """An `interp.robot.arm.Arm` that stands; ``make`` gives the one that does all else."""

@@ -9,8 +9,6 @@ from interp.robot.planning.profile import standing
 from interp.robot.planning.schedule import GearedStretch, PathState, braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
-__all__ = ["PathExecution"]
-
 _THERE = 1e-9
 """Of u: a section whose rest is shorter has been travelled."""
 _INSTANT = 2e-9

@@ -20,16 +20,6 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, Rates
 from interp.robot.planning.profile import Bounds
 
-__all__ = [
-    "AxisLimits",
-    "Ceiling",
-    "PathLimits",
-    "Stretch",
-    "axis_limits",
-    "ceiling_of",
-    "even_ceiling",
-]
-
 _MARGIN = 0.97
 """Share of a limit that is used, for what lies between samples."""
 _ROUNDING = 1.0 - 1e-9

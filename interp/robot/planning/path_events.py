@@ -15,8 +15,6 @@ from interp.robot.arm import ArmEvent, EventKind, Motion, Place
 from interp.robot.planning.blending import wants_blend
 from interp.robot.planning.timeline import MICROSECOND, Key, Section, Timeline, micros
 
-__all__ = ["Passage", "events_of"]
-
 _APEX = 0.5
 """The parameter of a blend at which the first motion ends and the second begins [TRG-02]."""
 _RANK: dict[EventKind, int] = {

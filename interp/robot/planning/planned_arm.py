@@ -37,8 +37,6 @@ from interp.robot.planning.tracks import Track, Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = ["PlannedArm"]
-
 _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the place it left
 
 

@@ -17,8 +17,6 @@ import ruckig
 
 from interp.robot.kinematics.solver import Array
 
-__all__ = ["Bounds", "Ramp", "SpeedProfile", "ramp", "standing", "stop", "travel"]
-
 _SLACK = 1e-7
 """Share of a length within which speeding up or braking all the way is what fills it."""
 _EXACT = 1e-9

@@ -22,8 +22,6 @@ from interp.robot.path.transition import Cubics
 from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import Bounds, SpeedProfile, ramp, stop, travel
 
-__all__ = ["AtRest", "GearedStretch", "PathState", "alone", "braking", "schedule"]
-
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may fill, so that rounding never makes one impossible."""
 _ALIKE = 1.0 - 1e-3

@@ -27,8 +27,6 @@ from interp.robot.planning.tracks import Piece, Track, Tracks, reduced_paths
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = ["block"]
-
 _STILL = 1e-6  # mm or degrees
 _CLOSE = np.linspace(0.0, 1.0, 257)
 """Of u, where a spline of axes is looked at for software limits: it may swing beyond its points."""

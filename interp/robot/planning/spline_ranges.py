@@ -20,8 +20,6 @@ from interp.robot.planning.schedule import AtRest, GearedStretch, schedule
 from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault
 
-__all__ = ["with_ranges"]
-
 _ROUNDS = 60
 _SAME = 1e-6
 """Relative difference of speeds or durations that counts as none."""

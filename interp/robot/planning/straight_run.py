@@ -21,8 +21,6 @@ from interp.robot.planning.limits import AxisLimits, Ceiling, ceiling_of
 from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, reduced_paths
 
-__all__ = ["StraightPart", "StraightRun", "extended", "straight_through"]
-
 _BESIDE = 2e-5
 """Share of a straight way by which a point on it may lie beside it: no axis feels such a bend."""
 _TINY = 1e-9

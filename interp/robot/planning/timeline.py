@@ -19,8 +19,6 @@ from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import GearedStretch, PathState
 
-__all__ = ["MICROSECOND", "Key", "Leg", "Section", "Timeline", "micros"]
-
 MICROSECOND = 1e-6
 #: The number of a motion, whether it is the blend behind it, and the part of a spline block.
 Key = tuple[int, bool, int]

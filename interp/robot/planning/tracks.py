@@ -30,8 +30,6 @@ from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_l
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-__all__ = ["Piece", "Track", "Tracks", "reduced_paths"]
-
 _STILL = 1e-6  # mm or degrees: less is no motion
 _ZERO_LENGTH, _SINGULAR, _TURNED_VARIABLY = 3171, 2868, 2821
 _METRE = 1000.0

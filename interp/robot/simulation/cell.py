@@ -22,8 +22,6 @@ from interp.values.poses import Pose
 if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
 
-__all__ = ["MESH", "OBJECT", "Cell", "put_loads"]
-
 _LOADS: Final = {"$LOAD": 6, "$LOAD_A1": 1, "$LOAD_A2": 2, "$LOAD_A3": 3}
 """The links that carry loads."""
 _SHAPES: Final = {

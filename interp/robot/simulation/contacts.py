@@ -19,8 +19,6 @@ from interp.robot.simulation.cell import OBJECT, Cell
 from interp.robot.simulation.links import reach_of
 from interp.robot.simulation.observations import Observation, Periods, Times
 
-__all__ = ["ContactCheck"]
-
 _STEP = 5.0  # mm
 _MOST_STEPS = 200
 

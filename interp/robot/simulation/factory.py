@@ -16,8 +16,6 @@ from interp.robot.simulation.scene import Scene
 if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
 
-__all__ = ["ROBOTS", "RobotName", "make_robot"]
-
 RobotName = Literal["none", "kinematic", "mujoco"]
 ROBOTS: Final[tuple[RobotName, ...]] = ("none", "kinematic", "mujoco")
 

@@ -19,8 +19,6 @@ from interp.robot.kinematics.chain import Point
 from interp.robot.kinematics.machine_data import AxisKind, MachineData
 from interp.values.poses import Pose
 
-__all__ = ["DARK", "ORANGE", "Capsule", "Link", "hand_of", "links_of", "reach_of"]
-
 _KNOWN_MASS: Final = 52.0  # kg, of an arm with this reach:
 _KNOWN_REACH: Final = 901.5  # mm
 ORANGE, DARK = "1 0.45 0.1 1", "0.25 0.26 0.28 1"

@@ -23,8 +23,6 @@ from interp.robot.arm import Load, Samples
 from interp.robot.simulation.cell import Cell, put_loads
 from interp.robot.simulation.robot import Measured, RobotFault, check_samples
 
-__all__ = ["MujocoRobot"]
-
 Array = npt.NDArray[np.float64]
 
 _STEP = 1_000  # µs

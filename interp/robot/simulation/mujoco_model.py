@@ -23,8 +23,6 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.links import DARK, Capsule, Link, hand_of, links_of, reach_of
 from interp.values.poses import IDENTITY, Pose
 
-__all__ = ["FLANGE", "mjcf_of"]
-
 #: The site of the flange.
 FLANGE: Final = "flange"
 

@@ -15,8 +15,6 @@ import numpy.typing as npt
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.solver import Array
 
-__all__ = ["Observation", "ObservationRecord", "Observer", "Periods", "TorqueCheck"]
-
 _MOST = 1000  # observations of one kind
 
 Times = npt.NDArray[np.int64]

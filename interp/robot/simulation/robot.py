@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-__all__ = ["KinematicRobot", "Measured", "NoRobot", "Robot", "RobotFault", "check_samples"]
-
 
 class RobotFault(Fault):
     """The robot cannot go on: it has touched something, or was sent where nothing can be.

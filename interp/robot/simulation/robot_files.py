@@ -33,8 +33,6 @@ from interp.robot.kinematics.machine_data import (
 from interp.values.poses import IDENTITY, Pose
 from support.files.untrusted import read_bytes
 
-__all__ = ["RobotFile", "RobotFileError", "read_robot"]
-
 Array = npt.NDArray[np.float64]
 
 _FLANGES: Final = ("flange", "tool0", "attachment_site")

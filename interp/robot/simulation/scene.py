@@ -34,8 +34,6 @@ from interp.values.poses import IDENTITY, Pose
 from support.files.untrusted import DocumentError, read_text, toml_of
 from support.lazy_dataclass import dataclass
 
-__all__ = ["SHAPES", "Scene", "SceneError", "SceneObject", "read_scene"]
-
 #: The members that each shape needs.
 SHAPES: Final[Mapping[str, tuple[str, ...]]] = {
     "box": ("size",),

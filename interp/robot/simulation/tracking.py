@@ -21,8 +21,6 @@ from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.observations import Observation, Observer, TorqueCheck
 from interp.robot.simulation.robot import Measured, Robot, RobotFault
 
-__all__ = ["PathRecord", "Tracking"]
-
 Array = npt.NDArray[np.float64]
 
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from interp.robot.simulation.cell import Cell
 
-__all__ = ["SUFFIXES", "VideoError", "check", "frame_times", "write_picture", "write_video"]
-
 SUFFIXES: Final = (".mp4", ".gif", ".webp")
 _FRAMES_PER_SECOND: Final = 25
 _RENDERERS = ("egl", "osmesa")

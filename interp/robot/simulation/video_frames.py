@@ -19,8 +19,6 @@ import numpy.typing as npt
 
 from interp.robot.simulation.mujoco_model import FLANGE
 
-__all__: list[str] = []
-
 _TRAIL = 3.0  # pixels
 _PIECES = 200  # of the trail: each takes as long to draw as a part of the arm
 _AZIMUTH, _ELEVATION, _MARGIN = 135.0, -20.0, 1.1

@@ -14,8 +14,6 @@ from krl.commands.bench.real_code import real_code
 from krl.commands.bench.recover import recover
 from krl.commands.bench.vm import vm
 
-__all__ = ["app"]
-
 app = typer.Typer(help="Measure the tools themselves.")
 app.command("mutation")(mutation)
 app.command("vm")(vm)

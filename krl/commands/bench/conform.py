@@ -18,8 +18,6 @@ from krl.text_table import figures
 if TYPE_CHECKING:
     from conformance.suite.case import Case
 
-__all__ = ["conform"]
-
 _SEED = 1
 
 

@@ -10,8 +10,6 @@ from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 
-__all__ = ["fuzz"]
-
 
 def fuzz(
     json_file: JsonOption = None,

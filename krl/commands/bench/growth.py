@@ -28,8 +28,6 @@ from krl.text_table import figures
 if TYPE_CHECKING:
     from support.measure.growth import Growth
 
-__all__ = ["growth"]
-
 _AIM: Final = 1.15
 _SMALLEST: Final = 8_000
 _PROGRAM: Final = "DEF A()\nEND\n"

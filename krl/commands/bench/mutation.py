@@ -12,8 +12,6 @@ from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
-__all__ = ["mutation"]
-
 _PROGRAMS = Path("corpus", "programs")
 _NEGATIVES = Path("corpus", "negatives")
 _AIMS = (

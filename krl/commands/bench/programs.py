@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from grammar.syntax.source import Source
     from interp.bench.program_survey import Origin, Surveyed
 
-__all__ = ["programs"]
-
 _RESULTS = {
     "end": "to its end",
     "halt": "to a HALT",

@@ -18,8 +18,6 @@ from krl.text_table import figures
 if TYPE_CHECKING:
     from interp.bench.corpus_routines import Trial, Unread
 
-__all__ = ["real_code"]
-
 _MOST_REASONS = 8
 _STAGES = (
     ("errors", "the checker finds an error"),

@@ -13,8 +13,6 @@ from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
-__all__ = ["recover"]
-
 
 def recover(
     paths: ProgramsArgument = None,

@@ -10,8 +10,6 @@ from rich.table import Table
 from krl.errors import InputError
 from krl.text_table import figures
 
-__all__ = ["MB", "SizesOption", "peak", "phases_table", "print_growth", "sizes_of"]
-
 MB: Final = 1_000_000
 _LARGEST = 2_000
 

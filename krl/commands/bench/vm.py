@@ -16,8 +16,6 @@ from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
-__all__ = ["vm"]
-
 _HEADINGS = {
     "tree": "tree",
     "vm": "Python",

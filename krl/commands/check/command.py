@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
-__all__ = ["check"]
-
 #: Findings that are no faults: why the robot stops.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
 

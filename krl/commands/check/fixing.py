@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
     from support.files.discovery import Found
 
-__all__ = ["fix_files"]
-
 
 def fix_files(
     paths: Sequence[Path],

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from grammar.check.batch import CheckReport
     from grammar.diagnostics.diagnostic import Diagnostic
 
-__all__ = ["Format", "sum_up", "write"]
-
 _SKIPPED_SHOWN = 5
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
 _COMMANDS_OF_GITHUB = {"error": "error", "warning": "warning", "note": "notice"}

@@ -5,8 +5,6 @@ from pathlib import Path
 
 import typer
 
-__all__ = ["changes"]
-
 _ENDINGS = (".src", ".dat", ".sub", ".zip", ".toml")
 
 

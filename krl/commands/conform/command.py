@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from conformance.runner import CaseResult
     from conformance.suite.case import Case
 
-__all__ = ["conform"]
-
 _SHOWN = 20
 
 

@@ -14,8 +14,6 @@ from krl.progress import progress_bar
 if TYPE_CHECKING:
     from conformance.suite.case import Case
 
-__all__ = ["check_laws"]
-
 _SHOWN = 5
 
 

@@ -9,8 +9,6 @@ from krl.errors import InputError
 if TYPE_CHECKING:
     from conformance.sensitivity.planted_fault import Fault
 
-__all__ = ["planted"]
-
 _SHOWN = 12
 
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from recovery.ledger.baseline import Corpora
     from recovery.ledger.ledger import Ledger
 
-__all__ = ["accept", "evaluate", "replay"]
-
 _OPEN = Path("corpus", "open")
 _OWN = Path("corpus", "programs")
 _NEGATIVES = Path("corpus", "negatives")

@@ -17,8 +17,6 @@ from krl.construct_ledger import (
 from krl.errors import FINE, InputError, one_line
 from krl.output_files import check_files, write_json
 
-__all__ = ["app"]
-
 _SURVEY = Path("reports", "out", "recover", "survey.json")
 
 app = typer.Typer(help="Constructs on their way into the grammar.")

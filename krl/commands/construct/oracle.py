@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from recovery.ledger.construct import Construct
     from recovery.ledger.oracle import Oracle
 
-__all__ = ["oracle"]
-
 
 def oracle(
     wanted: Annotated[
