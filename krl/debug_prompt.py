@@ -35,13 +35,7 @@ _BREAK = re.compile(
     re.IGNORECASE,
 )
 _SET = re.compile(r"(?P<name>[^=]+?)\s*=\s*(?P<value>[^=].*)")
-_WAYS: Final = {
-    "step": "into",
-    "next": "over",
-    "out": "out",
-    "motion": "motion",
-    "continue": "go",
-}
+_WAYS: Final = {"step": "into", "next": "over", "out": "out", "motion": "motion", "continue": "go"}
 _SHORT: Final = {
     "s": "step",
     "n": "next",

@@ -80,10 +80,7 @@ class Findings:
 
 
 def check(
-    *paths: PathLike,
-    complete: bool = False,
-    packages: Sequence[str] = (),
-    jobs: int | None = None,
+    *paths: PathLike, complete: bool = False, packages: Sequence[str] = (), jobs: int | None = None
 ) -> Findings:
     """The findings about files, folders and archives, as `krl check` has them without settings.
 
@@ -101,14 +98,7 @@ def check(
     with as_input_errors(IngestError):
         report = check_paths(roots, options, around=around, jobs=jobs)
     findings = (
-        Finding(
-            one.path,
-            one.region.line,
-            one.region.column,
-            one.severity,
-            one.code,
-            one.message,
-        )
+        Finding(one.path, one.region.line, one.region.column, one.severity, one.code, one.message)
         for one in report.diagnostics
     )
     return Findings(tuple(findings), report.files)

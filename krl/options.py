@@ -29,8 +29,7 @@ JobsOrOneOption = Annotated[
 ProgramsArgument = Annotated[
     list[Path] | None,
     typer.Argument(
-        metavar="[PATH]...",
-        help="Files, folders, .zip archives; default: the programs in corpus/.",
+        metavar="[PATH]...", help="Files, folders, .zip archives; default: the programs in corpus/."
     ),
 ]
 
@@ -38,8 +37,7 @@ ProgramsArgument = Annotated[
 CorpusArgument = Annotated[
     list[Path] | None,
     typer.Argument(
-        metavar="[PATH]...",
-        help="Files, folders, .zip archives of controllers; default: corpus/.",
+        metavar="[PATH]...", help="Files, folders, .zip archives of controllers; default: corpus/."
     ),
 ]
 

@@ -96,8 +96,7 @@ class RunOptions:
         ),
     ] = None
     machine: Annotated[
-        Path | None,
-        typer.Option(metavar="$machine.dat", help="Another arm than the project's."),
+        Path | None, typer.Option(metavar="$machine.dat", help="Another arm than the project's.")
     ] = None
     urdf: Annotated[
         Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
@@ -110,8 +109,7 @@ class RunOptions:
         typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
     ] = None
     motion: Annotated[
-        Motion,
-        typer.Option(help="Plan motions as they come, or as the paper did in batches."),
+        Motion, typer.Option(help="Plan motions as they come, or as the paper did in batches.")
     ] = Motion.LOOKAHEAD
     max_time: Annotated[
         float | None,
@@ -126,8 +124,7 @@ class RunOptions:
     strict: Annotated[
         bool,
         typer.Option(
-            "--strict",
-            help="Run nothing while the checker finds an error; nothing stands in.",
+            "--strict", help="Run nothing while the checker finds an error; nothing stands in."
         ),
     ] = False
 

@@ -68,13 +68,7 @@ def with_answers(
     ``constructs`` are those that answered (`recovery.growth.answers`).
     """
     answers = answered(
-        record["clusters"],
-        found,
-        steps,
-        jobs=jobs,
-        cache=cache,
-        on_found=on_found,
-        on_done=on_done,
+        record["clusters"], found, steps, jobs=jobs, cache=cache, on_found=on_found, on_done=on_done
     )
     kept = {key: value for key, value in record.items() if key not in _REPEATED}
     return cast("StartRecord", kept | answers)

@@ -31,12 +31,7 @@ _WIDEST_LINE = 1_000
 _FILES_NAMED = 200
 
 
-def record_of(
-    found: Survey,
-    clusters: Clusters,
-    *,
-    grammar_name: str,
-) -> SurveyRecord:
+def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> SurveyRecord:
     """Everything a survey found, as plain data.
 
     Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``

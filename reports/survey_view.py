@@ -132,20 +132,14 @@ def _figures(record: Record, clusters: Sequence[Record]) -> tuple[Figure, ...]:
             f"{size(parsed_octets)} of {size(octets)}",
             share(parsed_octets, octets),
         ),
-        Figure(
-            "clusters",
-            f"{count(record, 'clusters'):,}",
-            f"{unlocking:,} unlock files alone",
-        ),
+        Figure("clusters", f"{count(record, 'clusters'):,}", f"{unlocking:,} unlock files alone"),
         Figure(
             "failures",
             f"{failures:,}",
             f"{following:,} only follow from others" if following else "",
         ),
         Figure(
-            "skipped",
-            f"{skipped:,}",
-            "not KRL, reasons below" if skipped else "nothing left out",
+            "skipped", f"{skipped:,}", "not KRL, reasons below" if skipped else "nothing left out"
         ),
         Figure(
             "seconds",

@@ -89,10 +89,7 @@ class ReferenceRuns:
 
 
 def examine_mutants(
-    programs: int,
-    seed: int,
-    jobs: int = 1,
-    on_done: Callable[[int], None] = lambda _count: None,
+    programs: int, seed: int, jobs: int = 1, on_done: Callable[[int], None] = lambda _count: None
 ) -> list[Verdict]:
     """Run all mutants, each on so many programs at most; the result does not depend on ``jobs``.
 

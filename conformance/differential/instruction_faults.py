@@ -271,12 +271,7 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
         ("does nothing", instead(_guard)),
         ("another fault", with_operands(lambda code: ((code + 1) % 12,), Op.FAIL)),
     ],
-    "PUSH_NOTHING": [
-        (
-            "pushes 0",
-            pushing(0),
-        )
-    ],
+    "PUSH_NOTHING": [("pushes 0", pushing(0))],
     "PUSH_NO_VIEW": [
         (
             "the view leads to the first cell",
@@ -321,10 +316,7 @@ OF_ITS_OWN: Final[Mapping[str, list[tuple[str, Change]]]] = {
         ("copies the target", before(lambda stack: stack.__setitem__(-1, stack[-2]), Op.COPY)),
     ],
     "CLEAR": _blocks(Op.CLEAR, 1),
-    "FILL_POSE": [
-        *_blocks(Op.FILL_POSE, 2),
-        ("the other way", before(exchange, Op.FILL_POSE)),
-    ],
+    "FILL_POSE": [*_blocks(Op.FILL_POSE, 2), ("the other way", before(exchange, Op.FILL_POSE))],
     "FILL_ARRAY": [_first_cell_empty(Op.FILL_ARRAY)],
     "COPY_VIEW": [
         ("copies nothing", instead(_guard)),

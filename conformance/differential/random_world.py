@@ -22,17 +22,7 @@ from grammar.semantics.types import (
     Structure,
     Type,
 )
-from interp.port.requests import (
-    Invoke,
-    Move,
-    MoveSpline,
-    Path,
-    Poll,
-    Read,
-    Request,
-    Value,
-    Write,
-)
+from interp.port.requests import Invoke, Move, MoveSpline, Path, Poll, Read, Request, Value, Write
 from interp.values.faults import Fault, fault
 from interp.values.values import ArrayValue, EnumValue, StructureValue, copied, empty, has_value
 

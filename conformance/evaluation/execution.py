@@ -157,10 +157,7 @@ class _ThirdParty(Prepared):
 
 
 def _run(
-    case: Case,
-    setup: Setup,
-    executor: MakeExecutor | None = None,
-    robot: MakeRobot | None = None,
+    case: Case, setup: Setup, executor: MakeExecutor | None = None, robot: MakeRobot | None = None
 ) -> Observation:
     """Run it; a program that cannot begin is a fault without a line."""
     program = prepared(case)

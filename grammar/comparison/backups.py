@@ -124,10 +124,7 @@ class _Placed:
 
 
 def _routines(
-    old: Sequence[Content],
-    new: Sequence[Content],
-    pairs: Sequence[_Pair],
-    names: Mapping[str, str],
+    old: Sequence[Content], new: Sequence[Content], pairs: Sequence[_Pair], names: Mapping[str, str]
 ) -> Iterator[Record]:
     left = {one.path: list(_placed(one)) for one in old}
     right = {one.path: list(_placed(one)) for one in new}

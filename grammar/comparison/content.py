@@ -168,12 +168,7 @@ def _data(source: Source, content: ast.DataList) -> Iterator[Datum]:
 
 
 def _datum(
-    name: str,
-    type_: str,
-    line: int,
-    source: Source,
-    value: ast.Expression | None,
-    item: ast.Node,
+    name: str, type_: str, line: int, source: Source, value: ast.Expression | None, item: ast.Node
 ) -> Datum:
     text = _text(source, item if value is None else value)
     return Datum(name, type_, line, text, f"{type_.upper()} {_key(text)}", value)

@@ -17,14 +17,7 @@ from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.did_you_mean import nearest
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
-from grammar.diagnostics.line_edits import (
-    BRACKETS,
-    LineEdit,
-    bracket,
-    doubled,
-    keyword,
-    left_out,
-)
+from grammar.diagnostics.line_edits import BRACKETS, LineEdit, bracket, doubled, keyword, left_out
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_likely, open_blocks
 from grammar.motion_kinds import CIRCLES
 from grammar.syntax.build import SyntaxFailure, builder

@@ -45,11 +45,7 @@ class Typos:
     """
 
     def __init__(
-        self,
-        names: Iterable[str],
-        shortest: int = _SHORTEST,
-        *,
-        series: Series = Series.LETTERS,
+        self, names: Iterable[str], shortest: int = _SHORTEST, *, series: Series = Series.LETTERS
     ) -> None:
         self._shortest = shortest
         self._names: dict[str, tuple[str, Series]] = {}

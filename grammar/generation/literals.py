@@ -10,16 +10,7 @@ from typing import Final
 
 from grammar.generation.choices import Choices
 from grammar.semantics.predefined import System
-from grammar.semantics.types import (
-    BOOL,
-    CHAR,
-    INT,
-    REAL,
-    Array,
-    Enumeration,
-    Structure,
-    Type,
-)
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
 
 #: A text of any length.
 TEXT: Final = Array(CHAR, (None,))

@@ -5,14 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.code import Code
-from grammar.generation.expressions import (
-    atom,
-    constant,
-    expression,
-    operand,
-    target,
-    truth,
-)
+from grammar.generation.expressions import atom, constant, expression, operand, target, truth
 from grammar.generation.patterns import output, pattern
 from grammar.generation.scope import Routine
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS

@@ -71,9 +71,7 @@ SHAPES: Final[Mapping[str, Shape]] = {
     "CASE": Shape("CASE {i}\nI={i}\n", head="DEF A()\nINT I\nSWITCH I\n", tail="ENDSWITCH\nEND\n"),
     "values of one CASE": _line("SWITCH I\nCASE 0", ",{i}", "\nENDSWITCH"),
     "spline segments": Shape(
-        "SLIN {X {i},Y 0,Z 500,A 0,B 90,C 0}\n",
-        head="DEF A()\nSPLINE\n",
-        tail="ENDSPLINE\nEND\n",
+        "SLIN {X {i},Y 0,Z 500,A 0,B 90,C 0}\n", head="DEF A()\nSPLINE\n", tail="ENDSPLINE\nEND\n"
     ),
     # routines
     "routines": Shape("DEF A{i}()\nEND\n", head="DEF A()\nEND\n", tail=""),

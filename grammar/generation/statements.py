@@ -6,15 +6,7 @@ from typing import Final
 
 from grammar.generation.choices import Weighted
 from grammar.generation.code import Code
-from grammar.generation.expressions import (
-    array,
-    call_of,
-    constant,
-    expression,
-    read,
-    target,
-    text,
-)
+from grammar.generation.expressions import array, call_of, constant, expression, read, target, text
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, structure
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 

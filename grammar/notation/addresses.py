@@ -10,14 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grammar.notation.model import (
-    Alternative,
-    Element,
-    GrammarError,
-    Group,
-    Repeat,
-    Rule,
-)
+from grammar.notation.model import Alternative, Element, GrammarError, Group, Repeat, Rule
 
 Address = tuple[int, ...]
 

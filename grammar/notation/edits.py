@@ -213,10 +213,7 @@ def to_data(edit: Edit) -> dict[str, str | int | list[int]]:
     """The edit as JSON or TOML holds it; see `from_data`."""
     kind = next(name for name, cls in _KINDS.items() if type(edit) is cls)
     values = {f.name: getattr(edit, f.name) for f in fields(edit)}
-    return {
-        "edit": kind,
-        **{k: list(v) if isinstance(v, tuple) else v for k, v in values.items()},
-    }
+    return {"edit": kind, **{k: list(v) if isinstance(v, tuple) else v for k, v in values.items()}}
 
 
 def from_data(data: Mapping[str, object]) -> Edit:

@@ -277,10 +277,7 @@ _lexers: dict[tuple[str, ...], Lexer] = {}
 
 def lexer_of(grammar: Grammar) -> Lexer:
     """The lexer of a grammar; grammars with the same lexer rules share one."""
-    key = (
-        str(grammar.case_insensitive),
-        *(r.text for r in grammar.rules if r.is_lexer),
-    )
+    key = (str(grammar.case_insensitive), *(r.text for r in grammar.rules if r.is_lexer))
     lexer = _lexers.get(key)
     if lexer is None:
         if len(_lexers) >= 64:

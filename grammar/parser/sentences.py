@@ -55,8 +55,7 @@ class Sentences:
 
     def _shortest_of(self, alternatives: tuple[Alternative, ...]) -> Iterator[str]:
         best = min(
-            alternatives,
-            key=lambda a: sum(shortest_length(e, self._costs) for e in a.elements),
+            alternatives, key=lambda a: sum(shortest_length(e, self._costs) for e in a.elements)
         )
         for element in best.elements:
             yield from self._shortest(element)

@@ -320,10 +320,7 @@ END
 
 def _request_cost(executor: str, rounds: int) -> dict[str, float]:
     """Microseconds for a request that writes and one that reads, with their replies."""
-    return {
-        "write": _cost(_WRITING, executor, rounds),
-        "read": _cost(_READING, executor, rounds),
-    }
+    return {"write": _cost(_WRITING, executor, rounds), "read": _cost(_READING, executor, rounds)}
 
 
 def _cost(text: str, executor: str, rounds: int) -> float:

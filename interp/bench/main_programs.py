@@ -127,11 +127,7 @@ def main_programs(
         if is_wanted:
             found.append(
                 MainProgram(
-                    Prepared(program),
-                    path,
-                    first.name,
-                    submit_of(program),
-                    _has_machine(program),
+                    Prepared(program), path, first.name, submit_of(program), _has_machine(program)
                 )
             )
     return found, list(unread)

@@ -15,17 +15,7 @@ from typing import Any, Final
 from grammar.semantics.predefined import System
 from grammar.semantics.types import INT, UNKNOWN, Array, Structure, Type
 from interp.port.executor import Executor
-from interp.port.requests import (
-    Crash,
-    End,
-    Fail,
-    Invoke,
-    Path,
-    Read,
-    Request,
-    Value,
-    Write,
-)
+from interp.port.requests import Crash, End, Fail, Invoke, Path, Read, Request, Value, Write
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import ArrayValue, StructureValue, copied, has_value, zero
 

@@ -19,16 +19,7 @@ Position = tuple[int, int]
 
 #: Why a program has stopped. ``refused`` follows a command that could not be carried out.
 Reason = Literal[
-    "entry",
-    "breakpoint",
-    "step",
-    "watch",
-    "pause",
-    "fault",
-    "selected",
-    "back",
-    "refused",
-    "ended",
+    "entry", "breakpoint", "step", "watch", "pause", "fault", "selected", "back", "refused", "ended"
 ]
 
 

@@ -278,12 +278,7 @@ def load_all(
 
 
 def _checked(
-    project: Project,
-    sources: Mapping[str, Source],
-    main: str,
-    *,
-    strict: bool,
-    stands_in: bool,
+    project: Project, sources: Mapping[str, Source], main: str, *, strict: bool, stands_in: bool
 ) -> CheckedProgram:
     stand_ins: tuple[StandIn, ...] = ()
     if stands_in:

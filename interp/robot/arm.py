@@ -141,13 +141,7 @@ class Motion:
 
 
 EventKind = Literal[
-    "motion_start",
-    "blend_start",
-    "blend_apex",
-    "blend_end",
-    "motion_end",
-    "place",
-    "stopped",
+    "motion_start", "blend_start", "blend_apex", "blend_end", "motion_end", "place", "stopped"
 ]
 
 

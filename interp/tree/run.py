@@ -143,9 +143,7 @@ class ProgramState:
         return size
 
     def hand(
-        self,
-        node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake,
-        frame: Frame,
+        self, node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake, frame: Frame
     ) -> CodeHandle:
         """A piece of program to be run later, in this frame; always the same for the same."""
         number = self._numbers.setdefault((node, frame), len(self._codes))

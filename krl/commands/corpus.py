@@ -94,8 +94,7 @@ def fetch(
 @app.command("synth")
 def synth(
     size: Annotated[
-        str,
-        typer.Option(metavar="BYTES", help="How much: 500000, 300kB, 10MB, 1.5GB."),
+        str, typer.Option(metavar="BYTES", help="How much: 500000, 300kB, 10MB, 1.5GB.")
     ] = "1MB",
     seed: Annotated[int, typer.Option(metavar="N", help="Another number, other programs.")] = 1,
     out: Annotated[

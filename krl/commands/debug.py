@@ -27,8 +27,7 @@ def debug(
     *,
     options: RunOptions,
     dap: Annotated[
-        bool,
-        typer.Option("--dap", help="Serve an editor: the Debug Adapter Protocol over stdio."),
+        bool, typer.Option("--dap", help="Serve an editor: the Debug Adapter Protocol over stdio.")
     ] = False,
     port: Annotated[
         int | None,

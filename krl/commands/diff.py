@@ -42,8 +42,7 @@ def diff(
         Path | None, typer.Option(metavar="DIR", help="Write a page into this folder.")
     ] = None,
     textconv: Annotated[
-        bool,
-        typer.Option("--textconv", help="Print OLD alone, without what is noise: for git."),
+        bool, typer.Option("--textconv", help="Print OLD alone, without what is noise: for git.")
     ] = False,
 ) -> int:
     """Compare programs: routines moved, renamed and changed; and apart from these points and data.

@@ -97,10 +97,7 @@ class ProgramTestItem(pytest.Item):
         options = self.config.option
         try:
             outcome = run_test(
-                self.test,
-                file.tests,
-                executor=options.krl_executor,
-                update=options.krl_update,
+                self.test, file.tests, executor=options.krl_executor, update=options.krl_update
             )
         except TestFileError as error:
             raise _Failed(str(error)) from error

@@ -42,10 +42,7 @@ def rankings(
     found = []
     for run in range(runs):
         processes = 1 + run % _MOST_PROCESSES
-        with (
-            _hash_seed(run),
-            process_pool(processes, _prepare, material) as pool,
-        ):
+        with _hash_seed(run), process_pool(processes, _prepare, material) as pool:
             found.append(list(pool.map(_ranking, chosen)))
         on_done(1)
     return found

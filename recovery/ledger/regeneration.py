@@ -25,10 +25,7 @@ _MODULES = ("grammar._generated.KRLLexer", "grammar._generated.KRLParser")
 
 
 def parser_of(
-    grammar: Grammar,
-    kept: Path,
-    examples: Iterable[Construct],
-    generator: Generator = generate,
+    grammar: Grammar, kept: Path, examples: Iterable[Construct], generator: Generator = generate
 ) -> tuple[Mapping[str, bytes], list[tuple[str, str]]]:
     """The files of the generated parser by name, and its disagreements about the examples.
 

@@ -163,10 +163,7 @@ class _Budget:
 
 
 def _listed(
-    archive: _Archive,
-    wanted: Callable[[str], bool],
-    budget: _Budget,
-    inside: Member | None = None,
+    archive: _Archive, wanted: Callable[[str], bool], budget: _Budget, inside: Member | None = None
 ) -> Iterator[Member]:
     budget.members -= len(archive.infos)
     if budget.members < 0:

@@ -180,7 +180,7 @@ _LOOKS = (
         "C source",
         re.compile(
             r"#\s*(?:include|define|if|ifdef|ifndef|pragma)\b|/\*|//|typedef\b|extern\b"
-            r"|\w[\w\s*]*\([^;]*\)\s*\{",
+            r"|\w[\w\s*]*\([^;]*\)\s*\{"
         ),
     ),
     (

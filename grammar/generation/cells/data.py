@@ -9,12 +9,7 @@ from grammar.generation.cells.names import Names
 from grammar.generation.cells.style import E6AXIS, E6POS, FRAME
 from grammar.generation.choices import Choices, Weighted
 from grammar.generation.code import Style
-from grammar.generation.routines import (
-    constant_datum,
-    datum,
-    enumeration,
-    structure_definition,
-)
+from grammar.generation.routines import constant_datum, datum, enumeration, structure_definition
 from grammar.generation.scope import Scope
 from grammar.semantics.types import (
     BOOL,

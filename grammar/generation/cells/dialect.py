@@ -80,10 +80,7 @@ def _capitalised(found: re.Match[str]) -> str:
 
 
 _GENERATIONS = Weighted(
-    (2, Generation.KRC1),
-    (5, Generation.KRC2),
-    (8, Generation.KRC4),
-    (5, Generation.KRC4_SPLINE),
+    (2, Generation.KRC1), (5, Generation.KRC2), (8, Generation.KRC4), (5, Generation.KRC4_SPLINE)
 )
 _LETTERS = Weighted((89, Letters.UPPER), (8, Letters.LOWER), (3, Letters.MIXED))
 _INDENTS = Weighted((4, ""), (6, "  "), (7, "   "), (2, "    "), (1, "\t"))

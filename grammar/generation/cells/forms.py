@@ -8,12 +8,7 @@ from grammar.generation.choices import Weighted
 from grammar.generation.code import Code, StatementRule
 from grammar.generation.expressions import constant, expression, read
 from grammar.generation.literals import structure
-from grammar.generation.motions import (
-    motion,
-    spline_block,
-    spline_motion,
-    trigger,
-)
+from grammar.generation.motions import motion, spline_block, spline_motion, trigger
 from grammar.generation.patterns import line
 from grammar.semantics.types import REAL
 

@@ -69,11 +69,7 @@ class Names:
     __slots__ = ("_outer", "_taken", "choices", "vocabulary", "writing")
 
     def __init__(
-        self,
-        choices: Choices,
-        vocabulary: Vocabulary,
-        writing: Writing,
-        outer: Names | None = None,
+        self, choices: Choices, vocabulary: Vocabulary, writing: Writing, outer: Names | None = None
     ) -> None:
         self.choices = choices
         self.vocabulary = vocabulary

@@ -17,13 +17,7 @@ from grammar.generation.code import Code, Part, Size, Style
 from grammar.generation.control_flow import give_back, returned, statement
 from grammar.generation.expressions import truth
 from grammar.generation.patterns import pattern
-from grammar.generation.routines import (
-    begin,
-    declare,
-    declare_parameters,
-    parameters,
-    routine_text,
-)
+from grammar.generation.routines import begin, declare, declare_parameters, parameters, routine_text
 from grammar.generation.scope import Parameter, Routine, Scope
 from grammar.semantics.types import INT, REAL, Array
 

@@ -10,23 +10,10 @@ from grammar.generation.cells.dialect import Dialect
 from grammar.generation.cells.forms import Forms
 from grammar.generation.cells.names import Names
 from grammar.generation.cells.points import axis_position, frame, position
-from grammar.generation.cells.statements import (
-    ask,
-    careful,
-    fold,
-    message,
-    remark,
-    set_output,
-)
+from grammar.generation.cells.statements import ask, careful, fold, message, remark, set_output
 from grammar.generation.choices import Choices, Weighted
 from grammar.generation.code import Code, ExpressionRule, StatementRule, Style
-from grammar.generation.expressions import (
-    chain,
-    constant,
-    constant_comparison,
-    expression,
-    pose,
-)
+from grammar.generation.expressions import chain, constant, constant_comparison, expression, pose
 from grammar.generation.literals import TEXT, Literals, predefined, structure
 from grammar.generation.patterns import line, patterns
 from grammar.generation.scope import Parameter
@@ -135,14 +122,8 @@ _FUNCTIONS: Final[Mapping[Type, Weighted[ExpressionRule]]] = {
 }
 _ATOMS: Final[Mapping[Type, tuple[int, Weighted[ExpressionRule]]]] = {
     INT: (3, patterns((1, "$TIMER[<1-16>]"))),
-    REAL: (
-        8,
-        patterns((3, "<$VEL.CP|$POS_ACT.Z|$POS_ACT.X|$AXIS_ACT.A1>"), (2, "$ANIN[<1-8>]")),
-    ),
-    BOOL: (
-        35,
-        patterns((20, "$IN[<1-512>]"), (6, "$FLAG[<1-999>]"), (2, "$TIMER_FLAG[<1-16>]")),
-    ),
+    REAL: (8, patterns((3, "<$VEL.CP|$POS_ACT.Z|$POS_ACT.X|$AXIS_ACT.A1>"), (2, "$ANIN[<1-8>]"))),
+    BOOL: (35, patterns((20, "$IN[<1-512>]"), (6, "$FLAG[<1-999>]"), (2, "$TIMER_FLAG[<1-16>]"))),
 }
 _RELATIONS: Final = patterns(
     (20, "<atom INT>~<equal>~<constant INT>"),

@@ -141,10 +141,7 @@ def controller(cell: Cell) -> Iterator[tuple[str, Module]]:
         ]
     yield "R1/Mada", _machine_data(cell, "$machine", axes)
     model = [f'CHAR $MODEL_NAME[32]\n$MODEL_NAME[]="#CW{choices.between(6, 500)}"']
-    model += [
-        f"REAL $DEF_L_M={choices.between(3, 300)}.0",
-        f"FRAME $DEF_L_CM={_NO_FRAME}",
-    ]
+    model += [f"REAL $DEF_L_M={choices.between(3, 300)}.0", f"FRAME $DEF_L_CM={_NO_FRAME}"]
     yield "R1/Mada", _machine_data(cell, "$robcor", model)
 
 

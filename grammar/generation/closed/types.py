@@ -5,16 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.literals import structure
-from grammar.semantics.types import (
-    BOOL,
-    CHAR,
-    INT,
-    REAL,
-    Array,
-    Enumeration,
-    Member,
-    Structure,
-)
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Member, Structure
 
 COLOUR: Final = Enumeration("COLOUR_T", ("RED", "GREEN", "BLUE", "END"))
 MODE: Final = Enumeration("MODE_T", ("IDLE", "BUSY"))

@@ -270,11 +270,7 @@ def chained(
     shapes that NumPy broadcasts.
     """
     (f1, f2, f3), (x1, x2, x3) = outer, inner
-    return (
-        f1 * x1,
-        f2 * x1**2 + f1 * x2,
-        f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3,
-    )
+    return (f1 * x1, f2 * x1**2 + f1 * x2, f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3)
 
 
 def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:

@@ -169,10 +169,7 @@ def axis_limits(machine: MachineData) -> AxisLimits:
 
 
 def ceiling_of(
-    curve: Curve,
-    machine: AxisLimits,
-    programmed: AxisLimits,
-    paths: Sequence[PathLimits],
+    curve: Curve, machine: AxisLimits, programmed: AxisLimits, paths: Sequence[PathLimits]
 ) -> Ceiling:
     """The bounds of a curve.
 

@@ -251,12 +251,7 @@ def standing(duration: float) -> SpeedProfile:
 
 
 def _solved(
-    length: float,
-    speed: float,
-    acceleration: float,
-    target: float,
-    bounds: Bounds,
-    final: float,
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds, final: float
 ) -> SpeedProfile | None:
     """What Ruckig finds, if anything.
 
@@ -289,20 +284,12 @@ def _solved(
 
 
 def _searched(
-    length: float,
-    speed: float,
-    acceleration: float,
-    target: float,
-    bounds: Bounds,
-    final: float,
+    length: float, speed: float, acceleration: float, target: float, bounds: Bounds, final: float
 ) -> SpeedProfile:
     """The same by trying speeds to cruise at, where rounding keeps Ruckig from an answer."""
 
     def parts(cruise: float) -> tuple[Ramp, Ramp]:
-        return (
-            ramp(speed, acceleration, cruise, bounds),
-            ramp(cruise, 0.0, target, bounds, final),
-        )
+        return (ramp(speed, acceleration, cruise, bounds), ramp(cruise, 0.0, target, bounds, final))
 
     def fits(cruise: float) -> bool:
         return sum(part.distance for part in parts(cruise)) <= length
@@ -323,7 +310,5 @@ def _searched(
     return SpeedProfile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))
 
 
-def _lasting(
-    pieces: Iterable[tuple[float, float, float]],
-) -> Iterator[tuple[float, float, float]]:
+def _lasting(pieces: Iterable[tuple[float, float, float]]) -> Iterator[tuple[float, float, float]]:
     return (piece for piece in pieces if piece[0] > 0.0)

@@ -112,11 +112,7 @@ class _Span:
 
 
 def schedule(
-    steps: Sequence[GearedStretch],
-    state: PathState,
-    override: float,
-    *,
-    is_strict: bool = False,
+    steps: Sequence[GearedStretch], state: PathState, override: float, *, is_strict: bool = False
 ) -> list[SpeedProfile] | None:
     """A profile for each step from a state on, to stand still in the end of the last.
 

@@ -95,11 +95,7 @@ def _segment(
 
 
 def _pieces(
-    tracks: Tracks,
-    motion: Motion,
-    segments: Sequence[Segment],
-    externals: Array,
-    start: Array,
+    tracks: Tracks, motion: Motion, segments: Sequence[Segment], externals: Array, start: Array
 ) -> tuple[Piece, ...]:
     """A piece for each segment, unbroken from the axes of the start on."""
     keeps = motion.settings.orientation == "#CONSTANT"

@@ -113,11 +113,7 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
 
 
 def _check_reached(
-    pieces: Sequence[Piece],
-    ends: Array,
-    start: float,
-    end: float,
-    speed: float,
+    pieces: Sequence[Piece], ends: Array, start: float, end: float, speed: float
 ) -> None:
     """Raise `Fault` 3216 or 3217 unless a range is entered and left with its speed."""
     for number, stretch, profile in _travelled(pieces):

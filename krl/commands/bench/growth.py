@@ -197,8 +197,7 @@ _ENTRIES: Final[Mapping[str, _Entry]] = {
 
 def growth(
     entry: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Only this command; may be repeated."),
+        list[str] | None, typer.Option(metavar="NAME", help="Only this command; may be repeated.")
     ] = None,
     shape: Annotated[
         list[str] | None,

@@ -12,13 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import (
-    JobsOption,
-    JsonOption,
-    ProgramsArgument,
-    all_cores,
-    programs_or_ours,
-)
+from krl.options import JobsOption, JsonOption, ProgramsArgument, all_cores, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.program_loading import sources_below
 from krl.progress import progress_bar
@@ -181,12 +175,7 @@ def programs(
                 bar.expect(expected)
 
             for done in survey(
-                origins,
-                bounds,
-                jobs=all_cores(jobs),
-                cache=cache,
-                on_found=on_found,
-                on_done=bar,
+                origins, bounds, jobs=all_cores(jobs), cache=cache, on_found=on_found, on_done=bar
             ):
                 finished[done.origin] = done
                 _fill(record, [finished[one] for one in origins if one in finished])

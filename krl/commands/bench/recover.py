@@ -15,9 +15,7 @@ from krl.text_table import figures
 
 
 def recover(
-    paths: ProgramsArgument = None,
-    json_file: JsonOption = None,
-    sizes: SizesOption = "1,10,100",
+    paths: ProgramsArgument = None, json_file: JsonOption = None, sizes: SizesOption = "1,10,100"
 ) -> int:
     """Measure the survey: bytes a second, beside ANTLR, unchanged, and as the corpus grows.
 

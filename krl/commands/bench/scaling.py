@@ -16,8 +16,7 @@ _LARGEST = 2_000
 SizesOption = Annotated[
     str,
     typer.Option(
-        metavar="MB,…",
-        help="Sizes of the synthetic corpora that show how cost grows; '' for none.",
+        metavar="MB,…", help="Sizes of the synthetic corpora that show how cost grows; '' for none."
     ),
 ]
 
@@ -54,6 +53,5 @@ def print_growth(console: Console, record: Mapping[str, Any], what: str) -> None
     growth = record["memory_growth_mb"]
     more = "" if growth is None else f", {growth:+,.0f} MB of memory"
     console.print(
-        f"The last against the first: {record['linear']:.2f} times the {what}{more}",
-        soft_wrap=True,
+        f"The last against the first: {record['linear']:.2f} times the {what}{more}", soft_wrap=True
     )

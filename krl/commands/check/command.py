@@ -15,13 +15,7 @@ from krl.extras import expected_extras
 from krl.options import JobsOption
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.project_settings import (
-    Settings,
-    baseline_place,
-    read_baseline,
-    read_settings,
-    settings_of,
-)
+from krl.project_settings import Settings, baseline_place, read_baseline, read_settings, settings_of
 from support.files.user_cache import user_cache
 
 if TYPE_CHECKING:
@@ -102,8 +96,7 @@ def check(
         bool, typer.Option("--no-settings", help="Take no notice of any krl.toml.")
     ] = False,
     fail_on: Annotated[
-        FailOn,
-        typer.Option(help="Which findings give exit status 1; any: errors and warnings."),
+        FailOn, typer.Option(help="Which findings give exit status 1; any: errors and warnings.")
     ] = FailOn.ANY,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the findings here.")
