@@ -109,11 +109,10 @@ lock:
 	@UV_CUSTOM_COMPILE_COMMAND='make lock' uv pip compile --quiet --upgrade --universal --generate-hashes \
 		--python-version 3.11 --extra dev --output-file requirements-dev.txt pyproject.toml
 
-# py-opw-kinematics is under the MIT licence, which its metadata does not say.
 audit: $(DEV)
 	@uvx pip-audit@2.10.1 --disable-pip --require-hashes --requirement requirements-dev.txt
 	@uvx pip-licenses@5.5.5 --python $(BIN)/python --from=mixed --partial-match --summary \
-		--allow-only='MIT;BSD;Apache;ISC;MPL;Mozilla;PSF' --ignore-packages krl-workbench py-opw-kinematics
+		--allow-only='MIT;BSD;Apache;ISC;MPL;Mozilla;PSF' --ignore-packages krl-workbench
 
 site:
 	@NO_MKDOCS_2_WARNING=1 uvx --quiet --exclude-newer 2026-11-15 --from mkdocs==1.6.1 --with mkdocs-material==9.8.1 \

@@ -179,7 +179,7 @@ def run_program(
     if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
         machine, torque_note = _with_torques(machine, program)
     start = setup.start or _home(values, machine, _BENT if profile.is_tolerant else _UPRIGHT)
-    arm = _arm(machine, start, profile)
+    arm = _arm(machine, start)
     if setup.make_robot is not None:
         robot = setup.make_robot(machine, profile.cycle)
     else:
@@ -242,13 +242,13 @@ def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
     return system_values(program)
 
 
-def _arm(machine: MachineData, start: Sequence[float], profile: Profile) -> DeferredArm:
+def _arm(machine: MachineData, start: Sequence[float]) -> DeferredArm:
     """The arm; raises `LinkError` where it cannot stand at its start."""
 
     def made() -> PlannedArm:
         from interp.robot.planning.planned_arm import PlannedArm
 
-        return PlannedArm(machine, start, is_selected=not profile.is_tolerant)
+        return PlannedArm(machine, start)
 
     arm = DeferredArm(made)
     every = zip((*machine.axes, *machine.externals), machine.standing(start), strict=True)

@@ -15,7 +15,6 @@ _EXTRA_OF = {
     "mujoco": "arm",
     "numpy": "arm",
     "pandas": "records",
-    "py_opw_kinematics": "arm",
     "pyarrow": "records",
     "pygls": "lsp",
     "pytest": "test",
@@ -28,7 +27,7 @@ _EXTRA_OF = {
 _OURS = ("conformance", "grammar", "interp", "recovery", "reports", "support")
 
 #: Packages that the arm imports when it first needs them, which would be in the midst of work.
-ARM = ("py_opw_kinematics", "scipy")
+ARM = ("scipy",)
 
 
 @contextmanager

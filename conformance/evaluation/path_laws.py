@@ -38,6 +38,7 @@ def deviations(seen: Observation) -> Iterator[Violation]:
     path = seen.path
     if path is not None and len(path.times) >= _FEWEST:
         yield from _excesses(seen, path)
+        yield from _drifts(seen, path)
         yield from _strays(seen, path)
 
 
@@ -74,6 +75,24 @@ def _violation(seen: Observation, time: int, law: str, actual: str, rule: str) -
     """With the motion that is under way at a time in µs."""
     begun = [one for one in seen.of_kind("motion_start") if (one.time or 0) <= time]
     return Violation(begun[-1] if begun else None, law, f"{actual} at {time / 1e6:.3f} s", rule)
+
+
+def _drifts(seen: Observation, path: PathRecord) -> Iterator[Violation]:
+    """That the arm moves while no motion is under way, up to a BRAKE or RESUME; the first time."""
+    since: int | None = 0
+    for one in seen.of_kind("motion_start", "motion_end", "brake", "resume", "end"):
+        if one.kind == "motion_end":
+            since = one.time
+        elif since is not None and one.time is not None:
+            rows = path.axes[(path.times >= since) & (path.times <= one.time)]
+            most = float(np.ptp(rows, axis=0).max()) if len(rows) else 0.0
+            if not most <= TOLERANCE_DEGREES:
+                law = "the arm stands where no motion is under way"
+                yield Violation(one, law, f"an axis moves by {most:.4f} before it")
+                return
+            since = None
+        if one.kind in ("brake", "resume"):
+            return
 
 
 def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:

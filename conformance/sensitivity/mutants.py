@@ -31,11 +31,16 @@ from conformance.sensitivity.mutation_operators import Change, Operator, changes
 #: fed, recorded and shown, what another caller than a controller uses, and what only one of the
 #: robots needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
-    # left out: how values are written in traces, equality, which tests alone ask for, and which
-    # random numbers there are
+    # left out: how values are written in traces, equality, which tests alone ask for, which random
+    # numbers there are, and what only the compiler asks
     "values": (
         ("interp.values.*",),
-        ("interp.values.json_form", "interp.values.builtins.Randomness.*", "*.__eq__"),
+        (
+            "interp.values.json_form",
+            "interp.values.builtins.Randomness.*",
+            "interp.values.operators.kind_of",
+            "*.__eq__",
+        ),
     ),
     # left out: what a debugger asks of a program that stands
     "tree": (
@@ -68,11 +73,12 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.script_player",
             "interp.controller.state.ControllerState.skip",
             "interp.controller.trace",
+            "interp.controller.variables.Variables.part_type",
         ),
     ),
-    # left out: files of machine data and torques; motions written in Python, what only they ask of
-    # the core, and a check of the first motion that the controller makes before; and planning in
-    # batches, which is there to be compared with
+    # left out: files of machine data and torques; motions written in Python and what only they ask
+    # of the core, which also checks what it is given; and planning in batches, which is there to
+    # be compared with, and what it takes back
     "robot": (
         (
             "interp.robot.path.*",
@@ -86,12 +92,16 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.robot.api.motions",
             *(
                 f"interp.robot.api.control_core.ControlCore.{name}"
-                for name in ("link", "run_out", "apply", "_act", "_end_path", "_stuck")
+                for name in (
+                    *("link", "run_out", "apply", "_act", "_end_path", "_stuck"),
+                    *("_check", "_check_link", "_settle"),
+                )
             ),
             "interp.robot.kinematics.data_list",
             "interp.robot.kinematics.dynamics_data",
             "interp.robot.kinematics.machine_data",
-            "interp.robot.path.targets_in_force.check_start",
+            "interp.robot.planning.planned_arm.PlannedArm.rewind",
+            "interp.robot.planning.timeline.Timeline.restore",
         ),
     ),
 }

@@ -16,6 +16,7 @@ from conformance.sensitivity.mutant_trial import (
     is_possible,
     kept_trials,
     reaches_of,
+    searches,
     try_mutants,
 )
 from conformance.sensitivity.mutants import (
@@ -196,7 +197,7 @@ def test_lines_that_a_case_runs() -> None:
 def test_cases_that_run_what_a_statement_names_come_first() -> None:
     """Of three cases that run a call only the last runs what the called function then does."""
     plan = "interp.robot.planning.planned_arm"
-    mutant = _mutant(plan, "PlannedArm.plan", "check_start(motion)", "pass")
+    mutant = _mutant(plan, "PlannedArm.plan", "check_numbers(motion)", "pass")
     called = "interp.robot.path.targets_in_force"
     rare = max(around(mutant)[called])
     lines = {plan: frozenset({mutant.line})}
@@ -282,6 +283,22 @@ def test_known_equivalent_changes_exist() -> None:
     }
     listed = {(module, function, was, now) for module, function, _, was, now in equivalent()}
     assert set() == listed - there
+    assert [] == [
+        (module, name)
+        for module, name in searches()
+        if all(name != function for function, _, _ in _changes(module))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("runs", "changed", "fate"),
+    [(1, "", "equivalent"), (0, "", "survived"), (1, "a/case", "survived")],
+)
+def test_a_search_may_go_another_way(runs: int, changed: str, fate: Fate) -> None:
+    """A change of one is equivalent where cases ran it and none saw anything else."""
+    mutant = _mutant("interp.robot.planning.schedule", "_bisected", "2.0", "3.0")
+    trial = Trial(mutant, "survived", reached=1, runs=runs, changed=changed)
+    assert fate == mutant_trial._if_equivalent(trial).fate
 
 
 def test_shares_are_of_what_could_be_noticed() -> None:

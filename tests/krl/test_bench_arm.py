@@ -7,7 +7,6 @@ import pytest
 
 from krl.cli import main
 
-pytest.importorskip("py_opw_kinematics")
 pytest.importorskip("ruckig")
 pytest.importorskip("scipy")
 

@@ -9,7 +9,6 @@ from conformance.sensitivity.mutant_trial import is_possible
 from conformance.suite import case as cases
 from krl.cli import main
 
-pytest.importorskip("py_opw_kinematics")
 pytest.importorskip("ruckig")
 pytest.importorskip("scipy")
 

@@ -1,9 +1,8 @@
 """From axes to poses and back, for an arm of six axes with a central wrist.
 
 Forward kinematics is the chain of `interp.robot.kinematics.machine_data`, step by step. Inverse
-kinematics is that of py-opw-kinematics (Brandstötter, Angerer, Hofbaur 2014), whose angles are
-those of an arm that is upright at zero; `CentralWrist` works out from the machine data how its
-angles follow from the axes.
+kinematics is in closed form: the wrist centre gives the main axes by the law of cosines, what is
+left of the rotation the others, as Euler angles of a wrist that is upright at zero.
 
 Arrays are those of `interp.robot.kinematics.solver`.
 """
@@ -12,28 +11,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError
 from interp.robot.kinematics.solver import Array, matrix_of
 from interp.values.poses import sine_cosine
 
-if TYPE_CHECKING:
-    from py_opw_kinematics import Robot
-
-BRANCHES = 8
-"""Ways to reach a pose: shoulder in front or behind, elbow up or down, wrist turned over or not."""
-
-_OVER = np.repeat((1.0, -1.0), BRANCHES // 2)  # the sign of the fifth angle in each of them
-_SHOULDER = np.array([0, 0, 1, 1, 0, 0, 1, 1])  # in front of axis 1, or behind it
-
-_NO_LIMITS = [(math.inf, -math.inf)] * ROBOT_AXES
-"""No way lies within them, which spares a measure of conditioning that is not asked for."""
-
+_SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # in front of axis 1, or behind it
+_ELBOW = np.array([-1.0, 1.0, -1.0, 1.0])  # of which sign the bend is
 _STRAIGHT = 1e-12
 """Sine of A5 below which axes 4 and 6 turn about the same line."""
 _UNDETERMINED = 2e-9
@@ -72,18 +59,6 @@ class CentralWrist:
         self._senses = np.array([1.0, 1.0, 1.0, along, -sense, along]) * self._directions
         self._zeros = np.array([0.0, math.pi / 2, 0.0, along * turned, 0.0, 0.0])
         self._reverse = np.diag([along, 1.0, along])
-        self._machine = machine
-
-    @cached_property
-    def _solver(self) -> Robot:
-        """Closed-form solutions for the main axes; made when needed, as its import is slow."""
-        from py_opw_kinematics import KinematicModel, Robot
-
-        forward, aside, up = self._machine.tx3p3.position
-        model = KinematicModel(
-            a1=self._machine.length_a, a2=-up, b=aside, c2=self._machine.length_b, c3=forward
-        )
-        return Robot(model, degrees=False)
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
         """All axes are free."""
@@ -116,19 +91,23 @@ class CentralWrist:
         straight, A4 is 0.
         """
         given = np.asarray(poses, dtype=np.float64)
-        shape = given.shape[:-2]
-        given = given.reshape(-1, 4, 4)
-        found = np.full((len(given), BRANCHES, ROBOT_AXES), math.nan)
-        sound = (np.abs(given) < _FAR).all(axis=(1, 2))
-        if sound.any():
-            inner = self._to_inner @ given[sound] @ self._to_wrist
-            inner[:, :3, :3] = inner[:, :3, :3] @ self._reverse
-            inner[np.hypot(inner[:, 0, 3], inner[:, 1, 3]) < _MARGIN, :2, 3] = 0.0
-            found[sound] = self._solve(inner)
-        degrees = np.degrees((found - self._zeros) * self._senses)
+        is_sound = (np.abs(given) < _FAR).all(axis=(-2, -1), keepdims=True)
+        inner = self._to_inner @ np.where(is_sound, given, math.nan) @ self._to_wrist
+        inner[np.hypot(inner[..., 0, 3], inner[..., 1, 3]) < _MARGIN, :2, 3] = 0.0
+        inner = inner[..., None, :, :]
+        main = self._main_axes(inner[..., :3, 3], _SHOULDER, _ELBOW)
+        wrist = self._wrist_of(main, inner)
+        sine = np.hypot(wrist[..., 0, 2], wrist[..., 1, 2])
+        is_straight = (sine < _STRAIGHT) & (wrist[..., 2, 2] > 0.0)
+        ways = []
+        for sign in (1.0, -1.0):
+            a4 = np.arctan2(sign * wrist[..., 1, 2], sign * wrist[..., 0, 2])
+            a5 = sign * np.arctan2(sine, wrist[..., 2, 2])
+            a4 = np.where(is_straight, self._zeros[3], a4)
+            ways.append(self._degrees(main, a4, np.where(is_straight, 0.0, a5), wrist))
+        degrees: Array = np.concatenate(ways, axis=-2)
         degrees -= 360.0 * np.ceil((degrees - 180.0) / 360.0)
-        ways: Array = (degrees + 0.0).reshape(*shape, BRANCHES, ROBOT_AXES)
-        return ways
+        return degrees + 0.0
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
         """For each pose the way that a reference stands in: axes ``(n, 6)``, NaN where none is.
@@ -175,42 +154,52 @@ class CentralWrist:
     def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
         """Main axes of the upright arm, and the rotation that is left for its wrist."""
         inner = self._to_inner @ poses @ self._to_wrist
-        main = self._main_axes_near(inner[:, :3, 3], theta) + self._zeros[:3]
-        upper = _about_z(main[:, 0]) @ _about_y(main[:, 1] + main[:, 2])
-        wrist = np.swapaxes(upper, -1, -2) @ inner[:, :3, :3] @ self._reverse
-        return main, wrist
+        forward, _, up = self._forearm
+        bend = np.sin(math.atan2(up, forward) - theta[:, 2])
+        main = self._main_axes(inner[:, :3, 3], self._ahead(theta), bend)
+        return main, self._wrist_of(main, inner)
+
+    def _wrist_of(self, main: Array, inner: Array) -> Array:
+        """The rotation that main axes leave for the wrist, of poses in front of $TIRORO."""
+        upper = _about_z(main[..., 0]) @ _about_y(main[..., 1] + main[..., 2])
+        wrist: Array = np.swapaxes(upper, -1, -2) @ inner[..., :3, :3] @ self._reverse
+        return wrist
 
     def _degrees(self, main: Array, a4: Array, a5: Array, wrist: Array) -> Array:
         """Axes in degrees; A6 is what A4 leaves over of the wrist's rotation."""
         s4, c4 = np.sin(a4), np.cos(a4)
-        angles = np.empty((len(main), 6))
-        angles[:, :3], angles[:, 3], angles[:, 4] = main, a4, a5
-        angles[:, 5] = np.arctan2(
-            c4 * wrist[:, 1, 0] - s4 * wrist[:, 0, 0], c4 * wrist[:, 1, 1] - s4 * wrist[:, 0, 1]
+        a6 = np.arctan2(
+            c4 * wrist[..., 1, 0] - s4 * wrist[..., 0, 0],
+            c4 * wrist[..., 1, 1] - s4 * wrist[..., 0, 1],
         )
+        angles = np.concatenate((main, np.stack((a4, a5, a6), axis=-1)), axis=-1)
         degrees: Array = np.degrees((angles - self._zeros) * self._senses)
         return degrees
 
-    def _main_axes_near(self, places: Array, theta: Array) -> Array:
-        """Main axes in radians ``(n, 3)`` for wrist centres, with shoulder and elbow of others."""
+    def _main_axes(self, places: Array, shoulder: Array, elbow: Array) -> Array:
+        """Main axes of the upright arm in radians ``(..., 3)`` for wrist centres.
+
+        ``shoulder`` and ``elbow`` have the signs of its ways. NaN for what is out of reach.
+        """
         forward, aside, up = self._forearm
         upper, lower = self.machine.length_b, math.hypot(forward, up)
-        x, y, height = places.T
+        x, y, height = np.moveaxis(places, -1, 0)
         beyond = x**2 + y**2 - aside**2
         beyond = np.where((beyond < 0.0) & (beyond > -_MARGIN), 0.0, beyond)
         with np.errstate(invalid="ignore"):
-            ahead = np.copysign(np.sqrt(beyond), self._ahead(theta))
+            ahead = np.copysign(np.sqrt(beyond), shoulder)
             a1 = np.arctan2(y, x) - np.arctan2(aside, ahead)
             out = ahead - self.machine.length_a
             distance = np.hypot(out, height)
             within = np.clip(distance, abs(upper - lower), upper + lower)
             within = np.where(np.abs(within - distance) < _MARGIN, within, math.nan)
             cosine = (within**2 - upper**2 - lower**2) / (2.0 * upper * lower)
-            bend = math.atan2(up, forward)
-            bent = bend - theta[:, 2]
-            elbow = np.copysign(np.arccos(np.clip(cosine, -1.0, 1.0)), np.sin(bent))
-        a2 = np.arctan2(lower * np.sin(elbow), upper + lower * np.cos(elbow))
-        return np.stack((a1, a2 - np.arctan2(height, out), bend - elbow), axis=-1)
+            bent = np.copysign(np.arccos(np.clip(cosine, -1.0, 1.0)), elbow)
+        a2 = np.arctan2(lower * np.sin(bent), upper + lower * np.cos(bent))
+        a3 = math.atan2(up, forward) - bent
+        main: Array = np.stack((a1, a2 - np.arctan2(height, out), a3), axis=-1) + self._zeros[:3]
+        main[np.isnan(a3)] = math.nan
+        return main
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
         """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03, POS-04, POS-05, CON-01].
@@ -230,79 +219,6 @@ class CentralWrist:
         theta = np.radians(np.asarray(axes, dtype=np.float64)) * self._directions
         distance: Array = np.hypot(self._ahead(theta), self._forearm[1])
         return distance
-
-    def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
-        """Poses carried along when axis 1 turns by an angle."""
-        turn = np.eye(4)
-        turn[:3, :3] = _about_z(np.radians(np.array(degrees)) * self._directions[0])
-        carried: Array = self._before @ turn @ self._to_inner @ np.asarray(poses)
-        return carried
-
-    # ------------------------------------------------------------------------------- the solution
-
-    def _solve(self, inner: Array) -> Array:
-        """Angles of the upright arm in radians for poses of the wrist in front of $TIRORO.
-
-        The solver gives the main axes. It loses a way where rounding puts a stretched arm out of
-        reach or the cosine of a straight wrist above 1; there it is asked again for a pose beside
-        it, which has the same main axes.
-        """
-        main = self._main_axes(inner)
-        reachable, drawn_in = self._reach(inner[:, :3, 3])
-        lost = np.isnan(main[..., 0]) & reachable[:, _SHOULDER]
-        if lost.any():
-            place, branch = np.nonzero(lost)
-            beside = inner[place]
-            beside[:, :3, 3] = drawn_in[place, _SHOULDER[branch]]
-            beside[:, :3, :3] = beside[:, :3, :3] @ _about_y(np.array(0.1))
-            main[place, branch] = self._main_axes(beside)[np.arange(len(place)), branch]
-        return np.concatenate((main, self._wrist_axes(main, inner[:, None, :3, :3])), axis=-1)
-
-    def _main_axes(self, inner: Array) -> Array:
-        from py_opw_kinematics import RigidTransform
-
-        result = self._solver.reach(RigidTransform.from_matrix(inner), _NO_LIMITS)
-        return np.array(result.joints[..., :3], dtype=np.float64)
-
-    def _wrist_axes(self, main: Array, rotation: Array) -> Array:
-        """The other three angles; A6 is what A4 leaves over, so that rounding is made good."""
-        upper = _about_z(main[..., 0]) @ _about_y(main[..., 1] + main[..., 2])
-        wrist = np.swapaxes(upper, -1, -2) @ rotation
-        sine = np.hypot(wrist[..., 0, 2], wrist[..., 1, 2])
-        a4 = np.arctan2(_OVER * wrist[..., 1, 2], _OVER * wrist[..., 0, 2])
-        straight = (sine < _STRAIGHT) & (wrist[..., 2, 2] > 0.0)
-        a4 = np.where(straight, self._zeros[3], a4)
-        a5 = np.where(straight, 0.0, _OVER * np.arctan2(sine, wrist[..., 2, 2]))
-        s4, c4 = np.sin(a4), np.cos(a4)
-        a6 = np.arctan2(
-            c4 * wrist[..., 1, 0] - s4 * wrist[..., 0, 0],
-            c4 * wrist[..., 1, 1] - s4 * wrist[..., 0, 1],
-        )
-        return np.stack((a4, a5, a6), axis=-1)
-
-    def _reach(self, places: Array) -> tuple[npt.NDArray[np.bool_], Array]:
-        """For wrist centres ``(n, 3)`` and both shoulders: within reach?, and a place well within.
-
-        Shapes ``(n, 2)`` and ``(n, 2, 3)``. The place differs from the wrist centre by `_MARGIN` at
-        most, and only where the arm is stretched or folded.
-        """
-        forward, aside, up = self._forearm
-        upper, lower = self.machine.length_b, math.hypot(forward, up)
-        beyond = places[:, 0] ** 2 + places[:, 1] ** 2 - aside**2
-        ahead = np.sqrt(np.maximum(beyond, 0.0))[:, None] * np.array([1.0, -1.0])
-        height = places[:, 2:]
-        distance = np.hypot(ahead - self.machine.length_a, height)
-        shortest, longest = abs(upper - lower), upper + lower
-        is_within = (distance > shortest - _MARGIN) & (distance < longest + _MARGIN)
-        is_within &= beyond[:, None] > -_MARGIN
-        wanted = np.clip(distance, shortest + _MARGIN, longest - _MARGIN)
-        scale = wanted / np.maximum(distance, _MARGIN)
-        drawn = self.machine.length_a + (ahead - self.machine.length_a) * scale
-        wider = np.hypot(drawn, aside) / np.maximum(np.hypot(ahead, aside), _MARGIN)
-        drawn_in = np.stack(
-            (places[:, :1] * wider, places[:, 1:2] * wider, height * scale), axis=-1
-        )
-        return is_within, drawn_in
 
     # ------------------------------------------------------------------------------- the geometry
 

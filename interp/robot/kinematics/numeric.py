@@ -134,14 +134,6 @@ class NumericKinematics:
         distance: Array = np.hypot(*np.moveaxis(self._wrist(self.coupled(axes)), -1, 0)[:2])
         return distance if not self._linear[0] else np.full_like(distance, math.inf)
 
-    def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.turned_about_axis_1`."""
-        turn = np.eye(4)
-        turn[:3, :3] = self._turn(0, np.array(math.radians(degrees)))
-        first = self._frames[0]
-        carried: Array = first @ turn @ np.linalg.inv(first) @ np.asarray(poses)
-        return carried
-
     # ------------------------------------------------------------------------------- the solution
 
     def _solve(self, poses: Array, starts: Array, rounds: int) -> Array:

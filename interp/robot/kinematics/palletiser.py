@@ -103,10 +103,6 @@ class Palletiser:
         """See `interp.robot.kinematics.solver.Kinematics.distance_to_axis_1`."""
         return self._arm.distance_to_axis_1(axes)
 
-    def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.turned_about_axis_1`."""
-        return self._arm.turned_about_axis_1(poses, degrees)
-
     # ------------------------------------------------------------------------------- the geometry
 
     def _unturned(self, axes: Array) -> Array:

@@ -76,10 +76,6 @@ class Kinematics(Protocol):
         """How far the wrist is from axis 1, in mm, for axes ``(..., 6)``."""
         ...
 
-    def turned_about_axis_1(self, poses: npt.ArrayLike, degrees: float) -> Array:
-        """Poses carried along when axis 1 turns by an angle."""
-        ...
-
 
 def matrix_of(pose: Pose) -> Array:
     """A pose as an array of four by four."""

@@ -88,15 +88,13 @@ def check_path(axes: Sequence[Axis], path: Array) -> None:
     """
     lower = np.array([axis.lower for axis in axes]) - _LIMIT
     upper = np.array([axis.upper for axis in axes]) + _LIMIT
-    beyond = ((path < lower) | (path > upper)).any(axis=1)
-    if not beyond.any():
-        return
-    check_limits(axes, path[-1].tolist())
-    first = path[int(np.argmax(beyond))]
-    for axis, value in zip(axes, first.tolist(), strict=True):
-        if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
-            text = f"the path leads onto a software limit switch: {_outside(axis, value)}"
-            raise Fault("software_limit", text, number=1211, rules=("MOT-15",))
+    beyond = np.argwhere((path < lower) | (path > upper))
+    if len(beyond):
+        check_limits(axes, path[-1].tolist())
+        row, column = beyond[0]
+        where = _outside(axes[column], float(path[row, column]))
+        text = f"the path leads onto a software limit switch: {where}"
+        raise Fault("software_limit", text, number=1211, rules=("MOT-15",))
 
 
 def solve(
@@ -140,7 +138,8 @@ def ptp_target(
     found = solve(arm, flange, status=status, turn=turn, start=start, preference=preference)
     keeps = arm.machine.singul_pos
     if Singularity.OVERHEAD in found.singularities and keeps[0]:
-        ways = arm.inverse(arm.turned_about_axis_1(matrix_of(flange), -start[0]))
+        zero, turned = arm.forward(((0.0,) * 6, (-start[0], *(0.0,) * 5)))
+        ways = arm.inverse(turned @ np.linalg.inv(zero) @ matrix_of(flange))
         ways[:, 0] += start[0]
         found = _choose(arm, ways, status, turn, start, preference)
     if Singularity.WRIST in found.singularities:

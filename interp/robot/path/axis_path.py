@@ -331,9 +331,9 @@ class PosePathCurve:
 
     def _flanges(self, u: Array) -> Array:
         poses = poses_of(self.tool_path, u)
-        if self.placement.mode is IpoMode.TCP:
-            poses = _inverted(poses)
-        flanges: Array = self._befores(u) @ poses @ self._after
+        is_turned = self.placement.mode is IpoMode.TCP
+        tools = np.linalg.inv(poses) if is_turned else poses
+        flanges: Array = self._befores(u) @ tools @ self._after
         return flanges
 
     def _points(self, start: Array) -> tuple[Array, Array]:
@@ -374,11 +374,11 @@ def tool_positions(curve: Curve, u: Array) -> Array:
     axes = curve.axes(u)
     flanges = curve.arm.forward(axes[:, :ROBOT_AXES])
     placement = curve.placement
-    before = placement.befores(axes[:, ROBOT_AXES:])
-    points = np.linalg.inv(before) @ flanges @ matrix_of(placement.tool)
+    base = placement.befores(axes[:, ROBOT_AXES:])
+    tool = flanges @ matrix_of(placement.tool)
     if placement.mode is IpoMode.TCP:
-        points = _inverted(points)
-    positions: Array = points[:, :3, 3]
+        base, tool = tool, base
+    positions: Array = (np.linalg.inv(base) @ tool)[:, :3, 3]
     return positions
 
 
@@ -390,15 +390,6 @@ def tool_tangents(curve: Curve, u: Array) -> Array:
     both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
     tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)
     return tangents
-
-
-def _inverted(poses: Array) -> Array:
-    turned = np.swapaxes(poses[:, :3, :3], 1, 2)
-    inverse = np.zeros_like(poses)
-    inverse[:, :3, :3] = turned
-    inverse[:, :3, 3] = -(turned @ poses[:, :3, 3:])[:, :, 0]
-    inverse[:, 3, 3] = 1.0
-    return inverse
 
 
 def _singular() -> Fault:

@@ -115,11 +115,3 @@ def about(axis: Array, radians: npt.NDArray[np.float64]) -> Array:
         np.eye(3) + sine[:, None, None] * cross + versine[:, None, None] * (cross @ cross)
     )
     return turned
-
-
-def angle_between(one: Array, other: Array) -> float:
-    """The angle of the rotation between two, in radians; exact for small ones too."""
-    difference = one.T @ other
-    off = difference - difference.T
-    sine = math.sqrt(off[2, 1] ** 2 + off[0, 2] ** 2 + off[1, 0] ** 2) / 2.0
-    return math.atan2(sine, (float(np.trace(difference)) - 1.0) / 2.0)

@@ -28,11 +28,6 @@ class PosePath(Protocol):
         ...
 
     @property
-    def points(self) -> Array:
-        """What defines the curve, ``(n, 3)``; each class says what they are."""
-        ...
-
-    @property
     def length(self) -> float:
         """The way from start to end in mm."""
         ...
@@ -50,24 +45,15 @@ class PosePath(Protocol):
         """Positions differentiated by u."""
         ...
 
-    def distances(self, u: Array) -> Array:
-        """The way from the start in mm, ``(n,)``."""
-        ...
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StraightLine:
-    """A straight line; ``points`` are its ends."""
+    """A straight line."""
 
     start: Array
     end: Array
     orientation: Orientation
     kind: str = "LIN"
-
-    @property
-    def points(self) -> Array:
-        """See `PosePath.points`."""
-        return np.stack((self.start, self.end))
 
     @property
     def length(self) -> float:
@@ -87,24 +73,14 @@ class StraightLine:
         """See `PosePath.tangents`."""
         return np.broadcast_to(self.end - self.start, (len(u), 3))
 
-    def distances(self, u: Array) -> Array:
-        """See `PosePath.distances`."""
-        return u * self.length
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arc:
-    """A piece of a circle; ``points`` are its start, its centre and its end."""
+    """A piece of a circle."""
 
     circle: Circle
     orientation: Orientation
     kind: str = "CIRC"
-
-    @property
-    def points(self) -> Array:
-        """See `PosePath.points`."""
-        start, end = self.circle.at(np.array([0.0, 1.0]))
-        return np.stack((start, self.circle.centre, end))
 
     @property
     def length(self) -> float:
@@ -128,18 +104,13 @@ class Arc:
         tangents: Array = circle.radius * circle.angle * onward
         return tangents
 
-    def distances(self, u: Array) -> Array:
-        """See `PosePath.distances`."""
-        return u * self.length
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
     """From one path into the next around the point P between them [BLD-12].
 
     ``first(one(u)) - P + second(other(u))``, and the same with rotations. Between straight lines it
-    lies in their plane; its ``points`` are where it leaves the first path, P, and where it joins
-    the second.
+    lies in their plane.
     """
 
     first: PosePath
@@ -148,16 +119,9 @@ class Blend:
     kind: str = "BLEND"
 
     @property
-    def points(self) -> Array:
-        """See `PosePath.points`."""
-        leaves, _ = self.first.at(np.array([1.0 - self.transition.before, 1.0]))
-        joins, _ = self.second.at(np.array([self.transition.after]))
-        return np.concatenate((leaves, joins))
-
-    @property
     def length(self) -> float:
         """See `PosePath.length`."""
-        return float(self.distances(np.ones(1))[0])
+        return Way(self.tangents).length
 
     @property
     def angles(self) -> tuple[float, float]:
@@ -182,10 +146,6 @@ class Blend:
             :, None
         ] * self.second.tangents(other)
         return tangents
-
-    def distances(self, u: Array) -> Array:
-        """See `PosePath.distances`."""
-        return Way(self.tangents).at(u)
 
 
 def poses_of(pose_path: PosePath, u: Array) -> Array:

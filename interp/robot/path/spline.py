@@ -18,7 +18,7 @@ import numpy as np
 
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.circle import Circle
-from interp.robot.path.orientation import Orientation, angle_between, turning
+from interp.robot.path.orientation import Orientation, turning
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine
 from interp.robot.path.way import Way
 
@@ -99,14 +99,13 @@ class _Swept:
 class Free:
     """An SPL: a curve of the fifth degree over its own parameter, told over its length.
 
-    ``points`` are its ends; ``ends`` has position, first and second derivative at both, ``(2, 3,
+    ``ends`` has position, first and second derivative at both, ``(2, 3,
     3)``, over a parameter that grows by ``span``.
     """
 
     kind = "SPL"
 
     def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
-        self.points = ends[:, 0]
         self._coefficients = _quintic(ends, span)
         self._orientation = orientation
         self.way = Way(self._slopes)
@@ -137,10 +136,6 @@ class Free:
         slopes = self._slopes(self._own(u))
         tangents: Array = slopes / np.linalg.norm(slopes, axis=1)[:, None] * self.length
         return tangents
-
-    def distances(self, u: Array) -> Array:
-        """See `interp.robot.path.pose_path.PosePath.distances`."""
-        return u * self.length
 
     def _own(self, u: Array) -> Array:
         own: Array = self._parameter(u)
@@ -263,8 +258,7 @@ def _orientations(
     chain: Sequence[Segment], lengths: Sequence[float], is_constant: bool
 ) -> Sequence[Orientation]:
     rotations = np.array([chain[0].start.rotation, *(segment.end.rotation for segment in chain)])
-    turned = max(angle_between(one, rotations[0]) for one in rotations)
-    if is_constant or turned < 1e-12:
+    if is_constant or np.allclose(rotations, rotations[0], rtol=0.0, atol=1e-12):
         return [turning(rotations[0], rotations[0])] * len(chain)
     knots = np.concatenate(([0.0], np.cumsum(lengths)))
     from scipy.spatial.transform import Rotation, RotationSpline

@@ -37,21 +37,6 @@ class Goal:
     is_singular: bool = False
 
 
-def check_start(motion: Motion) -> None:
-    """Raise `Fault` 1443 unless a motion may be the first: a PTP that leaves nothing open [MOT-10].
-
-    All six axes, or a point with Status and Turn.
-    """
-    target = motion.parts[0].target if motion.parts else motion.target
-    is_ptp = motion.kind in {"PTP", "SPTP", "PTP_SPLINE"} and not motion.is_relative
-    is_complete = all(name in target for name in _AXES) or all(
-        name in target for name in (*_COMPONENTS, "S", "T")
-    )
-    if not (is_ptp and is_complete):
-        text = "the first motion has to be a PTP to axes, or to a point with Status and Turn"
-        raise Fault("start_motion", text, number=1443, rules=("MOT-10",))
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Programmed:
     """A target as it stands: all axes, and the point with the frames it was told in.

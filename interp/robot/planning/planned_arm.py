@@ -19,7 +19,7 @@ from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_limits
 from interp.robot.path.axis_path import tool_tangents
-from interp.robot.path.targets_in_force import Programmed, check_numbers, check_start
+from interp.robot.path.targets_in_force import Programmed, check_numbers
 from interp.robot.planning.blending import blend_of, zone_of
 from interp.robot.planning.execution import PathExecution
 from interp.robot.planning.path_events import Passage, events_of
@@ -62,21 +62,17 @@ class _Mark:
     brakes: tuple[_Plan | None, ...]
     legs: tuple[Leg, ...]
     stopped: ArmEvent | None
-    has_begun: bool
     now: int
 
 
 class PlannedArm:
     """An `interp.robot.arm.Arm` of set-points only, which every robot follows.
 
-    ``start`` are the axes as `MachineData.standing` takes them. With ``is_selected`` the first
-    motion has to be a PTP that leaves nothing open [MOT-10]. Raises `Fault` 1447 for a start beyond
-    a software limit switch, 1443 for a first motion that is not allowed as such.
+    ``start`` are the axes as `MachineData.standing` takes them. Raises `Fault` 1447 for a start
+    beyond a software limit switch.
     """
 
-    def __init__(
-        self, machine: MachineData, start: Sequence[float], *, is_selected: bool = True
-    ) -> None:
+    def __init__(self, machine: MachineData, start: Sequence[float]) -> None:
         self._tracks = Tracks(machine)
         axes = np.array(machine.standing(start))
         axes[:ROBOT_AXES] = self._tracks.arm.coupled(axes[:ROBOT_AXES])
@@ -88,7 +84,6 @@ class PlannedArm:
         self._execution = PathExecution(self._timeline)
         self._override = 1.0
         self._stopped: ArmEvent | None = None
-        self._has_begun = not is_selected
         self._agenda: list[ArmEvent] | None = None
         self._now = 0
 
@@ -101,8 +96,6 @@ class PlannedArm:
         [MOT-11], 2868 for a PTP into a singularity [POS-08].
         """
         self._observe(now)
-        if not self._has_begun:
-            check_start(motion)
         check_numbers(motion)
         plan = self._standing_plan() if self._is_braked else self._plan
         if motion.kind in {"SPLINE", "PTP_SPLINE"}:
@@ -123,7 +116,6 @@ class PlannedArm:
                 track,
             )
             self._reschedule(self._plan.route)
-        self._has_begun = True
         return track.notices
 
     def mark(self) -> object:
@@ -133,7 +125,6 @@ class PlannedArm:
             tuple(self._brakes),
             tuple(self._timeline.legs),
             self._stopped,
-            self._has_begun,
             self._now,
         )
 
@@ -142,9 +133,8 @@ class PlannedArm:
         if not isinstance(mark, _Mark):
             raise TypeError("not a mark of this arm")
         self._plan, self._brakes = mark.plan, list(mark.brakes)
-        self._timeline.restore(0, mark.legs)
-        self._stopped = mark.stopped
-        self._has_begun, self._now = mark.has_begun, mark.now
+        self._timeline.restore(mark.legs)
+        self._stopped, self._now = mark.stopped, mark.now
         self._agenda = None
 
     def _append_blended(self, track: Track, programmed: Programmed) -> bool:
@@ -302,10 +292,6 @@ class PlannedArm:
         """
         return tuple(self._timeline.legs)
 
-    def forget(self, before: int) -> None:
-        """Drop what was travelled before a time: nobody will ask for it any more."""
-        self._timeline.forget(before * MICROSECOND)
-
     # ------------------------------------------------------------------------ stopping and going
 
     def override(self, now: int, percent: float) -> None:
@@ -371,8 +357,7 @@ class PlannedArm:
 
     def _end(self) -> float:
         """When the last leg ends, or now."""
-        legs = self._timeline.legs
-        return max(legs[-1].ends if legs else 0.0, self._now * MICROSECOND)
+        return max(self._timeline.end, self._now * MICROSECOND)
 
     @property
     def _is_braked(self) -> bool:

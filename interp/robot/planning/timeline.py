@@ -144,22 +144,11 @@ class Timeline:
             self.append(replace(removed[0], ends=time))
         return removed
 
-    def restore(self, count: int, legs: Sequence[Leg]) -> None:
-        """The first so many legs, and others behind them."""
-        self._dropped(count)
+    def restore(self, legs: Sequence[Leg]) -> None:
+        """These legs in place of all others."""
+        self._dropped(0)
         for leg in legs:
             self.append(leg)
-
-    def forget(self, time: float) -> None:
-        """Drop the legs that ended before a time, except the last of them."""
-        count = 0
-        while count + 1 < len(self.legs) and self.legs[count + 1].begins < time:
-            count += 1
-        kept = self.legs[count:]
-        if count:
-            self._dropped(0)
-            for leg in kept:
-                self.append(leg)
 
     def _dropped(self, place: int) -> list[Leg]:
         """The legs from a place on, which are then no longer in it."""

@@ -1,5 +1,6 @@
 """Each law of a path is broken by a path that breaks it, and by no other."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,21 @@ def test_a_path_keeps_the_jerk_of_the_axes() -> None:
     """Axis 1 does 12,000 degrees a second cubed, which is machine data and no rule of KRL."""
     assert [] == turned(lambda t: 10 * np.cos(10 * t))
     assert [""] == turned(lambda t: 2 * np.cos(20 * t))
+
+
+@pytest.mark.parametrize(("until", "count"), [(COUNT, 0), (COUNT - 9, 1)])
+def test_the_arm_stands_between_motions(until: int, count: int) -> None:
+    """It moves while its motion is under way, and not behind it."""
+    axes = STILL.copy()
+    axes[:, 0] = 10 * np.sin(TIMES / 1e6)
+    first, last = seen("PTP", axes=axes).events
+    ends = (
+        first,
+        replace(last, time=int(TIMES[until - 1])),
+        Event(2_000_000, "robot", "end", "", 0),
+    )
+    found = deviations(replace(seen("PTP", axes=axes), events=ends))
+    assert count == sum(one.law.startswith("the arm stands") for one in found)
 
 
 ANGLES = np.linspace(0.0, 2.0, COUNT)

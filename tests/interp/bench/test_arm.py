@@ -4,7 +4,6 @@ import pytest
 
 from interp.robot.api.batch import BatchCore
 
-pytest.importorskip("py_opw_kinematics")
 pytest.importorskip("ruckig")
 pytest.importorskip("scipy")
 

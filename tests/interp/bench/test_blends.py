@@ -7,7 +7,7 @@ import pytest
 from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
 
-pytest.importorskip("py_opw_kinematics")
+pytest.importorskip("scipy")
 pytest.importorskip("ruckig")
 
 from interp.bench.blends import draw, exact, measure, straight, travel

@@ -85,7 +85,7 @@ class Driver:
 
     def __init__(self, machine: MachineData) -> None:
         self.machine = machine
-        self.arm = PlannedArm(machine, tuple(START.values()), is_selected=False)
+        self.arm = PlannedArm(machine, tuple(START.values()))
         self.now = 0
         self.events: list[ArmEvent] = []
         self._number = 0

@@ -40,7 +40,7 @@ def test_a_member_that_no_target_has() -> None:
 @pytest.mark.parametrize("robot", ["none", "kinematic", "mujoco"])
 def test_the_example(robot: str) -> None:
     """The gas comes on at the microsecond at which the ignition ends, on every robot."""
-    needed = ["py_opw_kinematics", "ruckig", "scipy"] + ["mujoco"] * (robot == "mujoco")
+    needed = ["ruckig", "scipy"] + ["mujoco"] * (robot == "mujoco")
     for module in needed:
         pytest.importorskip(module)
     done = subprocess.run(

@@ -22,7 +22,6 @@ from interp.robot.models import default_machine
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-pytest.importorskip("py_opw_kinematics")
 pytest.importorskip("ruckig")
 pytest.importorskip("scipy")
 

@@ -70,7 +70,7 @@ def travelled(
     machine: MachineData, kind: str, target: dict[str, float], **others: str
 ) -> tuple[np.ndarray, np.ndarray]:
     """Axes along a motion, and where the tool is in the base."""
-    arm = PlannedArm(machine, START, is_selected=False)
+    arm = PlannedArm(machine, START)
     base = Pose.of(300, 900, 500, a=30)
     placement = Placement(base, Pose.of(z=120), machine.robroot, carrier=machine.carrier)
     settings = Settings(placement=placement, **others)  # type: ignore[arg-type]

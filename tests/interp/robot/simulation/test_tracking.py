@@ -75,7 +75,7 @@ def test_a_row_each_cycle(arm: Any) -> None:
 
 def test_external_axes_nobody_told_the_start_of(machine: MachineData) -> None:
     """They stand at 0 at first, in the record and for the robot, and have columns of their own."""
-    arm = PlannedArm(machine, START, is_selected=False)
+    arm = PlannedArm(machine, START)
     tracking = Tracking(arm, KinematicRobot(12_000), machine, 12_000, START)
     arm.plan(0, Motion(1, At("test.src", 1, 0), "PTP", Settings(), {"E1": 300.0}))
     tracking.settle(2_000_000)
