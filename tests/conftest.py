@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 from hypothesis import HealthCheck, settings
 
+from support import gc_pause
+
 if TYPE_CHECKING:
     from selenium import webdriver
 
@@ -32,6 +34,10 @@ settings.register_profile(
     "search", settings.get_profile("suite"), derandomize=False, max_examples=250
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
+
+# What tests work on is small: garbage may wait, of short work and of long.
+gc.set_threshold(20_000, 20, 50)
+gc_pause._OFTEN *= 8
 
 # Nor does what a command says depend on how long it takes.
 os.environ["KRL_PROGRESS"] = "0"

@@ -20,7 +20,6 @@ from recovery.tuning import MOST_TRIED
 
 DAMAGED = """DEFDAT ARM PUBLIC
 DECL GLOBAL FRAME gfBlockBase[:}([(t1[3]
-DECL E6POS XP1={X 1.0,Y 2[,Z ((3,A 0:.0}
 DECL INT nCount[2=]{{1
 GLOBAL REAL rSpeed=,=\x84\x93 1.5
 ENDDAT

@@ -45,6 +45,8 @@ def pages(
     """All pages, from records as commands make them."""
     at = tmp_path_factory.mktemp("pages")
     (at / "run").mkdir()
+    growth = grown("believable")
+    growth["steps"] = growth["steps"][:12]  # axe looks at every element
     waiting = survey_record("believable") | {"clusters": [], "greedy": [], "pending": "causes"}
     night = {
         "date": "2031-05-07",
@@ -80,7 +82,7 @@ def pages(
         "pending": write_survey_page(waiting, at / "pending"),
         "complete": write_survey_page(survey_record("story"), at / "complete"),
         "no-files": write_survey_page(survey_record("empty"), at / "no-files"),
-        "growth": write_growth_page(grown("believable"), at / "growth"),
+        "growth": write_growth_page(growth, at / "growth"),
         "conform": write_conformance_page(conform_record(), at / "conform"),
         "nightly": write_nightly_page(night, at / "nightly"),
         "run": write_run_page(recorded(), at / "run" / "run.html"),
@@ -108,7 +110,10 @@ def resize(browser: webdriver.Chrome) -> Iterator[Callable[[int], None]]:
 def test_a_page_can_be_used_by_all(
     browser: webdriver.Chrome, pages: dict[str, Path], name: str, resize: Callable[[int], None]
 ) -> None:
-    """No rule of WCAG 2.1 A and AA that a program can check is broken, rows opened; nor in dark."""
+    """No rule of WCAG 2.1 A and AA that a program can check is broken, rows opened.
+
+    Neither in a wide window nor, in dark, in a narrow one.
+    """
     resize(1400)
     load(browser, pages[name].as_uri())
     for row in find_all(browser, ".row .open")[:2]:
@@ -117,12 +122,10 @@ def test_a_page_can_be_used_by_all(
     tags = {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}
     found = _violations(browser, tags)
     resize(400)
-    found += _violations(browser, tags)
     dark = {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", dark)
     try:
-        rule = {"type": "rule", "values": ["color-contrast"]}
-        found += _violations(browser, rule)
+        found += _violations(browser, tags)
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
     assert [] == found

@@ -206,12 +206,11 @@ def test_a_page_of_5000_cases_is_bounded(
     assert page.stat().st_size < 5_000_000
     opened(page, "#case=io/wrong")
     assert "value N 2" in browser.find_element(By.CSS_SELECTOR, ".sheet").text
-    opened(page, "#case=trigger/right_7")
-    assert "source and events" in browser.find_element(By.CSS_SELECTOR, ".sheet").text
     narrow = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", narrow)
     try:
-        opened(page, "")
+        opened(page, "#case=trigger/right_7")
+        assert "source and events" in browser.find_element(By.CSS_SELECTOR, ".sheet").text
         shown = browser.execute_script(
             "return [...document.querySelectorAll('.row')].filter((one) => one.offsetHeight).length"
         )

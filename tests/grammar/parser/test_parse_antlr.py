@@ -67,13 +67,13 @@ def differences(parser: Parser, texts: Iterable[str]) -> list[tuple[str, Item, I
 
 
 def test_own_programs(parser: Parser, corpus: Mapping[Path, str]) -> None:
-    """A third of the own corpus that parses, with line ends as ANTLR counts them."""
+    """An eighth of the own corpus that parses, with line ends as ANTLR counts them."""
     # ANTLR ends lines at \n only
     texts = (text for path, text in corpus.items() if "programs" in path.parts)
     programs = [text for text in texts if "\r" not in text.replace("\r\n", "\n")]
     readable = [text for text in programs if parser.recognizer.accepts(text)]
     assert len(readable) > 100
-    assert [] == differences(parser, Random(3).sample(readable, len(readable) // 3))
+    assert [] == differences(parser, Random(3).sample(readable, len(readable) // 8))
 
 
 def test_every_alternative(parser: Parser) -> None:
@@ -85,11 +85,10 @@ def test_every_alternative(parser: Parser) -> None:
     assert [] == differences(parser, sorted(texts))
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_random_sentences(parser: Parser, seed: int) -> None:
-    """250 random programs."""
-    chance = Random(seed)
+def test_random_sentences(parser: Parser) -> None:
+    """200 random programs."""
+    chance = Random(0)
     grammar = parser.recognizer.grammar
     speller, sentences = Speller(grammar), Sentences(grammar)
-    texts = [speller.text(sentences.random(chance, chance.randint(5, 120))) for _ in range(250)]
+    texts = [speller.text(sentences.random(chance, chance.randint(5, 120))) for _ in range(200)]
     assert [] == differences(parser, texts)

@@ -18,12 +18,6 @@ def program(*lines: str, declarations: str = "", more: str = "") -> str:
     return f"DEF main()\n{declarations}{HOME}" + "\n".join(lines) + f"\nEND\n{more}"
 
 
-def test_depth_is_limited(go: Go) -> None:
-    """$ADVANCE takes 0 to 5 [ADV-01]."""
-    ran = go("DEF main()\n$ADVANCE=6\nEND\n")
-    assert ("fault", 1422) == (ran.outcome.ending, ran.outcome.error.number)
-
-
 STOPPING = {
     "ANIN OFF": "ANIN OFF $ANIN[1]",
     "DIGIN OFF": "DIGIN OFF $DIGIN1",
@@ -60,12 +54,6 @@ def test_does_not_stop(go: Go, line: str) -> None:
     assert [0.0] == ran.times("motion_planned", motion=3)
     assert [2.0] == ran.times("blend_apex")
     assert [] == ran.messages()
-
-
-def test_twin_is_read_only(go: Go) -> None:
-    """The value of the main run is not written by programs [ADV-10]."""
-    ran = go("DEF main()\n$VEL_C.CP=1\nEND\n")
-    assert ("fault", 1388) == (ran.outcome.ending, ran.outcome.error.number)
 
 
 def test_output_in_step_is_read(go: Go) -> None:

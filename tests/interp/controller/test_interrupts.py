@@ -1,13 +1,9 @@
 """Interrupts: edges, priorities, nesting, what may be said where, BRAKE and RESUME."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import pytest
-
-from interp.controller import Profile
-from interp.values.values import text_of
 
 Go = Callable[..., Any]
 
@@ -39,32 +35,6 @@ def test_unknown_number(go: Go) -> None:
     """Only what is declared is switched on; what is not there may be switched off [INT-07]."""
     assert "interrupt_unknown" == go(program("INTERRUPT ON 7\n")).outcome.error.slug
     assert "end" == go(program("INTERRUPT OFF 7\n")).outcome.ending
-
-
-def test_list(go: Go) -> None:
-    """$RINT_LIST has what is declared: number, line, module [INT-17]."""
-    text = program(
-        "INTERRUPT DECL 20 WHEN $IN[1] DO A()\nINTERRUPT DECL 7 WHEN $IN[1] DO A()\n"
-        "INTERRUPT ON 7\n",
-        "DEF A()\nEND\n",
-    )
-    entries = [go(text).value("$RINT_LIST", place) for place in (1, 2, 3)]
-    assert [(7, 4), (20, 3), (0, 0)] == [
-        (one.get("INT_PRIO"), one.get("PROG_LINE")) for one in entries
-    ]
-    assert "MAIN" == text_of(entries[0].get("PROG_NAME"))
-
-
-def test_too_many(go: Go) -> None:
-    """So many as the profile says may be declared [INT-03]."""
-    profile = Profile.load()
-    profile = replace(profile, most={**profile.most, "interrupts": 2})
-    text = program(
-        "".join(f"INTERRUPT DECL {one} WHEN $IN[1] DO A()\n" for one in (4, 5, 6)),
-        "DEF A()\nEND\n",
-    )
-    assert "interrupt_count" == go(text, profile=profile).outcome.error.slug
-    assert "end" == go(text).outcome.ending
 
 
 BRAKING = program(
@@ -172,19 +142,6 @@ def test_resume_without_brake(go: Go) -> None:
 def test_resume_only_in_interrupts(go: Go) -> None:
     """Elsewhere RESUME is a fault [INT-11]."""
     assert "resume_place" == go(program("RESUME\n")).outcome.error.slug
-
-
-def test_resume_from_a_nested_interrupt(go: Go) -> None:
-    """RESUME ends all routines above the declaring level, nested ones too [INT-10]."""
-    text = SEARCH.replace(
-        "INTERRUPT ON 10\n",
-        "INTERRUPT ON 10\nINTERRUPT DECL 20 WHEN $IN[2] DO SLOW()\nINTERRUPT ON 20\n",
-    )
-    text += "DEF SLOW()\nWAIT SEC 0.9\n$OUT[7]=TRUE\nEND\n"
-    ran = go(text, "t=1.2 IN[2]=TRUE\nt=1.5 IN[1]=TRUE")
-    assert [10, 20] == [one.fields["priority"] for one in ran.told("interrupt_leave")]
-    assert [] == ran.outputs()
-    assert 1 == ran.last("I")
 
 
 def test_interrupt_behind_the_last_line(go: Go) -> None:

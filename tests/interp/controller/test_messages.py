@@ -37,27 +37,6 @@ def test_notification(go: Go) -> None:
     assert False is ran.last("B")
 
 
-def test_state_message_is_taken_away(go: Go) -> None:
-    """A state stays until the program takes it away [FCT-10]."""
-    ran = go(
-        program(
-            FILL + "H=SET_KRLMSG(#STATE,MSG,PAR[],OPT)\nB=EXISTS_KRLMSG(H)\n"
-            "I=1\nB=CLEAR_KRLMSG(H)\nB=EXISTS_KRLMSG(H)\n"
-        )
-    )
-    assert [True, True, False] == [
-        one.fields["value"] for one in ran.told("assign") if one.fields["name"] == "B"
-    ]
-
-
-def test_quit_message_is_confirmed(go: Go) -> None:
-    """One to be acknowledged goes when the operator does so [FCT-10]."""
-    body = (
-        FILL + "H=SET_KRLMSG(#QUIT,MSG,PAR[],OPT)\nWHILE EXISTS_KRLMSG(H)\nWAIT SEC 0.1\nENDWHILE\n"
-    )
-    assert [1.08] == go(program(body), "on message 17 after 1 press CONFIRM").times("end")
-
-
 def test_confirm_statement(go: Go) -> None:
     """CONFIRM acknowledges a message from the program [FCT-10]."""
     body = (

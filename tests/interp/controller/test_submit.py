@@ -18,17 +18,6 @@ def sub(body: str, **more: str) -> dict[str, str]:
     return {"sps.sub": SPS.format(body), **CONFIG, **more}
 
 
-def test_shares_data(go: Go) -> None:
-    """Both programs have the same data lists and the same clock [SUB-01]."""
-    files = sub("LOOP\nWAIT FOR $IN[1]\nCOUNT=COUNT+1\nWAIT FOR NOT $IN[1]\nENDLOOP\n")
-    text = "DEF main()\nINT I\nWAIT SEC 1\nI=COUNT\nEND\n"
-    ran = go(
-        text, "t=0.1 IN[1]=TRUE\nt=0.3 IN[1]=FALSE\nt=0.5 IN[1]=TRUE", files=files, submit="SPS"
-    )
-    assert 2 == ran.last("I")
-    assert {"robot", "submit"} == {one.task for one in ran.events}
-
-
 @pytest.mark.parametrize(("every", "passes"), [(1, 10), (4, 4)])
 def test_slices(go: Go, every: int, passes: int) -> None:
     """It computes in slices: so many requests every so many cycles [SUB-03]."""

@@ -12,11 +12,6 @@ def program(body: str) -> str:
     return f"DEF main()\nINT I\nBOOL B\nREAL X\n{body}END\n"
 
 
-def test_limits(go: Go) -> None:
-    """There are so many timers as the profile says [TIM-01]."""
-    assert 1444 == go(program("I=65\n$TIMER[I]=0\n")).outcome.error.number
-
-
 def test_flag_is_written(go: Go) -> None:
     """A flag that a program resets stays so until its timer passes zero from below [TIM-04]."""
     body = (
