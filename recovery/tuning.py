@@ -315,6 +315,8 @@ LEVEL_SYMBOLS = 12
 WORD_LIST_ALTERNATIVES = 8
 #: What a rule counts that an edit no longer calls, in symbols. Not measured.
 LOST_RULE_SYMBOLS = 12
+#: Letters of a word from which on another that has them is taken to be derived. Not measured.
+LEAST_STEM = 3
 #: Symbols by which a grammar may become longer where what holds in one place holds in another
 #: too. Not measured.
 FOLDING_SYMBOLS = 12

@@ -118,6 +118,7 @@ def _target(target: Record) -> list[Figure]:
     labels = {
         "shown": f"of the files shown that {name} parses",
         "held": f"of the files held out that {name} parses",
+        "held_known_words": "of those of them whose words some file shown has, or the start",
         "held_within_reach": "of those of them within reach: no neighbours that no file shown has",
         "sentences_rejected": f"of its random sentences {name} rejects",
         "negatives_accepted": "of the negatives accepted",

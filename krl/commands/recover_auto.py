@@ -160,7 +160,12 @@ def _say(number: int, growth: "Growth") -> None:
 def _say_target(record: dict[str, Any]) -> None:
     name, target = record["target"]["name"], record["target"]
     held = f", {_part(target['held'])} of those held out" if target["held"]["of"] else ""
-    reach = f" ({_part(target['held_within_reach'])} of those within reach)" if held else ""
+    reach = (
+        f" ({_part(target['held_within_reach'])} of those within reach, "
+        f"{_part(target['held_known_words'])} of those with known words)"
+        if held
+        else ""
+    )
     unseen = target["words_not_shown"]
     typer.echo(
         f"of the files that {name} parses: {_part(target['shown'])} of those shown{held}{reach}\n"

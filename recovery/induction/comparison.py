@@ -32,6 +32,8 @@ class Comparison(TypedDict):
     ``shown`` and ``held``: of the files that the target parses, how many it parses too.
     ``held_within_reach``: the same of those held out in which no two neighbours are, as kinds of
     token of the target, that no file shown has. What lies beyond takes a guess.
+    ``held_known_words``: the same of those held out with no word among ``words_not_shown`` that the
+    grown grammar has not got either, as from its start: more no growth can read.
     ``words_not_shown``: reserved words of the target in files held out that no file shown has.
     ``sentences_rejected``: of its random sentences, how many the target rejects.
     ``negatives_accepted``: of generated negatives, how many it accepts.
@@ -40,6 +42,7 @@ class Comparison(TypedDict):
     shown: Share
     held: Share
     held_within_reach: Share
+    held_known_words: Share
     words_not_shown: list[str]
     sentences_rejected: Share
     negatives_accepted: Share
@@ -59,10 +62,13 @@ def compared(
     negatives = NegativeSet(language.negatives(_NEGATIVES, _SEED))
     wanted = [file for file in held if judge.accepts(file.text)]
     near, unknown = within_reach(judge, shown, wanted)
+    missing = {judge.lexer.kind_of[w] for w in unknown if w not in reader.lexer.kind_of}
+    known = [file for file in wanted if missing.isdisjoint(judge.kinds(file.text))]
     return {
         "shown": _parsed(reader, [file for file in shown if judge.accepts(file.text)]),
         "held": _parsed(reader, wanted),
         "held_within_reach": _parsed(reader, near),
+        "held_known_words": _parsed(reader, known),
         "words_not_shown": unknown,
         "sentences_rejected": {
             "count": sum(not judge.accepts(text) for text in drawn),

@@ -77,9 +77,10 @@ class FailingLines:
     def is_repeated(self, lines: Set[int], edits: Sequence[Edit]) -> bool:
         """Whether lines of a single file show edits often enough to be no slip."""
         some = [self.occurrences[n] for n in lines]
-        if any(isinstance(edit, AddToken) for edit in edits):
-            return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
         # where nothing else is wrong in a file a form that is known may grow by a single line
         is_new = any(isinstance(edit, AddAlternative) for edit in edits)
-        is_all = not is_new and any(self._of_file[p] <= lines for line in some for p in line.files)
-        return is_all or sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE
+        if not is_new and any(self._of_file[p] <= lines for line in some for p in line.files):
+            return True
+        if any(isinstance(edit, AddToken) for edit in edits):
+            return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
+        return sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE

@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from itertools import pairwise, takewhile, zip_longest
 
+from grammar.notation.addresses import Address, element_at, sequences
 from grammar.notation.edits import (
     AddAlternative,
     AddRule,
@@ -20,6 +22,7 @@ from grammar.notation.edits import (
     RemoveAlternative,
     RemoveRule,
     Replace,
+    Widen,
 )
 from grammar.notation.model import (
     Alternative,
@@ -37,7 +40,7 @@ from recovery.induction.forms import LONG_LIST, FormWriter, samples_of
 from recovery.induction.steps import Inferred
 from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.tuning import FOLDING_SYMBOLS
+from recovery.tuning import FOLDING_SYMBOLS, LEAST_STEM
 
 
 def size(grammar: Grammar) -> int:
@@ -78,6 +81,7 @@ class Folding:
         unused = [n for n in self.rules.reaches if self.profile.is_free(n)]
         for name in unused:
             yield Inferred(f"nothing calls {name}", (RemoveRule(name),), ())
+        yield from self._named_types()
         families = sorted(self._families(), key=lambda f: (-len(f[2]), f[:2]))
         for rule, word, numbers in families:
             if len(numbers) > 1:
@@ -94,6 +98,107 @@ class Folding:
         yield from self._tails()
         yield from self._leading()
         yield from self._signs()
+        yield from self._modifiers()
+        yield from self._variables()
+        yield from self._derived_words(families)
+
+    def _modifiers(self) -> Iterator[Inferred]:
+        """A word that may be missing ahead of two kinds of line, ahead of others like them."""
+        for rule in self.grammar.rules:
+            found: dict[str, list[int]] = defaultdict(list)
+            plain = []
+            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+                first, *others = self._line(rule.name, number) or (None,)
+                if isinstance(first, Repeat) and first.operator == "?" and self._declares(others):
+                    found[rule.source_of(first.item)].append(number)
+                elif first is not None and self._declares([first, *others]):
+                    plain.append(number)
+            for word, having in found.items():
+                edits = tuple(Insert(rule.name, (n, 1), f"{word}?") for n in plain)
+                if len(having) > 1 and edits and word in self.grammar.by_name:
+                    title = f"{word} ahead of other lines in {rule.name}"
+                    yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+    def _declares(self, elements: Sequence[Element]) -> bool:
+        """Whether elements are one reserved word, a name, and no bracket behind it."""
+        words = self._words(elements[0]) if len(elements) > 2 else frozenset()
+        is_word = len(words) == 1 and self.types.isdisjoint(words)
+        return is_word and self._is_name(elements[1]) and not isinstance(elements[2], Literal)
+
+    def _variables(self) -> Iterator[Inferred]:
+        """Variables where only values were seen, in lines or blocks that read variables too."""
+        matcher, variable, lexer = self.rules.matcher, self.writer.variable, self.lexer
+        if variable is None:
+            return
+        of_names, widest = matcher.rules_for((lexer.name_kind,)), self.rules.widest
+        read = {k: matcher.rules_for((k,)) for k in range(1, len(lexer.names))}
+        kinds = {k for k, rules in read.items() if widest in rules and not lexer.is_keyword(k)}
+        values = {lexer.names[k] for k in kinds}.union(*(read[k] for k in kinds)) - of_names
+        values -= {lexer.name, *self._reserved}
+        reading = self.rules.including(variable)
+        for rule in self.grammar.rules:
+            if rule.is_lexer or rule.name in self.rules.recursive or rule.name in values:
+                continue
+            for number, alternative in enumerate(rule.alternatives, 1):
+                called = {e.name for e in walk(alternative) if isinstance(e, Reference)}
+                edits = tuple(
+                    Widen(rule.name, (*address, place), variable)
+                    for address, sequence in sequences(rule)
+                    if address[0] == number and not self._is_beside(rule, address, reading)
+                    for place, element in enumerate(sequence.elements, 1)
+                    if isinstance(element, Reference) and element.name in values
+                )
+                if edits and called & reading:
+                    title = f"variables beside values in {rule.name} {number}"
+                    yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+    def _is_beside(self, rule: Rule, address: Address, some: frozenset[str]) -> bool:
+        """Whether a sequence is one of a choice of which another is one of some rules."""
+        element = element_at(rule, address[:-1]) if len(address) > 1 else None
+        group = element.item if isinstance(element, Repeat) else element
+        return isinstance(group, Group) and any(
+            isinstance(e, Reference) and e.name in some
+            for a in group.alternatives
+            for e in a.elements[: len(a.elements) == 1]
+        )
+
+    def _derived_words(self, families: Sequence[tuple[str, str, list[int]]]) -> Iterator[Inferred]:
+        """Words that are another one and more, as ``PTP_REL`` is: the same operand and ending."""
+        single = [(r, w, ns[0]) for r, w, ns in families if len(ns) == 1 and w in self._reserved]
+        pairs = [(s, o) for s in single for o in single if o[1] in s[1] and o[1] != s[1]]
+        for (rule, word, number), (other, base, place) in pairs:
+            own, wide = self._line(rule, number), self._line(other, place)
+            narrow, operand = own[1], wide[1]
+            if len(base) < LEAST_STEM or not isinstance(operand, Reference):
+                continue
+            edits: list[Edit] = []
+            is_narrower = isinstance(narrow, Reference) and narrow.name != operand.name
+            if is_narrower and self.rules.includes(operand.name, self._source(rule, [narrow])):
+                edits.append(Replace(rule, (number, 2), operand.name))
+            ending = [*takewhile(self._is_ending, reversed(wide))][::-1]
+            if ending and not self._is_ending(own[-1]):
+                at = (number, len(own) + 1)
+                edits.append(Insert(rule, at, self._source(other, ending)))
+            if edits:
+                title = f"{word} goes on as {base} does"
+                yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
+
+    @cached_property
+    def _reserved(self) -> frozenset[str]:
+        """The reserved words that are no names and no types."""
+        words = {w for w, kind in self.lexer.kind_of.items() if self.lexer.is_keyword(kind)}
+        return frozenset(words - self.types)
+
+    def _named_types(self) -> Iterator[Inferred]:
+        """Words that declare as types do are names: where a type may stand a name may."""
+        heads = [self._words(e[0]) for _, _, e in self._lines() if self._is_name(e[1])]
+        known = self.rules.type_words - self.rules.named_words
+        of_types = [words for words in heads if len(words & known) > 1]
+        for word in sorted(frozenset[str]().union(*of_types) - self.types - {self.lexer.name}):
+            if self.rules.names:
+                edits = (AddAlternative(self.rules.names, word),)
+                title = f"{word} is a name as types are"
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
 
     def _tails(self) -> Iterator[Inferred]:
         """One form for what follows a declared name, where alternatives of a rule differ in it."""
@@ -104,9 +209,12 @@ class Folding:
             for number in range(1, len(rule.alternatives) + 1):
                 elements = self._line(rule.name, number)
                 for place, (left, right) in enumerate(pairwise(elements), 1):
+                    if self._is_name(left):
+                        break  # a name and members of it
                     if self._is_kind(left) and self._is_name(right):
-                        found.append((number, place + 1, elements[place + 1 :]))
-                        break
+                        if not any(isinstance(e, Literal) for e in elements[place:]):
+                            found.append((number, place, elements[place:]))
+                        break  # a bracket is that of a routine
             sources = {self._source(rule.name, tail) for _, _, tail in found}
             if len(sources) < 2:
                 continue
@@ -114,8 +222,6 @@ class Folding:
             form = self.writer.form(list(shapes))
             edits = [
                 Replace(rule.name, (number, place + 1), form, len(tail))
-                if tail
-                else Insert(rule.name, (number, place + 1), form)
                 for number, place, tail in found
                 if form and self._source(rule.name, tail) != form
             ]

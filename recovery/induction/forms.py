@@ -196,6 +196,8 @@ class FormWriter:
         indexed = self._indexed(kinds, needed)
         if indexed:
             return [indexed]
+        if len(kinds) == 1 and not needed and self._has_operator(*kinds):
+            return [" ".join(map(self._token, *kinds))]
         # a single reserved word beside names says nothing of other values
         reserved = {k for k in single if self.rules.lexer.is_keyword(k)}
         if len(reserved) == 1 and len(kinds) > 1 and not reserved <= self.rules.type_kinds:
@@ -227,12 +229,12 @@ class FormWriter:
 
     def _of_values(self, found: list[str]) -> list[str]:
         """The rules with variables for mere names: beside values a name is one of a variable."""
-        if len(found) > 1 and self._name() in found and self._variable:
-            return [self._variable if rule == self._name() else rule for rule in found]
+        if len(found) > 1 and self._name() in found and self.variable:
+            return [self.variable if rule == self._name() else rule for rule in found]
         return found
 
     @cached_property
-    def _variable(self) -> str | None:
+    def variable(self) -> str | None:
         """The narrowest rule of names and of what may follow them, and of no other value."""
         rules, lexer = self.rules, self.rules.lexer
         others = [(k,) for k in lexer.kind_of.values() if k != rules.lexer.name_kind]
@@ -281,6 +283,15 @@ class FormWriter:
         inner = sum(self.rules.includes(rule, other) for other in usual)
         return self._reads[rule], inner, -self.rules.uses[rule], usual.index(rule)
 
+    def _has_operator(self, kinds: Sequence[int]) -> bool:
+        """Whether an operand is names with signs between them, and more than one operand."""
+        tokens = [(kind, None) for kind in kinds]
+        is_of_names = set(kinds[::2]) == {self.rules.lexer.name_kind}
+        return is_of_names and len(self.reader.symbols(tokens, atoms=True)) > 1
+
+    def _token(self, kind: int) -> str:
+        return self._name() if kind == self.rules.lexer.name_kind else self.reader.text(kind)
+
     def _name(self) -> str:
         """What is written for a name."""
         return self.rules.names or self.rules.lexer.name
@@ -321,6 +332,8 @@ def _sketch(texts: Iterable[str]) -> tuple[str, ...]:
 def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]:
     """The symbols of lines with what makes them the same."""
     shapes = {tuple(s.text for s in line) for line in lines}
+    # two operands behind a word: other lines may have another word between, and end otherwise
+    declared = {s[i : i + 3] for s in shapes for i in range(len(s)) if s[i : i + 3][1:] == ("", "")}
     passing = {
         text
         for shape in shapes
@@ -328,7 +341,10 @@ def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]
         if text
         and text[0] not in "'"
         and text != _LIST
-        and (*shape[:place], *shape[place + 1 :]) in shapes
+        and (
+            (*shape[:place], *shape[place + 1 :]) in shapes
+            or (place and (shape[place - 1], *shape[place + 1 : place + 3]) in declared)
+        )
     }
     out = []
     for line in lines:

@@ -8,9 +8,9 @@ from itertools import pairwise
 
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Insert, Replace
-from grammar.notation.model import Repeat
+from grammar.notation.model import Element, Repeat
 from recovery.induction.forms import samples_of
-from recovery.induction.line_hosts import LineHosts, words_of
+from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms, optional
@@ -101,11 +101,14 @@ class LineEdits:
                 gathered[hosts].append((head, members, tails))
         for hosts, heads in gathered.items():
             # around each word those that have most kinds of tail in common with it
+            # of words that begin statements too those of types are no others
+            types = self.at.rules.type_words if self.hosts.has_statements(hosts) else frozenset()
             for head, _, tails in heads:
                 alike = [
                     h
                     for h in heads
                     if len(h[2] & tails) >= ALIKE_SHARE * min(len(h[2]), len(tails))
+                    and (h[0] in types) == (head in types)
                 ]
                 if len(alike) < 3:
                     continue
@@ -165,7 +168,7 @@ class LineEdits:
         words = head.split()
         for rule, place, first in self.hosts.all_lines:
             inside = [e for e in first if not (isinstance(e, Repeat) and e.operator == "?")]
-            leads = [words_of(e) for e in inside[:2]]
+            leads = [self.hosts.words_of(e) for e in inside[:2]]
             if not inside or words[0] not in leads[0]:
                 continue
             if len(words) > 1 and (len(leads) < 2 or words[1] not in leads[1]):
@@ -173,7 +176,7 @@ class LineEdits:
             title = f"{head} … in {rule}"
             # a word that may be missing at the head of other lines leaves the rest as it is
             led = {shape[0].text for shape in shapes} & self._prefixes
-            for word in sorted(led.difference(*map(words_of, first[:1]))):
+            for word in sorted(led - self.hosts.words_of(first[0])):
                 edits = (*self.forms.reserving(word), Insert(rule, place, f"{word}?"))
                 yield Inferred(title, edits, tuple(members))
             for at, tails in self._tails(rule, place, len(first), members).items():
@@ -187,9 +190,28 @@ class LineEdits:
                         Insert(rule, at, optional(f"{comma} {text}".strip())),
                     )
                     yield Inferred(title, edits, tuple(members))
-            for text in self.forms.of(shapes, samples_of(self.at.rules, first)):
+            alike, old = self._one_choice(rule, first, shapes)
+            for text in self.forms.of(alike, old):
                 edits = (*self.forms.reserving(text), Replace(rule, place, text, len(first)))
                 yield Inferred(title, edits, tuple(members), breadth=self.forms.lost(first, text))
+
+    def _one_choice(
+        self, rule: str, first: Sequence[Element], shapes: dict[tuple[Symbol, ...], list[int]]
+    ) -> tuple[dict[tuple[Symbol, ...], list[int]], list[tuple[Symbol, ...]]]:
+        """The shapes and what the elements of a rule read, a choice of words ahead as one symbol.
+
+        What goes on behind one of the words may go on behind the others.
+        """
+        words = self.hosts.words_of(first[0])
+        if len(words) < 2 or isinstance(first[0], Repeat):
+            return shapes, samples_of(self.at.rules, first)
+        choice = Symbol(self.at.grammar.by_name[rule].source_of(first[0]))
+        alike: dict[tuple[Symbol, ...], list[int]] = defaultdict(list)
+        for shape, numbers in shapes.items():
+            is_one = shape[0].text in words
+            alike[(choice, *shape[1:]) if is_one else shape] += numbers
+        rests = samples_of(self.at.rules, first[1:])
+        return alike, [(choice, *rest) for rest in rests]
 
     def _tails(
         self, rule: str, place: Address, count: int, members: Sequence[int]

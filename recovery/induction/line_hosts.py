@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from grammar.notation.addresses import Address, sequences
@@ -22,14 +22,14 @@ class LineHosts:
         """The words that alternatives begin with, lists of words left out, and of how many."""
         found: dict[str, int] = defaultdict(int)
         for _, _, first in self._alternatives():
-            for word in words_of(first[0]):
+            for word in self.words_of(first[0]):
                 found[word] += 1
         return found
 
     @cached_property
     def inner_words(self) -> frozenset[str]:
         """The words that lines within blocks begin with."""
-        return frozenset[str]().union(*(words_of(e[0]) for _, _, e in self._inner_lines()))
+        return frozenset[str]().union(*(self.words_of(e[0]) for _, _, e in self._inner_lines()))
 
     def _alternatives(self) -> Iterator[tuple[str, int, tuple[Element, ...]]]:
         """Alternatives that may be a line: rule, number, and the elements of the first line."""
@@ -82,6 +82,10 @@ class LineHosts:
             self._hosts_of[before] = tuple(sorted(entered & self._whole_lines) + lines)
         return self._hosts_of[before]
 
+    def has_statements(self, hosts: Sequence[str]) -> bool:
+        """Whether one of some rules gathers what is all of a line but its end."""
+        return not self._whole_lines.isdisjoint(hosts)
+
     def ending(self, host: str) -> str:
         """What an alternative of a rule ends with: a line end, where those of the rule do."""
         profile = self.at.profile
@@ -118,17 +122,26 @@ class LineHosts:
                 )
         return frozenset(filter(self.at.profile.is_hub, found & self.at.rules.reaches.keys()))
 
+    def words_of(self, element: Element) -> frozenset[str]:
+        """The words that an element is: one, or a choice of them, no name among them."""
+        match element:
+            case Reference(name=name, is_token=True) if name.isupper():
+                return frozenset({name})
+            case Reference(name=name, is_token=False):
+                words = self.at.profile.vocabulary.words_of(name)
+                return words if all(map(self._is_reserved, words)) else frozenset()
+            case Group(alternatives=alternatives):
+                return frozenset(
+                    w
+                    for a in alternatives
+                    if len(a.elements) == 1
+                    for w in self.words_of(a.elements[0])
+                )
+            case Repeat(item=item):
+                return self.words_of(item)
+            case _:
+                return frozenset()
 
-def words_of(element: object) -> frozenset[str]:
-    """The words that an element is: one, or a choice of them."""
-    match element:
-        case Reference(name=name) if name.isupper():
-            return frozenset({name})
-        case Group(alternatives=alternatives):
-            return frozenset(
-                w for a in alternatives if len(a.elements) == 1 for w in words_of(a.elements[0])
-            )
-        case Repeat(item=item):
-            return words_of(item)
-        case _:
-            return frozenset()
+    def _is_reserved(self, word: str) -> bool:
+        lexer = self.at.lexer
+        return lexer.is_keyword(lexer.kind_of[word])

@@ -57,9 +57,13 @@ class LineSymbols:
         items = {right - 1 for left, right in pairwise(ends) if right == left + 2}
         if len(items) < len(ends) - 1 or not any(symbols[i] == name for i in items):
             return symbols
-        # the first item stands behind the name of what the list belongs to
+        # the first item stands behind the name of what the list belongs to, or behind its type
         first = ends[0] - 1
-        items |= {first} if first > 0 and symbols[first - 1] == name else set()
+        ahead = symbols[first - 1].operand if first > 0 else None
+        is_named = ahead is not None and (
+            ahead == name.operand or not self.rules.type_kinds.isdisjoint(ahead.kinds)
+        )
+        items |= {first} if is_named else set()
         # a word that the grammar does not reserve yet is one of the names
         kinds = {
             i: self.lexer.kind_of.get(symbols[i].text, self.lexer.name_kind)

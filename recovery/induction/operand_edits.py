@@ -43,7 +43,9 @@ class OperandEdits:
         for text, members in infix.items():
             heads = {self.at.text(self.at.tokens[n][0]) for n in members}
             if text[0] != "'" and len(heads) == 1 and None not in heads:
-                continue  # a word of one statement, as STEP is
+                at = ((self.at.tokens[n], self.at.lines[n].form.index) for n in members)
+                if all(self.at.opened(tokens, index) is None for tokens, index in at):
+                    continue  # a word of one statement, as STEP is
             for edits, level in self._as_infix(text):
                 breadth = LEVEL_SYMBOLS * (len(self.at.rules.ladder) - level)
                 title = f"{text} between operands"

@@ -140,7 +140,7 @@ class Induction:
     ) -> tuple[list[Taken], list[Refused]]:
         """What is taken and what refused, of what is inferred from the lines that fail."""
         recognizer = judge.recognizer
-        keywords = self._words(recognizer, failures, least[0])
+        keywords = self._words(recognizer, failures, least)
         if inner:
             whole = self._with_literals(failures, recognizer)
             if whole is not None:
@@ -185,7 +185,9 @@ class Induction:
             taken = []
         return taken, [*lost, *refused]
 
-    def _words(self, recognizer: Recognizer, failures: Failures, least: int) -> WouldBeKeywords:
+    def _words(
+        self, recognizer: Recognizer, failures: Failures, least: tuple[int, int]
+    ) -> WouldBeKeywords:
         """The words that the files have as keywords; worked out anew for another lexer."""
         lexer = recognizer.lexer
         if self._corpus is None:
@@ -194,7 +196,7 @@ class Induction:
         if known is None or (known.lexer.names, known.least) != (lexer.names, least):
             types = OperandRules(recognizer).type_words
             read = names_read(self.shown.files, failures, lexer)
-            known = self._keywords = WouldBeKeywords(self._corpus, lexer, read, types, least)
+            known = self._keywords = WouldBeKeywords(self._corpus, lexer, read, types, *least)
         return known
 
     def _block_gain(

@@ -185,12 +185,23 @@ class OperandRules:
 
     @cached_property
     def usual(self) -> tuple[str, ...]:
-        """Rules that may be written for an operand: those that other places use, in their order."""
+        """Rules that may be written for an operand: those that other places use, in their order.
+
+        None that a reserved word begins which is neither a value nor a type: that is a statement.
+        """
         inner = self.recursive - {self.widest}
+        begun = [
+            self.matcher.begun_by((kind,))
+            for kind in range(1, len(self.lexer.names))
+            if self.lexer.is_keyword(kind) and kind not in self.type_kinds
+        ]
+        led = frozenset[str]().union(*(some for some in begun if self.widest not in some))
         return tuple(
             rule.name
             for rule in self.grammar.rules
-            if rule.name in self.within_lines and (rule.name not in inner or self.uses[rule.name])
+            if rule.name in self.within_lines
+            and (rule.name not in inner or self.uses[rule.name])
+            and rule.name not in led
         )
 
     @cached_property

@@ -91,15 +91,17 @@ class WouldBeKeywords:
         read: Mapping[str, Collection[str]],
         types: Collection[str],
         least: int = WOULD_BE_ORIGINS,
+        least_files: int = LEAST_FILES_ALONE,
     ) -> None:
         """``read`` are names in lines that the grammar reads, with the origins that use them so.
 
         ``types`` are reserved words that stand where the names of types may. ``least`` is
         how many origins a form needs; where it is 1, two files of one origin show a word too.
+        With ``least_files`` of 1 a word between operands of an expression needs no second one.
         """
         self.corpus = corpus
         self.lexer = lexer
-        self.least = least
+        self.least = least, least_files
         alone = WOULD_BE_FILES_ALONE if least > 1 else LEAST_FILES_ALONE
         self._types = frozenset(types)
         self._name = lexer.name_kind
@@ -111,6 +113,7 @@ class WouldBeKeywords:
         fillers: dict[_Surroundings, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
         files: Counter[tuple[_Surroundings, str]] = Counter()
         uses: Counter[str] = Counter()
+        operators: Counter[str] = Counter()
         beside: set[_Surroundings] = set()
         for number, line in enumerate(corpus.lines):
             for use in self._uses(line):
@@ -119,6 +122,8 @@ class WouldBeKeywords:
                     continue
                 files[use.surroundings, use.word] += corpus.counts[number]
                 uses[use.word] += corpus.counts[number]
+                if use.surroundings[1:] == (_OPERAND, _OPERAND) and _in_expression(line, use.place):
+                    operators[use.word] += corpus.counts[number]
                 if use.is_beside:
                     beside.add(use.surroundings)
         self._closed: set[_Surroundings] = set()
@@ -140,7 +145,9 @@ class WouldBeKeywords:
         self.words = frozenset(
             word
             for word, count in meant.items()
-            if (len(places[word]) >= WOULD_BE_ORIGINS and count >= WOULD_BE_FILES) or count >= alone
+            if (len(places[word]) >= WOULD_BE_ORIGINS and count >= WOULD_BE_FILES)
+            or count >= alone
+            or (least_files == 1 and operators[word] == uses[word])
             if heads[word] >= WOULD_BE_FILES or count >= WOULD_BE_SHARE * uses[word]
         )
         typed = {
@@ -260,3 +267,9 @@ def _is_of_types(surroundings: _Surroundings) -> bool:
     """Whether they are a word and an operand, between which the names of types stand."""
     _, ahead, behind = surroundings
     return behind == _OPERAND and ahead not in ("", _OPERAND) and ahead.isidentifier()
+
+
+def _in_expression(line: Sequence[str], place: int) -> bool:
+    """Whether a place is behind an equals sign or within brackets, where no type can be."""
+    ahead = line[:place]
+    return "=" in ahead or ahead.count("(") > ahead.count(")")

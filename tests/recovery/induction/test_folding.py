@@ -132,6 +132,79 @@ def test_what_holds_in_one_place_holds_in_another(
     assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
 
 
+_LIKE = """grammar Like;
+
+program : (line NEWLINE)* EOF ;
+
+line
+    : (INT | REAL | FRAME) name index?
+    | DECL type name index?
+    | GLOBAL? ENUM name name
+    | GLOBAL? STRUC name type name
+    | SIGNAL name index
+    | MOVE target (FAST | SLOW)*
+    | MOVE_REL name
+    | STEP expression (BY NUMBER)?
+    ;
+
+type : INT | REAL | name ;
+
+target : variable | '(' expression ')' ;
+
+expression : primary ('+' primary)* ;
+
+primary : NUMBER | variable | '(' expression ')' ;
+
+variable : name index? ('.' name index?)* ;
+
+index : '[' expression ']' ;
+
+name : NAME ;
+
+INT : 'INT' ;
+REAL : 'REAL' ;
+FRAME : 'FRAME' ;
+DECL : 'DECL' ;
+GLOBAL : 'GLOBAL' ;
+ENUM : 'ENUM' ;
+STRUC : 'STRUC' ;
+SIGNAL : 'SIGNAL' ;
+MOVE : 'MOVE' ;
+MOVE_REL : 'MOVE_REL' ;
+STEP : 'STEP' ;
+BY : 'BY' ;
+FAST : 'FAST' ;
+SLOW : 'SLOW' ;
+PLUS : '+' ;
+DOT : '.' ;
+LPAREN : '(' ;
+RPAREN : ')' ;
+LBRACKET : '[' ;
+RBRACKET : ']' ;
+NAME : [A-Z]+ ;
+NUMBER : [0-9]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' '+ -> skip ;
+"""
+
+
+@pytest.mark.parametrize(
+    ("title", "text"),
+    [
+        ("FRAME is a name as types are", "DECL FRAME A\n"),
+        ("GLOBAL ahead of other lines in line", "GLOBAL SIGNAL A [1]\n"),
+        ("variables beside values in line 8", "STEP 1 BY A[2]\n"),
+        ("MOVE_REL goes on as MOVE does", "MOVE_REL A[1] FAST SLOW\n"),
+    ],
+)
+def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
+    """Types are names, a word ahead of two lines is ahead of others, values may be variables."""
+    grammar = read(_LIKE)
+    folds = {fold.title: fold for fold in Folding(Recognizer(grammar), ()).candidates()}
+    folded = apply(grammar, folds[title].edits)
+    assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
+
+
 def test_a_fold_reads_all_that_was_read(grammar: Grammar, folds: dict[str, Inferred]) -> None:
     """Sentences of the grammar are sentences of each fold, which is well formed."""
     sentences, speller, random = Sentences(grammar), Speller(grammar), Random(3)

@@ -115,6 +115,18 @@ def test_a_single_word_beside_names(writer: FormWriter) -> None:
     )
 
 
+def test_a_word_between_a_word_and_operands(writer: FormWriter) -> None:
+    """What some lines have ahead of the same operands may be missing, however the lines end."""
+    lines = ("PAIR INSIDE A B", "PAIR LIST A B[1]", "PAIR A B = 1", "PAIR INSIDE LIST A B = 1")
+    form = writer.form([_symbols(writer, line) for line in lines])
+    assert "PAIR INSIDE? LIST? NAME NAME index? ('=' expression)?" == form
+
+
+def test_names_with_a_sign_between(writer: FormWriter) -> None:
+    """An operand that is never anything but two names and a sign is written so."""
+    assert "PAIR NAME '+' NAME" == writer.form([_symbols(writer, "PAIR A + B")])
+
+
 def test_a_list_may_hold_itself() -> None:
     """Samples of a rule that is a list of itself come to an end: the inner one is an operand."""
     nested = _GRAMMAR.replace(
