@@ -295,9 +295,8 @@ FILES_WITH_ONE_DAMAGED = 6
 BLOCK_MIDDLES = 3
 #: The part of what one rule reads that two may read together to be preferred. Not measured.
 READ_TOGETHER_SHARE = 0.8
-#: Lists of so many kinds, none of them longer than this, are never longer. Not measured.
-SHORT_LIST_KINDS = 8
-SHORT_LIST = 3
+#: Kinds of list from which on a first item may have a form of its own. Not measured.
+MANY_LISTS = 8
 #: Lines of a form that a rule is tried on. Bound on time.
 MOST_SAMPLES = 64
 #: Lists of more than one item from which on none is taken to be long where none is, and the items

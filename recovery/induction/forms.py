@@ -17,10 +17,15 @@ from itertools import pairwise
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
-from recovery.tuning import MOST_SAMPLES, READ_TOGETHER_SHARE, SHORT_LIST, SHORT_LIST_KINDS
+from recovery.tuning import (
+    ITEMS_BEHIND_THE_FIRST,
+    MANY_LISTS,
+    MOST_SAMPLES,
+    READ_TOGETHER_SHARE,
+)
 
 #: So many items are more than a short list has.
-LONG_LIST = SHORT_LIST + 1
+LONG_LIST = ITEMS_BEHIND_THE_FIRST + 2
 _COMMA = "','"
 _EQUALS = "'='"
 #: A list of pieces with commas between: its text is this, ``inside`` is none.
@@ -136,11 +141,6 @@ class FormWriter:
             if single[-1] in "?*":
                 return out, None
             single += "?"
-        if len(cut) >= SHORT_LIST_KINDS and max(map(len, cut)) <= SHORT_LIST:
-            text = ""
-            for _ in range(max(map(len, cut)) - 1):
-                text = f" (',' {single}{text})?"
-            return out, f"{single}{text}"
         return out, f"{self._first_item(ahead, behind) or single} (',' {single})*"
 
     def _first_item(
@@ -149,7 +149,7 @@ class FormWriter:
         """The form of a first item, where many lists begin with what only some go on with."""
         shapes = {tuple(s.text for s in piece) for piece in ahead}
         others = {tuple(s.text for s in piece) for piece in behind}
-        if len(ahead) < SHORT_LIST_KINDS or () in others or not shapes < others:
+        if len(ahead) < MANY_LISTS or () in others or not shapes < others:
             return None
         return self.form([p for p in (*ahead, *behind) if tuple(s.text for s in p) in shapes])
 

@@ -75,6 +75,11 @@ def _symbols(writer: FormWriter, text: str) -> tuple[Symbol, ...]:
     return writer.reader.symbols([(kind, None) for kind in kinds if kind])
 
 
+def test_no_statement_is_an_operand(writer: FormWriter) -> None:
+    """What a reserved word begins that is no value is not written for an operand."""
+    assert ["assignment", "expression", "index", "primary", "variable"] == sorted(writer.rules.usual)
+
+
 @pytest.mark.parametrize("rule", ["list", "marks", "pair", "inside"])
 def test_a_rule_gives_itself(grammar: Grammar, writer: FormWriter, rule: str) -> None:
     """The form of what a rule reads is the rule: what recurs goes on to, an index stays one."""
