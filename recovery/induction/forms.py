@@ -198,14 +198,16 @@ class FormWriter:
             return [indexed]
         if len(kinds) == 1 and not needed and self._has_operator(*kinds):
             return [" ".join(map(self._token, *kinds))]
-        # a single reserved word beside names says nothing of other values
+        # a single reserved word beside names, or several that are no values, say nothing of values
         reserved = {k for k in single if self.rules.lexer.is_keyword(k)}
-        if len(reserved) == 1 and len(kinds) > 1 and not reserved <= self.rules.type_kinds:
+        is_plain = len(reserved) == 1 or not any(map(self.reader.is_value, reserved))
+        is_some = 0 < len(reserved) < len(kinds) and reserved.isdisjoint(self.rules.type_kinds)
+        if is_some and is_plain:
             beside = {k for k in kinds if k[0] not in reserved}
             is_name = not needed and beside == {(self.rules.lexer.name_kind,)}
             others = self._name() if is_name else self._indexed(beside, needed)
             if others:
-                return [others, *(names[k] for k in reserved)]
+                return [others, *sorted(names[k] for k in reserved)]
         usual = self.rules.usual
         reads = {
             rule: {k for k in kinds if rule in self.rules.matcher.rules_for(k)}

@@ -379,12 +379,12 @@ class SymbolReader:
                 else not before[-1].is_operand
                 and (before[-1].text.strip("'"), self.lexer.names[kind]) not in self.rules.beside
             )
-            if not is_name and not self._is_value(kind):
+            if not is_name and not self.is_value(kind):
                 return 0
         end = next((i for i in range(at, len(tokens)) if tokens[i][1]), len(tokens))
         return self._longest_of(tuple(k for k, _ in tokens[at:end]), atoms=atoms)
 
-    def _is_value(self, kind: int) -> bool:
+    def is_value(self, kind: int) -> bool:
         """Whether a word is a value or leads one, as TRUE and NOT do, and no name."""
         rule, matcher = self.rules.widest, self.rules.matcher
         if self.rules.names and self.rules.names in matcher.rules_for((kind,)):

@@ -6,7 +6,7 @@ from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.forms import FormWriter, samples_of
-from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
+from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
 
 _GRAMMAR = """grammar Toy;
 
@@ -77,7 +77,7 @@ def _symbols(writer: FormWriter, text: str) -> tuple[Symbol, ...]:
 
 def test_no_statement_is_an_operand(writer: FormWriter) -> None:
     """What a reserved word begins that is no value is not written for an operand."""
-    assert ["assignment", "expression", "index", "primary", "variable"] == sorted(writer.rules.usual)
+    assert ["assignment", "expression", "index", "variable"] == sorted(writer.rules.usual)
 
 
 @pytest.mark.parametrize("rule", ["list", "marks", "pair", "inside"])
@@ -118,6 +118,14 @@ def test_a_single_word_beside_names(writer: FormWriter) -> None:
     assert "PAIR (NAME | ON)" == writer.form(
         [_symbols(writer, line) for line in ("PAIR A", "PAIR ON")]
     )
+
+
+def test_words_beside_names_with_an_index(writer: FormWriter) -> None:
+    """Reserved words that are no values, as operands of a list, say nothing of other values."""
+    kinds = writer.rules.lexer.kind_of
+    words = (Symbol("", Operand((kinds[word],))) for word in ("LEFT", "RIGHT"))
+    lines = [_symbols(writer, text)[1:] for text in ("PAIR A", "PAIR A[1]")]
+    assert "(NAME index? | LEFT | RIGHT)" == writer.form([*lines, *((word,) for word in words)])
 
 
 def test_a_word_between_a_word_and_operands(writer: FormWriter) -> None:
