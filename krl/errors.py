@@ -15,6 +15,8 @@ from typing import Final
 
 import typer
 
+from krl.plain_parameters import take_plainly
+
 FINE: Final = 0
 FINDINGS: Final = 1
 BAD_INPUT: Final = 2
@@ -85,6 +87,7 @@ def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
 def _invoke(app: typer.Typer, arguments: list[str]) -> int:
     # Not `command.main`: it ends the process by itself when the reader of our output goes away.
     command = typer.main.get_command(app)
+    take_plainly(command)
     try:
         with command.make_context("krl", arguments) as context:
             result = command.invoke(context)

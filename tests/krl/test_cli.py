@@ -121,8 +121,11 @@ def test_start_is_quick() -> None:
     ("words", "unwanted"),
     [
         (["--version"], ("krl.commands.run", "krl.commands.bench", "rich")),
-        (["check", "one.src"], ("interp", "numpy", "rich", "lark")),
-        (["run", "one.src"], ("numpy", "interp.robot.planning.planned_arm", "rich", "lark")),
+        (["check", "one.src"], ("interp", "numpy", "rich", "lark", "pydantic")),
+        (
+            ["run", "one.src", "--robot", "none"],
+            ("numpy", "interp.robot.planning.planned_arm", "rich", "lark", "pydantic"),
+        ),
     ],
 )
 def test_a_command_loads_what_it_does(
