@@ -86,10 +86,3 @@ def diverged(
         requests = [fact for fact in expected if fact[0] not in EVERY_KIND]
         found = difference(executor, requests, trace_of(program, untraced(executor), seed))
     return found
-
-
-def examine(program: Prepared, seed: str, executors: Sequence[str]) -> list[Difference]:
-    """Run a program on executors; where each of them diverges from the first one, if it does."""
-    expected = trace_of(program, EXECUTORS[executors[0]], seed)
-    found = (diverged(program, name, expected, seed) for name in executors[1:])
-    return [one for one in found if one is not None]

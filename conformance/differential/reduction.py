@@ -23,11 +23,10 @@ _Unit = tuple[int, frozenset[int]]
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """A program that was made small; ``tried`` is how many others were looked at on the way."""
+    """A program that was made small."""
 
     files: Files
     statements: int
-    tried: int
 
 
 def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_500) -> Reduced:
@@ -44,7 +43,7 @@ def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_5
         while search.simplify():
             goes_on = True
     search.tidy()
-    return Reduced(search.files, statements_of(search.files), search.tried)
+    return Reduced(search.files, statements_of(search.files))
 
 
 def statements_of(files: Files) -> int:

@@ -63,11 +63,6 @@ def _candidates(
     return sorted(found, key=lambda one: -one[0])
 
 
-def similarity(one: Sequence[str], other: Sequence[str]) -> float:
-    """What share of their lines two things have in common, from 0 to 1."""
-    return _likeness(Counter(one), Counter(other))
-
-
 def _likeness(one: Counter[str], other: Counter[str]) -> float:
     size, size2 = one.total(), other.total()
     if min(size, size2) < _LEAST / 2 * max(size, size2):

@@ -17,7 +17,6 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import takewhile
 from pathlib import PurePosixPath
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -129,12 +128,6 @@ class Source:
         """The comment of a line, alone on it or behind something; a line has one at most."""
         return self._by_line.get(line)
 
-    @cached_property
-    def headers(self) -> tuple[str, ...]:
-        """The lines of the controller's file system that the text begins with, ``&ACCESS`` …"""
-        written = (line for line in self.lines if line.strip(" \t"))
-        return tuple(line.lstrip(" \t") for line in takewhile(_is_header, written))
-
     # ----------------------------------------------------------------------------- folds
 
     @cached_property
@@ -176,10 +169,6 @@ class Source:
                 yield fold(comment.line)
         while opened:
             yield fold(None)
-
-
-def _is_header(line: str) -> bool:
-    return line.lstrip(" \t").startswith("&")
 
 
 def _split(title: str) -> tuple[str, bool, str]:

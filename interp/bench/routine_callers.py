@@ -28,32 +28,26 @@ _PREFIX: Final = "KRL_CALLS_"
 
 @dataclass(frozen=True, slots=True)
 class Callers:
-    """The file of a program with routines added, and which of them calls which routine.
-
-    ``uncalled`` are those that cannot be called, because nothing tells the type of a parameter.
-    """
+    """The file of a program with routines added, and which of them calls which routine."""
 
     source: Source
     called: Mapping[str, str]
-    uncalled: tuple[str, ...]
 
 
 def with_callers(program: CheckedProgram) -> Callers:
     """Add routines to the first file of a program that call those with parameters."""
     unit = program.main
-    parts, called, uncalled = [unit.source.text], {}, []
+    parts, called = [unit.source.text], {}
     for number, routine in enumerate(program.routines_of(unit)):
         if program.can_begin(routine):
             continue
         name = f"{_PREFIX}{number}"
         lines = _lines(program, routine, name)
-        if lines is None:
-            uncalled.append(routine.name)
-        else:
+        if lines is not None:
             parts += lines
             called[name] = routine.name
     source = replace(unit.source, text="\n".join([*parts, ""])) if called else unit.source
-    return Callers(source, called, tuple(uncalled))
+    return Callers(source, called)
 
 
 def _lines(program: CheckedProgram, routine: Routine, name: str) -> list[str] | None:

@@ -23,11 +23,6 @@ class PosePath(Protocol):
     """A path of poses."""
 
     @property
-    def kind(self) -> str:
-        """LIN, CIRC, SPL or BLEND: what sort of curve it is."""
-        ...
-
-    @property
     def length(self) -> float:
         """The way from start to end in mm."""
         ...
@@ -53,7 +48,6 @@ class StraightLine:
     start: Array
     end: Array
     orientation: Orientation
-    kind: str = "LIN"
 
     @property
     def length(self) -> float:
@@ -80,7 +74,6 @@ class Arc:
 
     circle: Circle
     orientation: Orientation
-    kind: str = "CIRC"
 
     @property
     def length(self) -> float:
@@ -116,7 +109,6 @@ class Blend:
     first: PosePath
     second: PosePath
     transition: Transition
-    kind: str = "BLEND"
 
     @property
     def length(self) -> float:

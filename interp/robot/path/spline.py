@@ -11,7 +11,7 @@ shape is an assumption; that the path passes the points is not.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -99,11 +99,9 @@ class _Swept:
 class Free:
     """An SPL: a curve of the fifth degree over its own parameter, told over its length.
 
-    ``ends`` has position, first and second derivative at both, ``(2, 3,
-    3)``, over a parameter that grows by ``span``.
+    ``ends`` has position, first and second derivative at both ends, ``(2, 3, 3)``, over a parameter
+    that grows by ``span``.
     """
-
-    kind = "SPL"
 
     def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
         self._coefficients = _quintic(ends, span)
@@ -164,11 +162,7 @@ def pose_paths_of(chain: Sequence[Segment], *, is_constant: bool = False) -> lis
     if chain[0].chord < _SHORT:
         start, end = chain[0].start, chain[0].end
         turned = start.rotation if is_constant else end.rotation
-        return [
-            StraightLine(
-                start.position, start.position, turning(start.rotation, turned), chain[0].kind
-            )
-        ]
+        return [StraightLine(start.position, start.position, turning(start.rotation, turned))]
     still = turning(chain[0].start.rotation, chain[0].start.rotation)
     shapes: list[StraightLine | Arc | Free] = []
     place = 0
@@ -189,17 +183,11 @@ def pose_paths_of(chain: Sequence[Segment], *, is_constant: bool = False) -> lis
         place = last
     swept = _orientations(chain, [shape.length for shape in shapes], is_constant)
     return [
-        _turned(shape, orientation, segment.kind)
-        for shape, orientation, segment in zip(shapes, swept, chain, strict=True)
+        shape.turned(orientation)
+        if isinstance(shape, Free)
+        else replace(shape, orientation=orientation)
+        for shape, orientation in zip(shapes, swept, strict=True)
     ]
-
-
-def _turned(shape: StraightLine | Arc | Free, orientation: Orientation, kind: str) -> PosePath:
-    if isinstance(shape, Free):
-        return shape.turned(orientation)
-    if isinstance(shape, Arc):
-        return Arc(shape.circle, orientation, kind)
-    return StraightLine(shape.start, shape.end, orientation, kind)
 
 
 def _is_corner(before: Segment, segment: Segment) -> bool:

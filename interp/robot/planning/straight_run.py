@@ -150,7 +150,7 @@ def straight_through(
     lines = [line for line in (one.pose_path, other.pose_path) if line is not None]
     (point,), (turned,) = lines[0].at(np.array([start]))
     (there,), (turn,) = lines[1].at(np.array([end]))
-    whole = StraightLine(point, there, turning(turned, turn), kind="BLEND")
+    whole = StraightLine(point, there, turning(turned, turn))
     others = InStep(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
     places, rotations = whole.at(shares)
     is_through = (

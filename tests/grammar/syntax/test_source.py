@@ -93,12 +93,6 @@ def test_comments_are_where_they_say(text: str) -> None:
         assert comment.is_alone == (before.strip(" \t") == "")
 
 
-def test_headers_stand_at_the_start() -> None:
-    """Header lines are those before the first line that is none."""
-    assert ("&ACCESS RVP", "&REL 1 ") == Source("\n&ACCESS RVP\n\n  &REL 1 \nDEF A()\n&X").headers
-    assert () == Source("; &A\n&B").headers
-
-
 # ------------------------------------------------------------------------------------ folds
 
 

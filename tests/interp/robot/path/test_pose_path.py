@@ -28,7 +28,7 @@ PATHS = [
 ]
 
 
-@pytest.mark.parametrize("pose_path", PATHS, ids=lambda pose_path: pose_path.kind)
+@pytest.mark.parametrize("pose_path", PATHS, ids=lambda pose_path: type(pose_path).__name__)
 def test_way_and_tangents(pose_path: PosePath) -> None:
     """The way is the length of the curve, and tangents are its derivative."""
     u = np.linspace(0.0, 1.0, 20001)
@@ -39,7 +39,7 @@ def test_way_and_tangents(pose_path: PosePath) -> None:
     assert np.allclose(np.gradient(places, u, axis=0)[1:-1], pose_path.tangents(u)[1:-1], atol=1e-3)
 
 
-@pytest.mark.parametrize("pose_path", PATHS, ids=lambda pose_path: pose_path.kind)
+@pytest.mark.parametrize("pose_path", PATHS, ids=lambda pose_path: type(pose_path).__name__)
 def test_from_the_way_to_the_place(pose_path: PosePath) -> None:
     """The parameter at a length has that length before it."""
     way = Way(pose_path.tangents)
