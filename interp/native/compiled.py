@@ -303,7 +303,8 @@ class _Routine:
             cells = [one for one in self._copies if one >= step.a]
             view = range(step.c, step.c + step.tag + 1) if "VIEW" in name else ()
             yield self._each("PUT", {*cells, *self._copies.intersection(view)})
-            yield f"DO({name}, {place}, {out}, {self._each('GET', cells)}, )"
+            jump = f"JUMP_TO(do_{step.d})" if step.is_jump else ""
+            yield f"DO({name}, {place}, {out}, {self._each('GET', cells)}, {jump})"
         else:
             yield self._each("GET", self._in_frame.intersection(step.named(roles[0])))
             written = self._each("PUT", self._in_frame.intersection(step.named(roles[1])))

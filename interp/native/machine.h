@@ -196,6 +196,7 @@ int krl_invert(krl_cell *target, const krl_cell *pose, int32_t size);
 
 enum krl_text_function {
     KRL_STRLEN, KRL_STRDECLLEN, KRL_STRCLEAR, KRL_STRADD, KRL_STRCOPY, KRL_STRCOMP, KRL_STRFIND,
+    KRL_STRTOBOOL, KRL_STRTOINT, KRL_STRTOREAL, KRL_STRTOSTRING, KRL_SWRITE, KRL_SREAD,
     KRL_TEXT_FUNCTIONS
 };
 
@@ -203,17 +204,18 @@ enum krl_text_function {
 enum krl_text_function krl_text_function_of(const struct krl_program *program,
                                             const struct krl_entry *entry);
 
-/* `inputs` are what lay on the stack; the result takes the place of the first of them. */
-void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
-                   const struct krl_entry *entry, krl_cell *inputs);
+/* `inputs` are what lay on the stack; the result, if there is one, takes the place of the first of them. 0 where
+ * nothing was done: it faults, or is a rare case that Python has to carry out. */
+int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
+                  const struct krl_entry *entry, krl_cell *inputs);
 
 struct krl_outside {
     int (*is_plain)(const struct krl_program *program, int32_t type);
     int (*compute)(enum krl_function function, float one, float other, float *result);
     int (*compose)(krl_cell *target, const krl_cell *left, const krl_cell *right, int32_t size);
     int (*invert)(krl_cell *target, const krl_cell *pose, int32_t size);
-    void (*call_text)(struct krl_machine *machine, enum krl_text_function function,
-                      const struct krl_entry *entry, krl_cell *inputs);
+    int (*call_text)(struct krl_machine *machine, enum krl_text_function function,
+                     const struct krl_entry *entry, krl_cell *inputs);
 };
 
 /* What both sides of a program that was compiled have to agree on. */

@@ -20,7 +20,8 @@
     X(UNLESS_LE_REAL) X(UNLESS_GE_REAL) X(UNLESS_EQ_REAL_K) X(UNLESS_NE_REAL_K)                    \
     X(UNLESS_LT_REAL_K) X(UNLESS_GT_REAL_K) X(UNLESS_LE_REAL_K) X(UNLESS_GE_REAL_K)                \
     X(FOR_UP) X(FOR_DOWN)             /* counter a, limit b, step c */                             \
-    X(FOR_DATA_UP) X(FOR_DATA_DOWN)   /* the counter is a cell of the data lists */
+    X(FOR_DATA_UP) X(FOR_DATA_DOWN)   /* the counter is a cell of the data lists */                \
+    X(TEXT)                           /* inputs from a on, entry b, function tag; past the step for Python */
 
 /* What gives a BOOL in a from b and c; in the order of the UNLESS steps. */
 #define KRL_RELATIONS(X)                                                                           \
@@ -70,7 +71,6 @@
     X(NOT_BOOL) X(AND_BOOL) X(OR_BOOL) X(EXOR_BOOL)                                                \
     X(INT_TO_REAL) X(REAL_TO_INT) X(INT_TO_CHAR) /* a from b */                                    \
     X(FUNCTION)          /* a from b and c, function tag */                                        \
-    X(TEXT)              /* inputs from a on, entry b, function tag */                             \
     X(CHECK_CALL)        /* faults where the call would: routine b, own frame c */                 \
     X(FAIL)              /* fault b */                                                             \
     X(REMEMBER_LOCAL) X(REMEMBER_DATA) /* the address a was written last */
@@ -90,7 +90,7 @@ enum krl_step_op {
     KRL_STEP_COUNT
 };
 
-#define KRL_IS_JUMP(op) ((op) <= KRL_STEP_FOR_DATA_DOWN)
+#define KRL_IS_JUMP(op) ((op) <= KRL_STEP_TEXT)
 #define KRL_IS_RELATION(op) ((op) >= KRL_STEP_EQ_INT && (op) <= KRL_STEP_GE_REAL_K)
 
 #endif

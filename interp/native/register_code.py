@@ -68,7 +68,7 @@ class Step(NamedTuple):
     @property
     def is_jump(self) -> bool:
         """Whether ``d`` is a step to go on at."""
-        return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_"))
+        return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_", "TEXT"))
 
     def named(self, operands: str) -> set[int]:
         """The numbers of registers by their letters.

@@ -82,7 +82,7 @@ class RegisterFlow:
             written = step.named((roles_of(step.name) or ("", ""))[1])
             is_pure = written.issubset(stack) and written.isdisjoint(live[found[-1]])
             only_operands = is_pure and (
-                bool(written) or (step.is_jump and not step.name.startswith("FOR_"))
+                bool(written) or (step.is_jump and not step.name.startswith(("FOR_", "TEXT")))
             )
         return found
 

@@ -641,7 +641,9 @@ STEP(FUNCTION)
 
 STEP(TEXT)
 {
-    krl_call_text(machine, (enum krl_text_function)pc->tag, &machine->program.builtins[pc->b], &CELL(pc->a));
+    if (LIKELY(krl_call_text(machine, (enum krl_text_function)pc->tag, &machine->program.builtins[pc->b],
+                             &CELL(pc->a))))
+        JUMP();
     NEXT();
 }
 

@@ -1,10 +1,14 @@
-/* The functions on texts that programs call in loops, as interp/values/texts.py has them; the others are
- * carried out in Python. */
-#include "machine.h"
+/* The functions on texts, as interp/values/texts.py has them; what gives structures is carried out in
+ * Python. */
+#include "texts.h"
+
+#include <locale.h>
+#include <stdlib.h>
 
 struct known {
     const char *name;
-    /* T a text, C an array that may change, D one that does not, N an INT, M a mode */
+    /* T a text, C an array that may change, D one that does not, N an INT, M a mode, I, R, B an INT, REAL
+     * or BOOL that changes, S a STATE_T; + what SWRITE writes, * what SREAD changes, each any number */
     const char *parameters;
     int32_t result;
 };
@@ -17,12 +21,17 @@ static const struct known known[KRL_TEXT_FUNCTIONS] = {
     [KRL_STRCOPY] = {"STRCOPY", "CT", KRL_TYPE_BOOL},
     [KRL_STRCOMP] = {"STRCOMP", "TTM", KRL_TYPE_BOOL},
     [KRL_STRFIND] = {"STRFIND", "NTTM", KRL_TYPE_INT},
+    [KRL_STRTOBOOL] = {"STRTOBOOL", "TB", KRL_TYPE_BOOL},
+    [KRL_STRTOINT] = {"STRTOINT", "TI", KRL_TYPE_BOOL},
+    [KRL_STRTOREAL] = {"STRTOREAL", "TR", KRL_TYPE_BOOL},
+    [KRL_STRTOSTRING] = {"STRTOSTRING", "TC", KRL_TYPE_BOOL},
+    [KRL_SWRITE] = {"SWRITE", "CSIT+", -1},
+    [KRL_SREAD] = {"SREAD", "TSIT*", -1},
 };
 
 /* ---------------------------------------------------------------------------- which it is */
 
-/* Whether the part is an array of CHAR with one dimension, by reference or as a view. */
-static int is_array(const struct krl_program *program, const struct krl_part *part)
+int krl_is_text_array(const struct krl_program *program, const struct krl_part *part)
 {
     const struct krl_type *type = &program->types[part->handed.type];
     if (part->handed.mode == KRL_BY_VIEW)
@@ -31,34 +40,53 @@ static int is_array(const struct krl_program *program, const struct krl_part *pa
            type->element == KRL_TYPE_CHAR;
 }
 
+int32_t krl_constant_named(const struct krl_type *type, const char *name)
+{
+    for (int32_t i = 0; type->form == KRL_ENUMERATION && i < type->count; i++)
+        if (type->constants[i].length == strlen(name) &&
+            memcmp(type->constants[i].bytes, name, strlen(name)) == 0)
+            return i;
+    return -1;
+}
+
 /* The place of the constant that distinguishes letters by their case; -1 where there is none. */
 static int32_t sensitive(const struct krl_program *program, int32_t type)
 {
-    static const char name[] = "CASE_SENS";
-    const struct krl_type *mode = &program->types[type];
-    for (int32_t i = 0; mode->form == KRL_ENUMERATION && i < mode->count; i++)
-        if (mode->constants[i].length == sizeof name - 1 &&
-            memcmp(mode->constants[i].bytes, name, sizeof name - 1) == 0)
-            return i;
-    return -1;
+    return krl_constant_named(&program->types[type], "CASE_SENS");
+}
+
+static int is_changed(const struct krl_part *part, int32_t type)
+{
+    return part->kind == KRL_PART_CHANGED && !part->has_path && part->handed.mode == KRL_BY_REFERENCE &&
+           part->handed.type == type;
 }
 
 static int fits(const struct krl_program *program, const struct krl_part *part, char parameter)
 {
     switch (parameter) {
     case 'T':
-        return part->kind == KRL_PART_STRING || (part->kind == KRL_PART_INPUT && is_array(program, part));
+        return part->kind == KRL_PART_STRING ||
+               (part->kind == KRL_PART_INPUT && krl_is_text_array(program, part));
     case 'D':
-        return part->kind == KRL_PART_INPUT && is_array(program, part);
+        return part->kind == KRL_PART_INPUT && krl_is_text_array(program, part);
     case 'C':
-        return part->kind == KRL_PART_CHANGED && !part->has_path && is_array(program, part);
+        return part->kind == KRL_PART_CHANGED && !part->has_path && krl_is_text_array(program, part);
     case 'N':
-        return part->kind == KRL_PART_INPUT && part->handed.mode == KRL_BY_VALUE &&
-               part->handed.type == KRL_TYPE_INT;
+        return krl_is_value(part) && part->handed.type == KRL_TYPE_INT;
+    case 'B':
+        return is_changed(part, KRL_TYPE_BOOL);
+    case 'I':
+        return is_changed(part, KRL_TYPE_INT);
+    case 'R':
+        return is_changed(part, KRL_TYPE_REAL);
+    case 'S':
+        return krl_is_state(program, part);
+    case '+':
+        return krl_can_format(program, part);
+    case '*':
+        return krl_can_scan(program, part);
     default:
-        return (part->kind == KRL_PART_CHOICE ||
-                (part->kind == KRL_PART_INPUT && part->handed.mode == KRL_BY_VALUE)) &&
-               sensitive(program, part->handed.type) >= 0;
+        return (part->kind == KRL_PART_CHOICE || krl_is_value(part)) && sensitive(program, part->handed.type) >= 0;
     }
 }
 
@@ -67,22 +95,26 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program,
 {
     for (int function = 0; function < KRL_TEXT_FUNCTIONS; function++) {
         const struct known *one = &known[function];
+        const char *parameter = one->parameters;
         if (entry->name.length != strlen(one->name) ||
             memcmp(entry->name.bytes, one->name, entry->name.length) != 0)
             continue;
-        if (entry->result != one->result || (size_t)entry->part_count != strlen(one->parameters))
+        if (entry->result != one->result)
             break;
-        for (int32_t i = 0; i < entry->part_count; i++)
-            if (!fits(program, &entry->parts[i], one->parameters[i]))
+        for (int32_t i = 0; i < entry->part_count; i++) {
+            if (*parameter == 0 || !fits(program, &entry->parts[i], *parameter))
                 return KRL_TEXT_FUNCTIONS;
-        return (enum krl_text_function)function;
+            parameter += *parameter != '+' && *parameter != '*';
+        }
+        if (*parameter == 0 || *parameter == '+' || *parameter == '*')
+            return (enum krl_text_function)function;
+        break;
     }
     return KRL_TEXT_FUNCTIONS;
 }
 
-/* ---------------------------------------------------------------------------- what it does */
+/* ---------------------------------------------------------------------------- texts */
 
-/* The used part of a text: it ends before the first letter that is none, or has the code 0. */
 static struct krl_letters used(struct krl_letters all)
 {
     struct krl_letters found = {all.cells, 0};
@@ -91,20 +123,36 @@ static struct krl_letters used(struct krl_letters all)
     return found;
 }
 
-/* All of an array. */
-static struct krl_letters whole(const struct krl_machine *machine, const struct krl_part *part,
-                                const krl_cell *inputs)
+struct krl_letters krl_array_letters(const struct krl_text_call *call, int32_t argument)
 {
-    const krl_cell *given = inputs + part->place;
-    const struct krl_type *type = &machine->program.types[part->handed.type];
+    const struct krl_part *part = &call->entry->parts[argument];
+    const krl_cell *given = call->inputs + part->place;
+    const struct krl_type *type = &call->machine->program.types[part->handed.type];
     int32_t count = part->handed.mode == KRL_BY_VIEW ? krl_int_in(given[1]) : type->sizes[0];
-    return (struct krl_letters){machine->cells + krl_int_in(given[0]), count};
+    return (struct krl_letters){krl_referred(call, argument), count};
 }
 
-static struct krl_letters text_of(const struct krl_machine *machine, const struct krl_part *part,
-                                  const krl_cell *inputs)
+krl_cell *krl_cells_of(const struct krl_text_call *call, struct krl_letters array)
 {
-    return used(part->kind == KRL_PART_STRING ? part->letters : whole(machine, part, inputs));
+    return call->machine->cells + (array.cells - call->machine->cells);
+}
+
+struct krl_letters krl_text_argument(const struct krl_text_call *call, int32_t argument)
+{
+    const struct krl_part *part = &call->entry->parts[argument];
+    return used(part->kind == KRL_PART_STRING ? part->letters : krl_array_letters(call, argument));
+}
+
+int krl_put_text(const struct krl_text_call *call, struct krl_letters array, int32_t behind,
+                 struct krl_letters text)
+{
+    krl_cell *target = krl_cells_of(call, array);
+    int32_t count = behind + text.count;
+    if (count > array.count)
+        return 0;
+    memmove(target + behind, text.cells, (size_t)text.count * sizeof *target);
+    memset(target + count, 0, (size_t)(array.count - count) * sizeof *target);
+    return 1;
 }
 
 /* The letter to compare: the case of A to Z only. */
@@ -132,67 +180,174 @@ static int32_t find(int32_t start, struct krl_letters text, struct krl_letters w
     return 0;
 }
 
-/* Puts a text behind the first letters of an array, whose rest has no value then; 0 where it does
- * not fit. */
-static int put(struct krl_machine *machine, struct krl_letters array, int32_t behind,
-               struct krl_letters text)
+static int is_sensitive(const struct krl_text_call *call, int32_t argument)
 {
-    krl_cell *target = machine->cells + (array.cells - machine->cells);
-    int32_t count = behind + text.count;
-    if (count > array.count)
+    const struct krl_part *part = &call->entry->parts[argument];
+    int32_t place = part->kind == KRL_PART_CHOICE ? part->place : krl_int_in(call->inputs[part->place]);
+    return place == sensitive(&call->machine->program, part->handed.type);
+}
+
+/* ---------------------------------------------------------------------------- numbers */
+
+/* Longer ones are refused, as by interp/values/texts.py. */
+enum { MOST_DIGITS = 64 };
+
+static int is_digit(struct krl_letters text, int32_t place)
+{
+    return place < text.count && (uint32_t)text.cells[place] - '0' < 10;
+}
+
+static int is_one_of(struct krl_letters text, int32_t place, char one, char other)
+{
+    return place >= 0 && place < text.count &&
+           ((uint32_t)text.cells[place] == (uint32_t)one || (uint32_t)text.cells[place] == (uint32_t)other);
+}
+
+static int32_t behind_digits(struct krl_letters text, int32_t place)
+{
+    while (is_digit(text, place))
+        place++;
+    return place;
+}
+
+int32_t krl_int_length(struct krl_letters text, int32_t place)
+{
+    int32_t first = place + is_one_of(text, place, '+', '-');
+    int32_t end = behind_digits(text, first);
+    return end > first ? end - place : 0;
+}
+
+int32_t krl_real_length(struct krl_letters text, int32_t place)
+{
+    int32_t first = place + is_one_of(text, place, '+', '-');
+    int32_t point = behind_digits(text, first), end = point;
+    if (is_one_of(text, point, '.', '.'))
+        end = point > first || is_digit(text, point + 1) ? behind_digits(text, point + 1) : first;
+    if (end == first)
         return 0;
-    memmove(target + behind, text.cells, (size_t)text.count * sizeof *target);
-    memset(target + count, 0, (size_t)(array.count - count) * sizeof *target);
+    int32_t exponent = is_one_of(text, end, 'e', 'E') ? krl_int_length(text, end + 1) : 0;
+    return end - place + (exponent > 0 ? 1 + exponent : 0);
+}
+
+int krl_read_bool(struct krl_letters text, krl_cell *value)
+{
+    static const char *const words[] = {"FALSE", "TRUE"};
+    for (int truth = 0; truth < 2; truth++) {
+        int32_t i = 0;
+        while (i < text.count && words[truth][i] != 0 &&
+               cased(text.cells[i], 0) == (uint32_t)words[truth][i])
+            i++;
+        if (i == text.count && words[truth][i] == 0) {
+            *value = krl_of_bool(truth);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int krl_read_int(struct krl_letters text, krl_cell *value)
+{
+    int64_t number = 0;
+    if (text.count > MOST_DIGITS || text.count == 0 || krl_int_length(text, 0) != text.count)
+        return 0;
+    int is_negative = is_one_of(text, 0, '-', '-');
+    for (int32_t i = is_one_of(text, 0, '+', '-'); i < text.count; i++) {
+        number = number * 10 + (int64_t)((uint32_t)text.cells[i] - '0');
+        if (number > (int64_t)INT32_MAX + is_negative)
+            return 0;
+    }
+    *value = krl_of_int((int32_t)(is_negative ? -number : number));
     return 1;
 }
 
-static int is_sensitive(const struct krl_machine *machine, const struct krl_part *part,
-                        const krl_cell *inputs)
+int krl_read_real(struct krl_letters text, krl_cell *value)
 {
-    int32_t place = part->kind == KRL_PART_CHOICE ? part->place : krl_int_in(inputs[part->place]);
-    return place == sensitive(&machine->program, part->handed.type);
+    char digits[MOST_DIGITS + 1];
+    if (text.count > MOST_DIGITS || text.count == 0 || krl_real_length(text, 0) != text.count)
+        return 0;
+    for (int32_t i = 0; i < text.count; i++) {
+        digits[i] = (char)(uint32_t)text.cells[i];
+        if (digits[i] == '.')
+            digits[i] = *localeconv()->decimal_point;
+    }
+    digits[text.count] = 0;
+    float number = (float)strtod(digits, NULL);
+    *value = krl_of_real(number);
+    return krl_is_finite(number);
 }
 
-void krl_call_text(struct krl_machine *machine, enum krl_text_function function,
-                   const struct krl_entry *entry, krl_cell *inputs)
+/* Reads a value, blanks around it left out, into the second argument; whether there was one. */
+static krl_cell taken(const struct krl_text_call *call, int (*read)(struct krl_letters, krl_cell *))
 {
-    const struct krl_part *parts = entry->parts;
+    struct krl_letters text = krl_text_argument(call, 0);
+    krl_cell value;
+    for (; is_one_of(text, 0, ' ', ' '); text.count--)
+        text.cells++;
+    while (is_one_of(text, text.count - 1, ' ', ' '))
+        text.count--;
+    if (!read(text, &value))
+        return krl_of_bool(0);
+    *krl_referred(call, 1) = value;
+    return krl_of_bool(1);
+}
+
+/* ---------------------------------------------------------------------------- what it does */
+
+int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
+                  const struct krl_entry *entry, krl_cell *inputs)
+{
+    struct krl_text_call call = {machine, entry, inputs};
     struct krl_letters array = {machine->cells, 0}, text, other;
-    krl_cell result = KRL_NOTHING;
-    if (parts[0].handed.mode != KRL_BY_VALUE)
-        array = whole(machine, &parts[0], inputs);
+    if (entry->parts[0].handed.mode != KRL_BY_VALUE)
+        array = krl_array_letters(&call, 0);
     switch (function) {
     case KRL_STRLEN:
-        result = krl_of_int(text_of(machine, &parts[0], inputs).count);
+        inputs[0] = krl_of_int(krl_text_argument(&call, 0).count);
         break;
     case KRL_STRDECLLEN:
-        result = krl_of_int(array.count);
+        inputs[0] = krl_of_int(array.count);
         break;
     case KRL_STRCLEAR:
-        result = krl_of_bool(put(machine, array, 0, (struct krl_letters){array.cells, 0}));
+        inputs[0] = krl_of_bool(krl_put_text(&call, array, 0, (struct krl_letters){array.cells, 0}));
         break;
     case KRL_STRADD:
         text = used(array);
-        other = text_of(machine, &parts[1], inputs);
-        result = krl_of_int(put(machine, array, text.count, other) ? text.count + other.count : 0);
+        other = krl_text_argument(&call, 1);
+        inputs[0] = krl_of_int(krl_put_text(&call, array, text.count, other) ? text.count + other.count : 0);
         break;
     case KRL_STRCOPY:
-        result = krl_of_bool(put(machine, array, 0, text_of(machine, &parts[1], inputs)));
+        inputs[0] = krl_of_bool(krl_put_text(&call, array, 0, krl_text_argument(&call, 1)));
         break;
     case KRL_STRCOMP:
-        text = text_of(machine, &parts[0], inputs);
-        other = text_of(machine, &parts[1], inputs);
-        result = krl_of_bool(text.count == other.count &&
-                             begins_with(text.cells, other, is_sensitive(machine, &parts[2], inputs)));
+        text = krl_text_argument(&call, 0);
+        other = krl_text_argument(&call, 1);
+        inputs[0] = krl_of_bool(text.count == other.count &&
+                                begins_with(text.cells, other, is_sensitive(&call, 2)));
         break;
     case KRL_STRFIND:
-        text = text_of(machine, &parts[1], inputs);
-        other = text_of(machine, &parts[2], inputs);
-        result = krl_of_int(find(krl_int_in(inputs[parts[0].place]), text, other,
-                                 is_sensitive(machine, &parts[3], inputs)));
+        text = krl_text_argument(&call, 1);
+        other = krl_text_argument(&call, 2);
+        inputs[0] = krl_of_int(find(krl_int_in(inputs[entry->parts[0].place]), text, other,
+                                    is_sensitive(&call, 3)));
         break;
+    case KRL_STRTOBOOL:
+        inputs[0] = taken(&call, krl_read_bool);
+        break;
+    case KRL_STRTOINT:
+        inputs[0] = taken(&call, krl_read_int);
+        break;
+    case KRL_STRTOREAL:
+        inputs[0] = taken(&call, krl_read_real);
+        break;
+    case KRL_STRTOSTRING:
+        inputs[0] = krl_of_bool(krl_put_text(&call, krl_array_letters(&call, 1), 0, krl_text_argument(&call, 0)));
+        break;
+    case KRL_SWRITE:
+        return krl_swrite(&call);
+    case KRL_SREAD:
+        return krl_sread(&call);
     case KRL_TEXT_FUNCTIONS:
         break;
     }
-    inputs[0] = result;
+    return 1;
 }

@@ -237,7 +237,9 @@ static void land(struct krl_machine *machine)
         routine->entry = &machine->steps[first];
         for (int32_t i = first; i < end; i++) {
             struct krl_step *step = &machine->steps[i];
-            if (KRL_IS_JUMP(step->op))
+            if (step->op == KRL_STEP_TEXT)
+                step->d = 2 * (int32_t)sizeof *step;
+            else if (KRL_IS_JUMP(step->op))
                 step->d = (routine->steps[step->d] - i) * (int32_t)sizeof *step;
         }
     }

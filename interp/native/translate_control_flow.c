@@ -179,11 +179,11 @@ void krl_call_builtin(struct translator *at, int32_t place)
     }
     enum krl_text_function function = krl_text_function_of(at->program, entry);
     if (function != KRL_TEXT_FUNCTIONS && !(at->machine->told & KRL_TOLD_ASSIGN)) {
-        struct krl_step *step = krl_consume(at, KRL_STEP_TEXT, entry->input_cells);
+        krl_settle_all(at);
+        struct krl_step *step = krl_emit(at, KRL_STEP_TEXT);
+        step->a = krl_place_of(at, at->height - entry->input_cells);
         step->b = number;
         step->tag = (uint16_t)function;
-        krl_push_places(at, 1);
-        return;
     }
     krl_ask(at, entry, place);
 }
