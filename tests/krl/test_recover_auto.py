@@ -1,6 +1,7 @@
 """`krl recover --auto` from the outside: what it writes, how it goes on, what it refuses."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from krl.cli import main
+from recovery.induction import comparison
 from recovery.induction.comparison import compared, within_reach
 from recovery.induction.growth_record import without_some
 from recovery.language import KRL
@@ -56,7 +58,10 @@ def out(corpus: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run with a third of the origins held out."""
     folder = tmp_path_factory.mktemp("out")
     options = ("--hold-out", "0.33", "--seed", "3", "--target", GRAMMAR)
-    assert auto(corpus, *options, "--out", folder) == 0
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(comparison, "_SENTENCES", 200)
+        patched.setattr(comparison, "_NEGATIVES", 2_000)
+        assert auto(corpus, *options, "--out", folder) == 0
     return folder
 
 
@@ -77,7 +82,7 @@ def test_the_grown_grammar_is_compared_with_the_target(out: Path) -> None:
         target["shown"],
         target["held"],
     )
-    assert (1_000, 10_000) == (
+    assert (200, 2_000) == (
         target["sentences_rejected"]["of"],
         target["negatives_accepted"]["of"],
     )
@@ -107,11 +112,13 @@ def test_constructs_are_drawn_and_taken_out() -> None:
     assert (None, in_force(start, left).text) == (problem(grammar), grammar.text)
 
 
-def test_what_the_target_rejects_is_counted(corpus: Path) -> None:
+def test_what_the_target_rejects_is_counted(corpus: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Most sentences of a wider grammar are none of a narrow target, which reads no file here."""
+    monkeypatch.setattr(comparison, "_SENTENCES", 200)
+    monkeypatch.setattr(comparison, "_NEGATIVES", 100)
     found = compared(read_file(GRAMMAR), read_file(PRELIMINARY), KRL.files([corpus]), ())
     assert {"count": 0, "of": 0} == found["shown"]
-    assert 500 < found["sentences_rejected"]["count"] < 1_000
+    assert 100 < found["sentences_rejected"]["count"] < 200
 
 
 def test_the_ledger_gives_the_grammar(out: Path) -> None:
@@ -129,9 +136,9 @@ def test_the_page_shows_steps(out: Path) -> None:
     assert [] == [name for name in ids if name not in page]
 
 
-def test_a_step_is_struck_out(corpus: Path, tmp_path: Path) -> None:
+def test_a_step_is_struck_out(corpus: Path, out: Path, tmp_path: Path) -> None:
     """Without its step a construct stays out, also when the run goes on."""
-    assert auto(corpus, "--out", tmp_path) == 0
+    shutil.copytree(out, tmp_path, dirs_exist_ok=True)
     constructs = Ledger.read(tmp_path / "constructs").constructs
     goto = next(c.id for c in constructs if c.title.startswith("GOTO"))
     assert auto(corpus, "--out", tmp_path, "--strike", goto) == 0

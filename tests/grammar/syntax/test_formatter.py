@@ -280,13 +280,13 @@ def keeps_its_laws(text: str) -> None:
 
 
 def test_own_programs_keep_their_laws(corpus: Mapping[Path, str]) -> None:
-    """Every second own program that parses."""
+    """Every fourth own program that parses."""
     count = 0
-    for path, text in list(corpus.items())[::2]:
+    for path, text in list(corpus.items())[::4]:
         if "programs" in path.parts and isinstance(builder().parser.parse(text), Tree):
             keeps_its_laws(text)
             count += 1
-    assert count > 50
+    assert count > 25
 
 
 BLANKS = st.sampled_from(["", "", " ", "  ", "\t", "     "])

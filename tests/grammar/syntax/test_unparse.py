@@ -79,11 +79,10 @@ def test_a_data_list() -> None:
 
 
 def test_own_programs_come_back(corpus: Mapping[Path, str]) -> None:
-    """Every second own program that parses is the same program after printing."""
+    """Every third own program is the same program after printing."""
     programs = [text for path, text in corpus.items() if "programs" in path.parts]
-    parsed = [text for text in programs if isinstance(read_module(text), ast.Module)]
-    assert len(parsed) > 100
-    for text in parsed[::2]:
+    assert len(programs) > 100
+    for text in programs[::3]:
         comes_back(text)
 
 

@@ -57,7 +57,7 @@ PROGRAMS: Mapping[str, tuple[str, str]] = {
     "fault": (f"DEF main()\nINT I\n{HOME}PTP {{A1 5}}\nI=0\nI=7/I\nEND\n", ""),
     "polling": (
         "DEF main()\nINT I\nI=0\nWHILE NOT $IN[1]\nI=I+1\nENDWHILE\nLOOP\nI=I+1\nEND_HERE:\n"
-        "IF I>9000 THEN\nEXIT\nENDIF\nENDLOOP\nEND\n",
+        "IF I>2500 THEN\nEXIT\nENDIF\nENDLOOP\nEND\n",
         "t=0.05 IN[1]=TRUE",
     ),
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 import zlib
 from contextlib import suppress
+from random import Random
 
 import pytest
 from hypothesis import given
@@ -64,12 +65,12 @@ def _words(image: bytes) -> list[int]:
     return list(struct.unpack(f"<{len(image) // 4}I", image))
 
 
-@pytest.mark.parametrize("value", [0, 2, 0xFFFFFFFF])
-def test_every_word_may_be_wrong(everything: str, value: int) -> None:
+def test_every_word_may_be_wrong(everything: str) -> None:
     """Whatever a word becomes, reading gives a program or says what is damaged."""
     words = _words(write_image(assemble(everything)))
+    chance = Random(1)
     for place in range(5, len(words)):
-        changed = [*words[:place], value, *words[place + 1 :]]
+        changed = [*words[:place], chance.choice((0, 2, 0xFFFFFFFF)), *words[place + 1 :]]
         with suppress(ImageError):
             read_image(sealed(struct.pack(f"<{len(words)}I", *changed)))
 

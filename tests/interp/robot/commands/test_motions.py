@@ -1,7 +1,6 @@
 """Motions written in Python, and the example that shows the Robotics API."""
 
-import os
-import subprocess
+import runpy
 import sys
 from pathlib import Path
 
@@ -38,23 +37,20 @@ def test_a_member_that_no_target_has() -> None:
 
 
 @pytest.mark.parametrize("robot", ["none", "kinematic", "mujoco"])
-def test_the_example(robot: str) -> None:
+def test_the_example(
+    robot: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The gas comes on at the microsecond at which the ignition ends, on every robot."""
     needed = ["ruckig", "scipy"] + ["mujoco"] * (robot == "mujoco")
     for module in needed:
         pytest.importorskip(module)
-    done = subprocess.run(
-        [sys.executable, str(EXAMPLE), robot],
-        cwd=EXAMPLE.parents[1],
-        env={**os.environ, "PYTHONPATH": str(EXAMPLE.parents[1])},
-        capture_output=True,
-        encoding="utf-8",
-        check=True,
-    )
-    lines = [line.split(" ms  ", 1) for line in done.stdout.splitlines()]
+    monkeypatch.setattr(sys, "argv", [str(EXAMPLE), robot])
+    runpy.run_path(str(EXAMPLE), run_name="__main__")
+    out = capsys.readouterr().out
+    lines = [line.split(" ms  ", 1) for line in out.splitlines()]
     times = {what.strip(): float(time) for time, what in lines}
     assert times["motion 2 (LIN) ended"] == times["$OUT[1] = TRUE"]
     assert times["motion 4 (LIN) ended"] == times["$OUT[1] = FALSE"]
     assert times["$OUT[2] = TRUE"] < times["motion 3 (LIN) blend_start"]
     assert times["motion 3 (LIN) apex"] == times["motion 4 (LIN) started"]
-    assert ("the torch is at X 0.00" in done.stdout) is (robot != "none")
+    assert ("the torch is at X 0.00" in out) is (robot != "none")
