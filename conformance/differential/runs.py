@@ -35,7 +35,7 @@ from interp.port.requests import (
 from interp.program.load import Limits
 from interp.values.faults import LinkError, RuntimeFailure
 
-__all__ = ["EXECUTORS", "Factory", "Prepared", "available", "is_available", "trace_of", "untraced"]
+__all__ = ["Prepared", "available", "is_available"]
 
 #: More statements than any generated program executes, and a slice short enough to come up.
 LIMITS: Final = Limits(statements=20_000, per_slice=25)
@@ -183,11 +183,15 @@ class _Driver:
 def trace_of(
     prepared: Prepared, factory: Factory, seed: str, limits: Limits = LIMITS
 ) -> list[Fact]:
+    """All facts of a run; see `facts_of`."""
+    return facts_of(lambda sink: factory(prepared, limits, sink), seed)
+
+
+def facts_of(make: Callable[[Sink], Executor], seed: str) -> list[Fact]:
     """All facts of a run; an executor that raises what it should not is recorded as a fact too."""
     trace = Trace()
     try:
-        executor = factory(prepared, limits, trace)
-        _Driver(executor, RandomWorld(seed), trace).run()
+        _Driver(make(trace), RandomWorld(seed), trace).run()
     except LinkError as error:
         trace.raised(error)
     except Exception as error:  # a defect, which is a finding here

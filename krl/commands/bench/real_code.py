@@ -16,7 +16,7 @@ from krl.progress import progress_bar
 from krl.text_table import figures
 
 if TYPE_CHECKING:
-    from interp.bench.corpus_routines import Trial, Unread
+    from conformance.differential.corpus_routines import Trial, Unread
 
 _MOST_REASONS = 8
 _STAGES = (
@@ -56,7 +56,7 @@ def real_code(
     time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
     actions entered, and some requests fail. Exit status 1 where executors differ.
     """
-    from interp.bench.corpus_routines import Effort, Trial, Unread, trials
+    from conformance.differential.corpus_routines import Effort, Trial, Unread, trials
     from interp.executors import available
 
     check_files(json_file)

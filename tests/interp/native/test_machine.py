@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from conformance.differential.runs import facts_of
 from grammar.syntax.source import Source
-from interp.bench.executor_differences import Prober, difference, observe
 from interp.bench.kernels import Kernel, kernels_in
-from interp.bench.stub_controller import StubController
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.image.writer import write_image
@@ -165,11 +164,10 @@ def test_own_programs(native: type[vm.Machine], name: str) -> None:
     verified = verify(compiled.program)
     limits = Limits(statements=3_000, per_slice=100)
     for number in list(compiled.starts.values())[:4]:
-        observed = []
-        for kind in (vm.Machine, native):
-            start = partial(kind, verified, number, limits)
-            observed.append(observe(start, StubController(1), Prober(1), most=300))
-        assert difference(*observed) is None
+        expected, actual = (
+            facts_of(partial(kind, verified, number, limits), "1") for kind in (vm.Machine, native)
+        )
+        assert expected == actual
 
 
 @pytest.mark.parametrize("kernel", kernels_in().values(), ids=list(kernels_in()))

@@ -1,9 +1,9 @@
 """Routines that call those with parameters, and variables of which no type is known."""
 
+from conformance.differential.routine_callers import with_callers
 from grammar.semantics.predefined import System
 from grammar.semantics.types import INT, UNKNOWN, Array, Enumeration, Member, Structure
 from grammar.syntax.source import Source
-from interp.bench.routine_callers import with_callers
 from interp.program.load import load
 from interp.program.variables import cells, is_complete, is_referable
 

@@ -10,11 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final, Literal
 
+from conformance.differential import divergence
+from conformance.differential.routine_callers import with_callers
+from conformance.differential.runs import facts_of
 from grammar.syntax.source import Source
-from interp.bench.executor_differences import Observed, Prober, difference, observe
-from interp.bench.routine_callers import with_callers
+from interp.bench.executor_differences import Observed, difference, observe
 from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import Compiled, compile_program
 from interp.bytecode.verifier.verify import VerificationError, Verified, verify
@@ -149,11 +152,9 @@ class _Project:
         start = self._start(program, routine)
         if start is None:
             return Trial(path, line, routine.name, "uncalled", "the type of a parameter is unknown")
-        seen = {name: self._observed(name, program, start, None) for name in self._executors}
+        seen = {name: self._observed(name, program, start) for name in self._executors}
         first = seen[self._executors[0]]
-        differences = self._differences(seen)
-        for name, text in self._probed(program, start).items():
-            differences.setdefault(name, text)
+        differences = {**self._disturbed(program, start), **self._differences(seen)}
         endings = {name: _ending(one) for name, one in seen.items()}
         why = _why(first)
         return Trial(path, line, routine.name, stage, reason, endings, differences, why)
@@ -181,19 +182,23 @@ class _Project:
 
     # ----------------------------------------------------------------------- running
 
-    def _probed(self, program: CheckedProgram, start: Routine) -> dict[str, str]:
-        """The differences of runs in which conditions are evaluated and actions entered."""
-        seed = self._effort.seed
-        return self._differences(
-            {name: self._observed(name, program, start, Prober(seed)) for name in self._executors}
+    def _disturbed(self, program: CheckedProgram, start: Routine) -> dict[str, str]:
+        """The differences of runs in a world that interferes, as that of the fuzzer does."""
+        first, *others = (
+            (name, facts_of(partial(self._made, name, program, start), str(self._effort.seed)))
+            for name in self._executors
         )
+        found = (divergence.difference(name, first[1], facts) for name, facts in others)
+        return {
+            one.executor: f"fact {one.place}: {one.expected_text} by {first[0]}, {one.actual_text}"
+            for one in found
+            if one is not None
+        }
 
-    def _observed(
-        self, executor: str, program: CheckedProgram, start: Routine, prober: Prober | None
-    ) -> Observed:
+    def _observed(self, executor: str, program: CheckedProgram, start: Routine) -> Observed:
         world = StubController(self._effort.seed, self._values)
-        most = self._effort.requests
-        return observe(lambda sink: self._made(executor, program, start, sink), world, prober, most)
+        make = partial(self._made, executor, program, start)
+        return observe(make, world, self._effort.requests)
 
     def _made(self, executor: str, program: CheckedProgram, start: Routine, sink: Sink) -> Executor:
         if executor == "tree":
