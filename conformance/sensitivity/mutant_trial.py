@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.util import find_spec
-from itertools import islice
+from itertools import islice, zip_longest
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, Final, Literal, NoReturn
@@ -31,6 +31,7 @@ from conformance.sensitivity.mutants import (
     InvalidMutant,
     Mutant,
     around,
+    cited,
     load,
     put_in_place,
     uses_of,
@@ -52,9 +53,8 @@ _APART: Final = ("values", "tree")
 _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 #: The fields of a trial but for its mutant.
 OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
-#: So many cases that may fail are run with a mutant that none of them notices. Of 73 mutants that
-#: some did of 60, all were noticed by the 26th, 68 by the fifth.
-MOST: Final = 30
+#: So many cases that may fail are run with a mutant that none of them notices.
+MOST: Final = 40
 #: So many seconds of computing a case may take; all of them take less than a tenth of it.
 _SECONDS: Final = 2.0
 #: So much address space in bytes a mutant may take; a usual run takes less than a quarter of it.
@@ -197,18 +197,18 @@ class _Candidates:
 def _candidates(mutant: Mutant, reaches: Sequence[Reach], most: int) -> _Candidates:
     """Of the cases that run its lines ``most`` that may fail, and a tenth as many of the others.
 
-    First one for each line around it, the rarest first; then one of each way through its module, as
-    cases that run the same lines there mostly notice the same; then every so many of what is left,
-    so that long ones are among them.
+    First one for each line around it, the rarest first; then one of each rule that the code there
+    cites; then one of each way through its module, as cases that run the same lines there mostly
+    notice the same; then every so many of what is left, so that long ones are among them.
     """
     uses = uses_of(mutant)
     reaching = [one for one in reaches if any(one.has(*lines) for lines in uses.items())]
     hard = [one for one in reaching if one.case.may_fail]
     soft = [one for one in reaching if not one.case.may_fail]
     chosen: dict[str, Reach] = {}
-    for way in (_of_rarest(mutant, hard), _of_ways(mutant, hard)):
+    for way in (_of_rarest(mutant, hard), _of_rules(mutant, hard), _of_ways(mutant, hard)):
         new = (one for one in way if one.case.name not in chosen)
-        chosen.update((one.case.name, one) for one in islice(new, most // 3))
+        chosen.update((one.case.name, one) for one in islice(new, most // 4))
     left = [one for one in hard if one.case.name not in chosen]
     room = most - len(chosen)
     tried = [*chosen.values(), *left[:: -(-len(left) // room) or 1]] if room else [*chosen.values()]
@@ -230,6 +230,17 @@ def _of_rarest(mutant: Mutant, cases: Sequence[Reach]) -> Iterator[Reach]:
         if those[0].case.name not in found:
             found.add(those[0].case.name)
             yield those[0]
+
+
+def _of_rules(mutant: Mutant, cases: Sequence[Reach]) -> Iterator[Reach]:
+    """A case of each rule that the code around a mutant cites, the rarest first, then a second."""
+    wanted = cited(mutant)
+    stating: dict[str, list[Reach]] = {}
+    for one in cases:
+        for rule in wanted.intersection(one.case.rules):
+            stating.setdefault(rule, []).append(one)
+    rows = (those for _, those in sorted(stating.items(), key=lambda row: (len(row[1]), row[0])))
+    return (one for turn in zip_longest(*rows) for one in turn if one is not None)
 
 
 def _of_ways(mutant: Mutant, cases: Sequence[Reach]) -> list[Reach]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import gc
 import inspect
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -106,6 +107,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
     ),
 }
 _ROOT: Final = "interp"
+_RULE: Final = re.compile(r"\b[A-Z]{3}-\d\d\b")
 
 
 class InvalidMutant(ValueError):
@@ -241,6 +243,16 @@ def around(mutant: Mutant) -> Mapping[str, frozenset[int]]:
         if name in words:
             found.setdefault(module, set()).update(lines)
     return {module: frozenset(lines) for module, lines in found.items()}
+
+
+def cited(mutant: Mutant) -> frozenset[str]:
+    """The rules that its function cites, those that its statement names, and their modules."""
+    found = set()
+    for module, lines in around(mutant).items():
+        rows = _text(module).splitlines()
+        text = [ast.get_docstring(_tree(module)) or "", *(rows[number - 1] for number in lines)]
+        found.update(_RULE.findall("\n".join(text)))
+    return frozenset(found)
 
 
 @cache

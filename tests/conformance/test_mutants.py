@@ -207,6 +207,17 @@ def test_cases_that_run_what_a_statement_names_come_first() -> None:
     assert last == mutant_trial._candidates(mutant, reaches, 60).tried[0].case
 
 
+def test_cases_that_state_what_the_code_cites_are_tried() -> None:
+    """Of cases that run the same lines that of INT-15 is, which the class of the position cites."""
+    unit = "interp.controller.interrupt_unit"
+    mutant = _mutant(unit, "InterruptUnit.watch", "self._positions.keep('INT')", "pass")
+    names = ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose", "motion/lin_smooth")
+    cases = [_case(name) for name in (*names, "motion/lin_limits", "interrupt/positions_of_event")]
+    reaches = [Reach(case, {unit: frozenset({mutant.line})}, 1) for case in cases]
+    tried = mutant_trial._candidates(mutant, reaches, 4).tried
+    assert cases[-1] in [one.case for one in tried]
+
+
 @needs_fork
 @pytest.mark.parametrize(
     ("case", "function", "was", "now", "fate"),
