@@ -160,8 +160,6 @@ MOST_MIDDLES = 3
 HEAVY_GROUPS = 12
 #: Causes sought in a group, one after the other; the rest of its lines stay together. Not measured.
 CAUSES_PER_GROUP = 4
-#: Garbage that the trials of a group leave, as `support.gc_pause` counts it. Not measured.
-TRIAL_GARBAGE = 8_000_000
 #: Lines of a group whose candidates are tried. Not measured.
 SPECIMENS = 3
 #: Further lines of a group, and of those that fail or begin alike, whose sites are compared. Not

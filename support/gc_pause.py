@@ -10,24 +10,20 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-# Bytes of source after which garbage is collected all the same, so that memory stays flat: it is
-# some 25 times as much, and collecting it costs a tenth of a check when it is done for each MB.
-_OFTEN = 8_000_000
-
-_since = [0]
+# New objects from which on garbage is collected all the same, so that memory stays flat: they take
+# some 100 MB, and a collection goes through every object that there is.
+_MANY = 1_000_000
 
 
 @contextmanager
-def gc_paused(size: int) -> Iterator[None]:
-    """Collect no garbage while the block runs; ``size`` is the bytes of source it works on."""
+def gc_paused() -> Iterator[None]:
+    """Collect no garbage while the block runs, and behind it only where it made many objects."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
+        if gc.get_count()[0] >= _MANY:  # less those that are gone; counted while it is off too
+            gc.collect()
         if was_enabled:
             gc.enable()
-        _since[0] += size
-        if _since[0] >= _OFTEN:
-            _since[0] = 0
-            gc.collect()

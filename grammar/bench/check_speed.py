@@ -186,7 +186,7 @@ class _Clock:
 
 def _phased(roots: Sequence[Path]) -> dict[str, float]:
     """Seconds of each phase; all trees are kept at once, which a check of large corpora avoids."""
-    with gc_paused(0):
+    with gc_paused():
         return _phases(roots)
 
 

@@ -114,7 +114,7 @@ def check_paths(
     size = sum(candidate.size for project in projects for candidate in project)
     processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     results = []
-    with gc_paused(0), ResultStore(cache, "check") as store, StickyPool(processes) as pool:
+    with gc_paused(), ResultStore(cache, "check") as store, StickyPool(processes) as pool:
         for result in _run(iter(projects), pool, store, options):
             on_done(result.files + len(result.skipped))
             results.append(_reported(result, names))

@@ -225,7 +225,7 @@ def _read_all(
     looked, kept = {}, {}
     size = 0
     for index, content in part.items():
-        with gc_paused(len(content.data)):
+        with gc_paused():
             looked[index], tree = _read(content, options)
         if tree is not None:
             size += len(content.data)
@@ -287,7 +287,7 @@ def check_part(
                 index, tree = own[id(module.table)]
                 syntax = tree.reading.syntax or _again(tree.source)
                 whole = replace(module, syntax=syntax)
-                with gc_paused(len(tree.source.text)):
+                with gc_paused():
                     checked[index] = _checked(linked, whole, tree, options)
     return checked
 
@@ -313,7 +313,7 @@ def _files(
 
 
 def _again(source: Source) -> ast.Module:
-    with gc_paused(len(source.text)):
+    with gc_paused():
         syntax = read_source(source).syntax
     assert syntax is not None, "it could be read before"
     return syntax

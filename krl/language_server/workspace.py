@@ -127,7 +127,7 @@ class OpenProject:
         known = self._files.get(path)
         if known is not None and known.source.text == text:
             return
-        with gc_paused(len(text)):
+        with gc_paused():
             self._files[path] = _read(path, text)
         self.changed()
 

@@ -40,7 +40,6 @@ from recovery.tuning import (
     HEAVY_GROUPS,
     MOST_COMPARED,
     MOST_PROPOSALS,
-    TRIAL_GARBAGE,
 )
 from support.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
@@ -65,15 +64,14 @@ def find_causes(
     """
     search = CauseSearch(recognizer, lines, weights, count_negatives, file_trial, parsed_files)
     causes: list[Cause] = []
-    for place, group in enumerate(groups):
-        search.is_thorough = place < HEAVY_GROUPS
-        is_open = not search.open.isdisjoint(group)
-        with gc_paused(TRIAL_GARBAGE if is_open else 0):
-            causes += _of_group(search, group)
-        on_done(1)
-    with gc_paused(TRIAL_GARBAGE):
+    with gc_paused():
+        for place, group in enumerate(groups):
+            search.is_thorough = place < HEAVY_GROUPS
+            with gc_paused():  # what many trials left is collected
+                causes += _of_group(search, group)
+            on_done(1)
         causes = merged_by_first_word(search, causes)
-    return merged_by_reason(search, merged_by_edits(search, causes), reasons)
+        return merged_by_reason(search, merged_by_edits(search, causes), reasons)
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:

@@ -42,7 +42,7 @@ def kept(packages: Sequence[str], made_of: Sequence[str], make: Callable[[], _T]
         data = text.encode("utf-8", "surrogatepass")
         key.update(b"%d:" % len(data) + data)
     file = folder / "values" / f"{key.hexdigest()}.pickle"
-    with contextlib.suppress(Exception), gc_paused(0):  # damage may raise anything
+    with contextlib.suppress(Exception), gc_paused():  # damage may raise anything
         value: _T = pickle.loads(zlib.decompress(file.read_bytes()))
         os.utime(file)
         return value
