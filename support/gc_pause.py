@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 # New objects from which on garbage is collected all the same, so that memory stays flat: they take
-# some 100 MB, and a collection goes through every object that there is.
-_MANY = 1_000_000
+# some 50 MB, and a collection goes through every object that there is.
+_MANY = 500_000
 
 
 @contextmanager

@@ -26,7 +26,8 @@ async function start() {
   } catch (error) {
     client = undefined;
     const chosen = await vscode.window.showErrorMessage(
-      `krl lsp did not start (${error.message}): pip install 'krl-workbench[lsp]', or set krl.command.`,
+      // what a process that cannot be started rejects with is nothing: the client has told why
+      `${command} lsp did not start${error ? ` (${error.message})` : ""}: pip install 'krl-workbench[lsp]', or set krl.command.`,
       "Settings",
     );
     if (chosen) vscode.commands.executeCommand("workbench.action.openSettings", "krl.command");

@@ -123,8 +123,9 @@ class Breakpoints:
 
     def _set_data_breakpoints(self, arguments: Arguments) -> Json:
         """All there are; those that are set already stay as they are."""
-        self._program.wait_for_stop()
         wanted = [one.text("dataId") or "" for one in arguments.all("breakpoints")]
+        if wanted or self._watches:  # VS Code says at the start that there are none
+            self._program.wait_for_stop()
         for name in [one for one in self._watches if one not in wanted]:
             self._program.debugger.forget(self._watches.pop(name))
         found: list[Json] = []

@@ -67,11 +67,10 @@ def find_causes(
     with gc_paused():
         for place, group in enumerate(groups):
             search.is_thorough = place < HEAVY_GROUPS
-            with gc_paused():  # what many trials left is collected
-                causes += _of_group(search, group)
+            causes += _of_group(search, group)
             on_done(1)
         causes = merged_by_first_word(search, causes)
-        return merged_by_reason(search, merged_by_edits(search, causes), reasons)
+    return merged_by_reason(search, merged_by_edits(search, causes), reasons)
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:

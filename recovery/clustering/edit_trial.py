@@ -18,6 +18,7 @@ from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_READ_TWICE, MOST_READINGS, MOST_RECOGNIZERS_KEPT
+from support.gc_pause import gc_paused
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,7 @@ class TrialResult:
     advanced: frozenset[int]
 
 
+@gc_paused()  # recognisers of earlier trials are garbage in cycles
 def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
     """A recogniser of the edited grammar, or ``None`` where the edits do not fit it.
 

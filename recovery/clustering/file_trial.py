@@ -16,6 +16,7 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import (
     FILES_PER_LINE,
+    MOST_CORES,
     MOST_FILE_TOKENS,
     MOST_FILES,
     MOST_REREAD,
@@ -98,7 +99,7 @@ class FileTrial:
         for place in sorted(wanted)[:MOST_REREAD]:
             text = self._files[place].text()
             length += len(text)
-            if length > MOST_REREAD_TEXT:
+            if length > MOST_REREAD_TEXT or wider.size > MOST_CORES:
                 break
             if not text:  # it is gone since the survey
                 continue

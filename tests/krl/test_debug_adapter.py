@@ -343,11 +343,12 @@ def test_over_standard_input_and_output(project: Path) -> None:
 
 
 def test_a_program_that_runs_can_be_paused_and_ended(client: Client, tmp_path: Path) -> None:
-    """It stops at its next statement; breakpoints can be set meanwhile."""
+    """It stops at its next statement; breakpoints can be set meanwhile, none on data too."""
     file = tmp_path / "main.src"
     file.write_text("DEF MAIN()\nINT I\nLOOP\nI=0\nWAIT SEC 0.01\nENDLOOP\nEND\n", encoding="utf-8")
     begun(client, file)
     assert "the program runs" == client.ask("stackTrace", threadId=1)["message"]
+    client.do("setDataBreakpoints", breakpoints=[])
     client.do("pause", threadId=1)
     assert "pause" == client.wait("stopped")["reason"]
     client.do("continue", threadId=1)
