@@ -226,8 +226,8 @@ MOST_FILE_TOKENS = 6_000
 #: Files read again for what a mended line entails, and their characters together. Bound on time.
 MOST_REREAD = 40
 MOST_REREAD_TEXT = 200_000
-#: Cores of an edited grammar's automaton beyond which no further file is read under it: an edit that
-#: leaves every line a second reading makes one for each line. Bound on time and memory.
+#: Cores of an edited grammar's automaton beyond which no further file is read under it: an edit
+#: that gives every line a second reading makes new ones in each file. Bound on time and memory.
 MOST_CORES = 2_000
 #: Files that parse in which a newly reserved word is tried, the shortest, and characters searched
 #: for such words. Bound on time.

@@ -73,6 +73,13 @@ def test_growth_names_shapes_with_their_slopes(
     assert ["format", "blank lines", 3] == [row["entry"], row["shape"], len(row["costs"])]
 
 
+def test_growth_leaves_out_what_cannot_be_made(capsys: pytest.CaptureFixture[str]) -> None:
+    """No refusal is measured where a program does not compile whose code was to be read."""
+    words = "bench growth --entry asm --largest 32 --jobs 1 --shape".split()
+    assert 2 == main([*words, "blocks never closed"])
+    assert "nothing to measure" in capsys.readouterr().err
+
+
 def test_growth_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
     """One line names the commands."""
     assert 2 == main(["bench", "growth", "--entry", "brew"])

@@ -19,7 +19,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from grammar.generation.shapes import SHAPES, Shape
-from krl.errors import FINE, InputError, run
+from krl.errors import BAD_INPUT, FINE, InputError, run
 from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
@@ -107,7 +107,8 @@ class _Entry:
 
     Its words may have the places ``{file}``, ``{other}`` (the same with lines left out), ``{out}``
     and ``{small}``. ``before`` are commands that make what is read, and are not measured; what
-    they print is at ``{printed}``. ``said`` gives the standard input.
+    they print is at ``{printed}``; shapes that they refuse are left out. ``said`` gives the
+    standard input.
     """
 
     words: str
@@ -231,8 +232,12 @@ def growth(
     ):
         waiting = [threads.submit(_isolated, *task, largest) for task in tasks]
         for (name, title), one in zip(tasks, waiting, strict=True):
-            rows.append(_row(name, title, one.result()))
+            found = one.result()
+            if found is not None:
+                rows.append(_row(name, title, found))
             advance()
+    if not rows:
+        raise InputError("nothing to measure: no such shape can be made for the command")
     write_json({"bench": "growth", "aim": _AIM, "rows": rows}, json_file, indent=1)
     _print(rows)
     return FINE
@@ -244,13 +249,17 @@ def _chosen(option: str, wanted: list[str] | None, known: Mapping[str, object]) 
     return [name for name in known if not wanted or name in wanted]
 
 
-def _isolated(entry: str, shape: str, largest: int) -> Growth:
+def _isolated(entry: str, shape: str, largest: int) -> Growth | None:
     from support.measure.isolated import call_isolated
 
     return call_isolated(_measure, entry, shape, largest)
 
 
-def _measure(entry: str, shape: str, largest: int) -> Growth:
+class _Unmade(Exception):
+    """What a command is to read cannot be made of a shape."""
+
+
+def _measure(entry: str, shape: str, largest: int) -> Growth | None:
     from krl.commands.app import app
     from support.measure.growth import measure_growth
 
@@ -288,9 +297,11 @@ def _measure(entry: str, shape: str, largest: int) -> Growth:
             for words in chosen.before:
                 with places["printed"].open("w") as printed:
                     os.dup2(printed.fileno(), 1)
-                    krl(filled(words))
+                    status = krl(filled(words))
                     sys.stdout.flush()
                     os.dup2(nowhere.fileno(), 1)
+                if status == BAD_INPUT:
+                    raise _Unmade
             said = folder / "said"
             said.write_bytes(chosen.said(file))
             with said.open("rb") as stream:
@@ -301,7 +312,10 @@ def _measure(entry: str, shape: str, largest: int) -> Growth:
         def krl(words: list[str]) -> int:
             return run(app(*words), words)
 
-        return measure_growth(prepare, krl, _SMALLEST, largest * 1_000)
+        try:
+            return measure_growth(prepare, krl, _SMALLEST, largest * 1_000)
+        except _Unmade:
+            return None
 
 
 def _row(entry: str, shape: str, found: Growth) -> dict[str, Any]:
