@@ -37,7 +37,7 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 # What tests work on is small: garbage may wait, of short work and of long.
 gc.set_threshold(20_000, 20, 50)
-gc_pause._OFTEN *= 8
+gc_pause._MANY *= 4
 
 # Nor does what a command says depend on how long it takes.
 os.environ["KRL_PROGRESS"] = "0"
