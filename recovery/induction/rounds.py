@@ -271,7 +271,7 @@ class Induction:
     ) -> tuple[list[Taken], list[Refused]]:
         """Folds after which the grammar is shorter, accepts no more negatives and reads no less.
 
-        The last ones bound lists, for which all has to be read that will be.
+        Where none is left at the end lists are bounded, for which all has to be read that will be.
         """
         recognizer, files = judge.recognizer, self.shown.files
         reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
@@ -300,14 +300,16 @@ class Induction:
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
             judge = replace(judge, recognizer=narrower)
             found = Folding(narrower, operands, self._prefixes).candidates()
-        if is_last:
-            texts = (file.text for file, wrong in zip(files, failures, strict=True) if not wrong)
-            taken += (
-                Taken(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
-                for bounded in bounded_lists(judge.recognizer, self._start, texts)
-                if bounded.edits not in self.struck
-            )
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
+        if is_last and not taken:
+            texts = (file.text for file, wrong in zip(files, failures, strict=True) if not wrong)
+            bounds = [
+                Taken(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
+                for bounded in bounded_lists(recognizer, self._start, texts)
+                if bounded.edits not in self.struck
+            ]
+            taken, too_short = self.shown.kept(self.grammar, bounds, self._names)
+            lost += too_short
         return taken, [*lost, *refused.values()]
 
     # ------------------------------------------------------------------------------------- literals
