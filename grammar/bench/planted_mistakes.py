@@ -20,6 +20,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from grammar.check.dependencies import Contribution, contribution
 from grammar.check.framework import Findings, check_module, check_project
 from grammar.check.project_check import Reading, read_source
 from grammar.diagnostics.diagnostic import Diagnostic
@@ -179,19 +180,20 @@ def _too_large(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int
 
 @dataclass(frozen=True, slots=True)
 class _Program:
-    """A file as it is linked and as it was read."""
+    """A file as it is linked, as it was read, and what it gives other files."""
 
     file: File
     source: Source
     reading: Reading
+    given: Contribution
 
 
 def _program(source: Source, origin: str) -> _Program:
     reading = read_source(source)
     table = None if reading.syntax is None else table_of(reading.syntax)
-    return _Program(
-        File(source.path, reading.syntax, origin, table, reading.words), source, reading
-    )
+    file = File(source.path, reading.syntax, origin, table, reading.words)
+    given = contribution(source.path, source.text, table, reading.words)
+    return _Program(file, source, reading, given)
 
 
 class _Checked:
@@ -246,10 +248,15 @@ class _Checked:
     def with_text(self, path: str, text: str) -> list[Diagnostic]:
         """The errors and warnings that are new once a file has another text."""
         before, findings = self.programs[path], dict(self.findings)
-        self.programs[path] = _program(Source(text, path), before.file.origin)
+        self.programs[path] = after = _program(Source(text, path), before.file.origin)
         stem = path.rpartition(".")[0].casefold()
-        try:  # what a data list declares concerns its program first
-            self._check(one for one in self.programs if one.rpartition(".")[0].casefold() == stem)
+        names = {name for name, _ in before.given.facts.items() ^ after.given.facts.items()}
+        try:
+            self._check(
+                other
+                for other, one in self.programs.items()
+                if other.rpartition(".")[0].casefold() == stem or names & one.given.words
+            )
             found = check_project(self.findings.values())
         finally:
             self.programs[path], self.findings = before, findings

@@ -65,12 +65,14 @@ CHECKS: tuple[Check, ...] = (
 class Findings:
     """What the check of one file found.
 
-    ``references`` are names that other files may declare, ``effects`` what other files rely on.
+    ``references`` are names that other files may declare, ``uses`` those in upper case that the
+    file uses and some file declares, ``effects`` what other files rely on.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     references: tuple[UnresolvedName, ...]
     effects: Effects = NO_EFFECTS
+    uses: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +119,12 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
     return Checked(
         module,
-        Findings(tuple(found), undeclared_names.references(context), effects(context)),
+        Findings(
+            tuple(found),
+            undeclared_names.references(context),
+            effects(context),
+            undeclared_names.uses(context),
+        ),
         context.resolution,
         context.types,
         context.enumerations,
@@ -132,7 +139,8 @@ def check_project(findings: Iterable[Findings], *, is_whole: bool = True) -> lis
     """
     kept = list(findings)
     found = [diagnostic for one in kept for diagnostic in one.diagnostics]
-    found += of_names(reference for one in kept for reference in one.references)
+    used = frozenset[str]().union(*(one.uses for one in kept))
+    found += of_names((reference for one in kept for reference in one.references), used)
     if is_whole:
         found += of_effects(one.effects for one in kept)
     return in_order(found)

@@ -59,10 +59,10 @@ def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]
         if use.space is Space.VALUE and not isinstance(use.answer, Found):
             uses.setdefault(use.name.key, []).append(use)
     several = {key: some for key, some in uses.items() if len(some) > 1 and key[0] != "$"}
-    if not several:
+    if not several or context.module.words:  # what cannot be read may use it
         return {}
     unused = _unused(context, _own_tables(context))
-    typos = Typos(symbol.name for symbol in unused.values())
+    typos = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
     found = {}
     for key, some in several.items():
         near = typos.meant(key)
@@ -79,17 +79,24 @@ def _own_tables(context: Context) -> tuple[Table, ...]:
 
 def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
     """The variables of some tables that the file does not use, by their names in upper case."""
-    used = {
-        answer.symbol
-        for name, answer in context.resolution.answers.items()
-        if isinstance(answer, Found) and answer.symbol.span != name.span
-    }
+    used = {found.symbol for found in _used(context)}
     return {
         symbol.key: symbol
         for table in tables
         for symbol in table.spaces[Space.VALUE].values()
         if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT) and symbol not in used
     }
+
+
+def _used(context: Context) -> Iterator[Found]:
+    for name, answer in context.resolution.answers.items():
+        if isinstance(answer, Found) and answer.symbol.span != name.span:
+            yield answer
+
+
+def uses(context: Context) -> frozenset[str]:
+    """The names in upper case that a file uses and some file declares."""
+    return frozenset(found.symbol.key for found in _used(context) if found.module)
 
 
 def _near_system_names(context: Context) -> Iterator[Diagnostic]:
@@ -108,8 +115,8 @@ def _near_system_names(context: Context) -> Iterator[Diagnostic]:
                 )
 
 
-def _is_declared(context: Context, name: str) -> bool:
-    found = context.scope.find(Space.VALUE, name.upper())
+def _is_declared(context: Context, name: str, space: Space = Space.VALUE) -> bool:
+    found = context.scope.find(space, name.upper())
     return isinstance(found, Found) and found.module is not None
 
 
@@ -197,7 +204,7 @@ def _names(table: Table, space: Space, access: Access | None = None) -> Iterator
 
 def references(context: Context) -> tuple[UnresolvedName, ...]:
     """The names in a file that other files may declare, in the order of their first places."""
-    uses: dict[tuple[Space, str], list[Use]] = {}
+    open_: dict[tuple[Space, str], list[Use]] = {}
     slips = _slipped_declarations(context)
     for use in context.resolution.open_uses:
         if use.space is Space.VALUE and use.name.key in slips:
@@ -205,11 +212,12 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
         if use.space is None or use.space is Space.LABEL:
             continue
         if _may_be_elsewhere(use):
-            uses.setdefault((use.space, use.name.key), []).append(use)
+            open_.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))
-    data = context.project.data_of(context.module) if uses else None
+    data = context.project.data_of(context.module) if open_ else None
     unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
-    return (*_members(context), *_others(context, uses, own, unused))
+    swapped = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
+    return (*_members(context), *_others(context, open_, own, swapped))
 
 
 def _members(context: Context) -> Iterator[UnresolvedName]:
@@ -235,11 +243,14 @@ def _others(
     context: Context,
     uses: Mapping[tuple[Space, str], Sequence[Use]],
     own: Callable[[Space], Typos],
-    unused: Mapping[str, Symbol],
+    swapped: Typos,
 ) -> Iterator[UnresolvedName]:
     is_certain = context.data is not None or context.project.data_of(context.module) is not None
     for (space, key), some in uses.items():
+        may_be_swapped = space is Space.VALUE and not _may_be_unread(some[0])
+        unused = swapped.meant(some[0].name.text) if may_be_swapped else ()
         near = _near(context, own, some[0])
+        is_swapped = len(unused) == 1 and near in ((), unused)
         yield UnresolvedName(
             space,
             some[0].name.text,
@@ -247,8 +258,9 @@ def _others(
             Region.of(context.source, some[0].name.span),
             len(some),
             space is Space.VALUE and key.startswith("$"),
-            near,
-            space is Space.VALUE and len(near) == 1 and near[0].upper() in unused,
+            near or (unused if is_swapped else ()),
+            is_swapped,
+            all(_is_declared(context, one, space) for one in near),
             _is_all_read(context, some[0]),
             is_certain,
         )
@@ -266,6 +278,10 @@ def _may_be_elsewhere(use: Use) -> bool:
     if isinstance(use.answer, MaybeElsewhere):
         return use.answer.reason is not Reason.AMBIGUOUS
     return isinstance(use.answer, Found)  # only EXT announces it
+
+
+def _may_be_unread(use: Use) -> bool:
+    return isinstance(use.answer, MaybeElsewhere) and use.answer.reason is Reason.UNREADABLE
 
 
 def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[str, ...]:
@@ -305,7 +321,7 @@ def _is_all_read(context: Context, use: Use) -> bool:
     and these are known by what they declare, not by what some other file calls.
     """
     project = context.project
-    if not isinstance(use.answer, MaybeElsewhere) or use.answer.reason is Reason.UNREADABLE:
+    if not isinstance(use.answer, MaybeElsewhere) or _may_be_unread(use):
         return False
     if use.space in (Space.VALUE, Space.CHANNEL):
         return project.has_config and not use.name.text.startswith("$")

@@ -8,7 +8,7 @@ how often it is used, and how many more there are like it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from grammar.diagnostics.codes import Severity
@@ -52,8 +52,8 @@ class UnresolvedName:
     ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
     first place of ``count``. ``near`` are names seen there that it may be a slip of; it
     ``is_swapped`` with one that the data list declares and the program does not use.
-    ``is_all_read``: no file is missing that could declare it; ``is_certain``: the data list of the
-    program is among those that are there.
+    ``is_declared``: files at hand declare those near. ``is_all_read``: no file is missing that
+    could declare it; ``is_certain``: the data list of the program is among those that are there.
     """
 
     space: Space | None
@@ -64,23 +64,25 @@ class UnresolvedName:
     is_system: bool
     near: tuple[str, ...] = ()
     is_swapped: bool = False
+    is_declared: bool = False
     is_all_read: bool = False
     is_certain: bool = False
 
 
-def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
+def of_project(found: Iterable[UnresolvedName], used: Set[str]) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
     An error in each file for what nothing declares though all that could is read; a warning for
     what is a slip of a name that is seen there, or that is used again and again and comes from
     elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
-    is a slip, what declares them is missing, so that these are notes, too.
+    is a slip, what declares them is missing, so that these are notes, too. ``used`` are declared
+    names that some file uses: what is near one that none does is a slip in its declaration.
     """
     uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
     for reference in found:
         uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
-    used = {
+    seen = {
         space: Typos(some[0].name for (at, _), some in uses.items() if at is space)
         for space in SLUGS
     }
@@ -89,7 +91,7 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
         (space, name): some[0].near
         or tuple(
             near
-            for near in used[space].meant(some[0].name)
+            for near in seen[space].meant(some[0].name)
             if _is_usual(ranks[space, near.upper()], ranks[space, name], near)
         )
         for (space, name), some in uses.items()
@@ -97,14 +99,19 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
     series = Counter(name for names in meant.values() for name in names)
     lost: dict[bool, list[tuple[Space | None, str]]] = {True: [], False: []}
     slips = {}
+    unused = {}
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)
         is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
         if near and (is_rare or any(one.is_swapped for one in some)):
             slips[key] = near
+        elif len(near) == 1 and some[0].is_declared and near[0].upper() not in used:
+            unused[key] = near
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
             lost[all(one.is_certain for one in some)].append(key)
     programs = Counter(uses[key][0].path for key in lost[False])
+    if len(unused) <= _MOST_LOST:  # more were given other names
+        slips |= unused
     told = slips | {
         key: ()
         for is_certain, keys in lost.items()

@@ -151,9 +151,9 @@ class Project:
         made = {}
         for space, names in self._names.items():
             known = [found[0] for found in names.values()]
-            made[space] = Typos(one.symbol.name for one in known if one.module)
+            made[space] = Typos(self._globals.system.names(space), series=Series.DIGITS)
             made[space].add((one.symbol.name for one in known if not one.module), Series.DIGITS)
-            made[space].add(self._globals.system.names(space), Series.DIGITS)
+            made[space].add((one.symbol.name for one in known if one.module), Series.LETTERS)
         return made
 
     def imported(self, found: Found) -> Answer:

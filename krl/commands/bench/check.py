@@ -106,6 +106,7 @@ def _print(record: Mapping[str, Any]) -> None:
                     [(row["kind"], *(_plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
                 )
             )
+        console.print(f"findings each in the median file: {_plain(planted['median_file'])}")
         before = planted["unplanted"]
         console.print(
             figures(

@@ -208,6 +208,29 @@ def test_a_slip_in_the_data_list(agrees: Agrees) -> None:
     agrees({"cell.dat": data, "cell.src": "\n".join(lines)}, is_complete=None)
 
 
+def test_a_slip_in_what_is_global(agrees: Agrees) -> None:
+    """What nothing uses and is one slip away from what others use often is declared wrongly."""
+    calls = ["RESETCLOCK() ;> KRL102?", *["RESETCLOCK()"] * 3]
+    cell = "\n".join(["DEF CELL()", *calls, "END"])
+    files = {"cell.src": cell, "resetclok.src": "DEF RESETCLOK()\nEND"}
+    agrees(files, is_complete=None)
+    user = "DEF USER()\nRESETCLOK()\nEND"
+    used = cell.replace("KRL102?", "KRL701-")
+    agrees({**files, "cell.src": used, "user.src": user}, is_complete=None)
+
+
+@pytest.mark.parametrize(
+    ("declared", "name"), [("XP17233", "XP1723"), ("kOBOT_ON", "ROBOT_ON"), ("TAKE_2", "TAKE_22")]
+)
+def test_any_slip_is_one_where_the_list_has_what_nothing_uses(
+    agrees: Agrees, declared: str, name: str
+) -> None:
+    """Names that could be of a series are slips where the program leaves what is declared out."""
+    data = f"DEFDAT CELL\nDECL INT {declared}=0\nENDDAT\n"
+    cell = f"DEF CELL()\n{name} = 1 ;> KRL101?\nEND"
+    agrees({"cell.dat": data, "cell.src": cell}, is_complete=None)
+
+
 def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
     """The errors and warnings in files that need not be readable."""
     contents = [Content(path, "", text.encode()) for path, text in files.items()]
