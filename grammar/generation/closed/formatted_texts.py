@@ -32,6 +32,20 @@ _SCANNED: Final[tuple[tuple[str, str, tuple[Type, ...]], ...]] = (
 )
 
 
+#: Parts of specifications: flags, widths and precisions, the empty ones most often.
+_FLAGS: Final = ("", "", "", "-", "+", "0", "#", "-0", "+#", "#0-")
+_WIDTHS: Final = ("", "", "", "1", "7", "12", "2047", "2048")
+_PRECISIONS: Final = ("", "", "", ".0", ".1", ".9", ".2047", ".")
+_LETTERS: Final = "diuxefgcsXq"
+
+
+def _specification(code: Code, width_only: bool = False) -> str:
+    """Any specification, seldom a wrong one: it need not fit its value."""
+    pick = code.choices.pick
+    flags, precision = ("", "") if width_only else (pick(_FLAGS), pick(_PRECISIONS))
+    return f"%{flags}{pick(_WIDTHS)}{precision}{pick(_LETTERS)}"
+
+
 def format_text(code: Code) -> bool:
     """SWRITE: texts from values; now and then a format does not fit its value."""
     place, state = array(code, TEXT), target(code, STATE)
@@ -41,7 +55,8 @@ def format_text(code: Code) -> bool:
     pattern, values = "", ""
     for _ in range(code.choices.between(0, 3)):
         type_, formats = code.choices.pick(_FORMATS)
-        pattern += code.choices.pick(("", " ", "x=", "%%")) + code.choices.pick(formats)
+        pattern += code.choices.pick(("", " ", "x=", "%%"))
+        pattern += code.choices.pick(formats) if code.choices.chance(60) else _specification(code)
         if type_ == COLOUR:  # nothing would tell which enumeration a constant is of
             values += f", {read(code, COLOUR) or 'TRUE'}"
         else:
@@ -58,6 +73,8 @@ def scan_text(code: Code) -> bool:
         return False
     choices = code.choices
     given, pattern, types = choices.pick(_SCANNED)
+    if choices.chance(30):
+        pattern = f'"{"".join(_specification(code, width_only=True) for _ in types)}"'
     source = given if choices.chance(70) else text(code)
     places = [constant_or_place(code, type_) for type_ in types]
     code.spend(2)
