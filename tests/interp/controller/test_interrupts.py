@@ -144,6 +144,19 @@ def test_resume_only_in_interrupts(go: Go) -> None:
     assert "resume_place" == go(program("RESUME\n")).outcome.error.slug
 
 
+def test_resume_from_a_nested_interrupt(go: Go) -> None:
+    """RESUME ends all routines above the declaring level, nested ones too [INT-10]."""
+    text = SEARCH.replace(
+        "INTERRUPT ON 10\n",
+        "INTERRUPT ON 10\nINTERRUPT DECL 20 WHEN $IN[2] DO SLOW()\nINTERRUPT ON 20\n",
+    )
+    text += "DEF SLOW()\nWAIT SEC 0.9\n$OUT[7]=TRUE\nEND\n"
+    ran = go(text, "t=1.2 IN[2]=TRUE\nt=1.5 IN[1]=TRUE")
+    assert [10, 20] == [one.fields["priority"] for one in ran.told("interrupt_leave")]
+    assert [] == ran.outputs()
+    assert 1 == ran.last("I")
+
+
 def test_interrupt_behind_the_last_line(go: Go) -> None:
     """The program has run ahead to its end, and the arm is still on its way [INT-08]."""
     ran = go(ONCE, "t=1.5 IN[1]=TRUE")
