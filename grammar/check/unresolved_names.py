@@ -110,7 +110,7 @@ def of_project(found: Iterable[UnresolvedName], used: Set[str]) -> Iterator[Diag
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
             lost[all(one.is_certain for one in some)].append(key)
     programs = Counter(uses[key][0].path for key in lost[False])
-    if len(unused) <= _MOST_LOST:  # more were given other names
+    if len(unused) == 1:  # of several the declarations are missing, or were given other names
         slips |= unused
     told = slips | {
         key: ()
