@@ -139,7 +139,7 @@ def check_project(findings: Iterable[Findings], *, is_whole: bool = True) -> lis
     """
     kept = list(findings)
     found = [diagnostic for one in kept for diagnostic in one.diagnostics]
-    used = frozenset[str]().union(*(one.uses for one in kept))
+    used = frozenset[str]().union(*(one.uses for one in kept)) if is_whole else None
     found += of_names((reference for one in kept for reference in one.references), used)
     if is_whole:
         found += of_effects(one.effects for one in kept)

@@ -144,6 +144,19 @@ def test_hover_explains_a_finding(project: OpenProject) -> None:
     assert "message of the controller: 2296" in said[0]
 
 
+def test_what_other_files_use_is_no_slip(project: OpenProject, tmp_path: Path) -> None:
+    """A declared name that the file at hand leaves out is not called a slip: another may use it."""
+    for name, body in (
+        ("RESETCLOK", ""),
+        ("USER", "RESETCLOK()\n"),
+        ("CALLS", "RESETCLOCK()\n" * 4),
+    ):
+        project.change(f"{tmp_path.as_posix()}/{name}.src", f"DEF {name}()\n{body}END\n")
+    looked = project.look(f"{tmp_path.as_posix()}/CALLS.src")
+    assert looked is not None
+    assert {"note"} == {one.severity for one in looked.diagnostics}
+
+
 def test_settings_count_in_an_editor(project: OpenProject, tmp_path: Path) -> None:
     """A finding that `krl.toml` turns off is not shown; one line that fails costs no other."""
     path = next(one for one in project.paths() if one.endswith("OTHER.src"))
