@@ -31,6 +31,11 @@ class PlacedStatement:
     statement: ast.Statement | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
     inside: PlacedStatement | None
 
+    @property
+    def is_in_spline(self) -> bool:
+        """Whether it stands in a spline block."""
+        return self.inside is not None and isinstance(self.inside.statement, ast.SplineBlock)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoutineBody:

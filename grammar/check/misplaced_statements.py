@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from grammar.check.context import Context, PlacedStatement, RoutineBody
+from grammar.check.context import Context, RoutineBody
 from grammar.check.statement_heads import head
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.motion_kinds import SPLINE_MOTIONS
@@ -60,7 +60,7 @@ def _declarations(context: Context, routine: RoutineBody) -> Iterator[Diagnostic
 def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     for placed in routine.statements:
         statement = placed.statement
-        if _is_in_spline(placed):
+        if placed.is_in_spline:
             continue  # the block itself is reported
         match statement:
             case ast.Motion(kind=kind) if kind != _ASYNCHRONOUS:
@@ -87,10 +87,6 @@ def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
         if isinstance(node, ast.Call) and node.name.key in _WORKSPACES:
             message = f"{node.name.text} in a submit program"
             yield context.finding("workspace-in-submit", node, message)
-
-
-def _is_in_spline(placed: PlacedStatement) -> bool:
-    return placed.inside is not None and isinstance(placed.inside.statement, ast.SplineBlock)
 
 
 # ------------------------------------------------------------------------------ interrupt routines
@@ -120,7 +116,7 @@ def _in_interrupt(
     reason = f"the interrupt of line {line} calls {name}"
     for placed in routine.statements:
         statement = placed.statement
-        if _is_in_spline(placed):
+        if placed.is_in_spline:
             continue
         slug, message = _forbidden(statement, declaration.is_global)
         if slug:

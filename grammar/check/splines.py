@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grammar.check.context import Context, PlacedStatement
+from grammar.check.context import Context
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.syntax import ast
@@ -17,14 +17,9 @@ def check(context: Context) -> Iterator[Diagnostic]:
             match placed.statement:
                 case ast.SplineBlock() as block:
                     yield from _block(context, block)
-                case ast.Motion(kind="SPL" | "SPL_REL") as motion if not _is_inside(placed):
+                case ast.Motion(kind="SPL" | "SPL_REL") as motion if not placed.is_in_spline:
                     message = f"{motion.kind} outside a spline block"
                     yield context.finding("spl-outside-block", motion, message)
-
-
-def _is_inside(placed: PlacedStatement) -> bool:
-    """Whether a statement stands in a spline block."""
-    return placed.inside is not None and isinstance(placed.inside.statement, ast.SplineBlock)
 
 
 def _block(context: Context, block: ast.SplineBlock) -> Iterator[Diagnostic]:
