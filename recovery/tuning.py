@@ -56,8 +56,11 @@ WORD_LIST_PART = 4
 USUAL_PART = 3
 #: How like an alternative has to be to one of a rule, as a ratio of `difflib`. Not measured.
 SIMILAR_RATIO = 0.6
-#: Steps for an alternative like those that a rule has, and against one unlike them. Not measured.
+#: Steps for an alternative like those that a rule has, and against one unlike them; where more
+#: speaks for it that it is; and where hardly anything else can be meant. Not measured.
 SIMILARITY_STEPS = 6
+STRONG_SIMILARITY_STEPS = 12
+STRONGEST_SIMILARITY_STEPS = 18
 #: Steps against a longer alternative of a rule that gathers single rules. Not measured.
 LOOSE_GATHERING_COST = 2
 #: Steps against an alternative of a new form, and alternatives from which on a rule has forms
@@ -274,6 +277,8 @@ LEAST_FILES_ALONE = 2
 WOULD_BE_SHARE = 0.8
 NAME_SHARE = 0.02
 NAMED_LINES = 3
+#: Origins with a keyword by which a single one that has it as a name is outvoted. Not measured.
+OUTVOTING_ORIGINS = 3
 #: The least share of lines with a word ahead that others begin without it, by so many tokens. Not
 #: measured.
 PREFIX_SHARE = 0.6
@@ -294,10 +299,16 @@ BALANCED_ORIGINS = 2
 FILES_WITH_ONE_DAMAGED = 6
 #: Words between opener and closer of one block. Not measured.
 BLOCK_MIDDLES = 3
+#: A middle is in at least one in so many blocks; where more than one in so many of the lines that
+#: blocks begin with are no middle, they have a body ahead of it. Not measured.
+MIDDLE_PART = 3
+BODY_PART = 20
 #: The part of what one rule reads that two may read together to be preferred. Not measured.
 READ_TOGETHER_SHARE = 0.8
 #: Kinds of list from which on a first item may have a form of its own. Not measured.
 MANY_LISTS = 8
+#: Characters of the signs ahead by which one in a line is told from others. Bound on memory.
+LONGEST_SIGNS_AHEAD = 60
 #: Lines of a form that a rule is tried on. Bound on time.
 MOST_SAMPLES = 64
 #: Lists of more than one item from which on none is taken to be long where none is, and the items
@@ -309,6 +320,8 @@ MISSING_RUN = 3
 #: The part of the kinds of line of one word that another has too, for one form to read both. Not
 #: measured.
 ALIKE_SHARE = 0.5
+#: Words so alike from which on one form reads them all. Not measured.
+ALIKE_WORDS = 3
 #: What a level counts by which operators bind weaker than they need, in symbols. Not measured.
 LEVEL_SYMBOLS = 12
 #: Alternatives from which on a rule of words is the list of all of them. Not measured.

@@ -22,7 +22,9 @@ from recovery.tuning import (
     BALANCED_ORIGINS,
     BALANCED_SHARE,
     BLOCK_MIDDLES,
+    BODY_PART,
     FILES_WITH_ONE_DAMAGED,
+    MIDDLE_PART,
 )
 
 #: A line as its leading word, empty where it has none, and its tokens.
@@ -181,7 +183,7 @@ def _gathered(
         return None
     middles = [word for word in order if word not in outside]
     # a middle divides: it recurs in most of the blocks
-    middles = [w for w in middles if sum(w in s for s in seen) * 3 >= len(seen)]
+    middles = [w for w in middles if sum(w in s for s in seen) * MIDDLE_PART >= len(seen)]
     if len(middles) > BLOCK_MIDDLES:
         middles = []
     for word in middles:
@@ -189,5 +191,5 @@ def _gathered(
         often = max(s[word] for s in seen) > 1
         missing = any(not s[word] for s in seen)
         block.often[word] = ("*" if missing else "+") if often else ("?" if missing else "")
-    block.has_body = not middles or sum(w not in middles for w in first) * 20 > len(first)
+    block.has_body = not middles or sum(w not in middles for w in first) * BODY_PART > len(first)
     return block

@@ -19,6 +19,7 @@ from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
 from recovery.tuning import (
     ITEMS_BEHIND_THE_FIRST,
+    LONGEST_SIGNS_AHEAD,
     MANY_LISTS,
     MOST_SAMPLES,
     READ_TOGETHER_SHARE,
@@ -369,7 +370,7 @@ def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]
                 key = _Key(text, "", 0)
             elif text.startswith("'"):
                 key = _Key(text, after, 0)
-                after = f"{after} {text}"[-60:]
+                after = f"{after} {text}"[-LONGEST_SIGNS_AHEAD:]
             else:
                 counts[text] += 1
                 key = _Key(text, "", counts[text])

@@ -16,7 +16,7 @@ from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import Symbol
 from recovery.proposals.edit_site import places_of
-from recovery.tuning import ALIKE_SHARE
+from recovery.tuning import ALIKE_SHARE, ALIKE_WORDS
 
 
 class LineEdits:
@@ -110,7 +110,7 @@ class LineEdits:
                     if len(h[2] & tails) >= ALIKE_SHARE * min(len(h[2]), len(tails))
                     and (h[0] in types) == (head in types)
                 ]
-                if len(alike) < 3:
+                if len(alike) < ALIKE_WORDS:
                     continue
                 every = tuple(n for _, ns, _ in alike for n in ns)
                 shapes = dict.fromkeys(

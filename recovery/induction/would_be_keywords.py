@@ -25,6 +25,7 @@ from recovery.tuning import (
     LEAST_FILES_ALONE,
     NAME_SHARE,
     NAMED_LINES,
+    OUTVOTING_ORIGINS,
     PREFIX_SHARE,
     PREFIX_TOKENS,
     WOULD_BE_FILES,
@@ -168,7 +169,7 @@ class WouldBeKeywords:
                 # one origin that uses it as a name does not outvote several that do not
                 and (
                     len(fillers[_PLAIN][word].union(read.get(word, ()))) > 1
-                    or len(places[word]) < 3
+                    or len(places[word]) < OUTVOTING_ORIGINS
                 )
             )
         )

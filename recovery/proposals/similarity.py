@@ -19,6 +19,8 @@ from recovery.tuning import (
     NEW_FORM_COST,
     SIMILAR_RATIO,
     SIMILARITY_STEPS,
+    STRONG_SIMILARITY_STEPS,
+    STRONGEST_SIMILARITY_STEPS,
 )
 
 
@@ -53,22 +55,24 @@ class Similarity:
             return 0
         kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self._is_one_of_words(rule):
-            return -3 * SIMILARITY_STEPS if _kind(new[0]) in kinds else -SIMILARITY_STEPS
+            return -STRONGEST_SIMILARITY_STEPS if _kind(new[0]) in kinds else -SIMILARITY_STEPS
         if self.gathers(rule):
             if not self._is_single(symbols):
                 if self.vocabulary.words_of(rule):
-                    return 3 * SIMILARITY_STEPS  # each is a word, and this is none
+                    return STRONGEST_SIMILARITY_STEPS  # each is a word, and this is none
                 return (
-                    2 * SIMILARITY_STEPS
+                    STRONG_SIMILARITY_STEPS
                     if self._is_known_by(rule, symbols[0])
                     else LOOSE_GATHERING_COST
                 )
             if not self.profile.is_free(symbols[0]):
                 return -SIMILARITY_STEPS  # it has its place already
-            return -3 * SIMILARITY_STEPS if _kind(new[0]) in kinds else -2 * SIMILARITY_STEPS
+            return (
+                -STRONGEST_SIMILARITY_STEPS if _kind(new[0]) in kinds else -STRONG_SIMILARITY_STEPS
+            )
         leads = self._leads(rule)
         if len(leads) == 1 and "" not in leads:
-            return -SIMILARITY_STEPS if symbols[0] in leads else 2 * SIMILARITY_STEPS
+            return -SIMILARITY_STEPS if symbols[0] in leads else STRONG_SIMILARITY_STEPS
         if best >= SIMILAR_RATIO and len(known) > 1:
             return -round(SIMILARITY_STEPS * best)
         return NEW_FORM_COST + max(0, MANY_FORMS - len(known))
