@@ -12,9 +12,8 @@
 `bench`              how many are noticed, and cases a second
 ==================== ===============================================================================
 
-``survivors.tsv`` is what `krl bench conform --survivors` left over of 270 mutants that were drawn
-with the seeds 52101, 52202, 61101 and 61201, without those that cases written since make red or
-that are no longer drawn: what cases are still missing for.
+``survivors.tsv`` is what `krl bench conform --survivors` left over of 120 mutants that were drawn
+with the seed 95202: what cases are still missing for.
 
 A case notices a fault if it passes without it and does not pass with it.
 """

@@ -54,7 +54,7 @@ _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 #: The fields of a trial but for its mutant.
 OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
 #: So many cases that may fail are run with a mutant that none of them notices.
-MOST: Final = 40
+MOST: Final = 60
 #: So many seconds of computing a case may take; all of them take less than a tenth of it.
 _SECONDS: Final = 2.0
 #: So much address space in bytes a mutant may take; a usual run takes less than a quarter of it.
@@ -155,10 +155,9 @@ def try_mutants(
 def _if_equivalent(trial: Trial) -> Trial:
     if trial.fate != "survived":
         return trial
-    mutant = trial.mutant
-    reason = equivalent().get(mutant.change, "")
-    if not reason and trial.runs and not trial.changed:
-        reason = searches().get((mutant.module, mutant.function), "")
+    reason = equivalent().get(trial.mutant.change, "")
+    if not reason and 0 < trial.runs == trial.reached and not trial.changed:
+        reason = _search(trial.mutant)
     return replace(trial, fate="equivalent", why=reason) if reason else trial
 
 
@@ -169,15 +168,19 @@ def equivalent() -> Mapping[tuple[str, ...], str]:
     return {tuple(row[key] for key in keys): row["reason"] for row in _known()["mutant"]}
 
 
+def _search(mutant: Mutant) -> str:
+    """Why a mutant changes only how something is sought; empty where it changes what is found."""
+    row = searches().get((mutant.module, mutant.function))
+    return "" if row is None or mutant.source in row.get("deciding", ()) else row["reason"]
+
+
 @cache
-def searches() -> Mapping[tuple[str, str], str]:
-    """Functions and constants that say how something is sought, by module and name, and why.
+def searches() -> Mapping[tuple[str, str], Mapping[str, Any]]:
+    """Functions and constants that say how something is sought, by module and name: their tables.
 
     A change of them that changes nothing seen only takes longer or shorter.
     """
-    return {
-        (row["module"], name): row["reason"] for row in _known()["search"] for name in row["names"]
-    }
+    return {(row["module"], name): row for row in _known()["search"] for name in row["names"]}
 
 
 @cache
@@ -199,22 +202,31 @@ def _candidates(mutant: Mutant, reaches: Sequence[Reach], most: int) -> _Candida
 
     First one for each line around it, the rarest first; then one of each rule that the code there
     cites; then one of each way through its module, as cases that run the same lines there mostly
-    notice the same; then every so many of what is left, so that long ones are among them.
+    notice the same; then every so many of what is left, so that long ones are among them. A change
+    of a search is tried on all cases that run it: it is equivalent only where none sees it.
     """
     uses = uses_of(mutant)
     reaching = [one for one in reaches if any(one.has(*lines) for lines in uses.items())]
     hard = [one for one in reaching if one.case.may_fail]
-    soft = [one for one in reaching if not one.case.may_fail]
+    tried = reaching
+    if not _search(mutant):
+        soft = [one for one in reaching if not one.case.may_fail]
+        tried = [*_chosen(mutant, hard, most), *soft[: max(1, most // 10)]]
+    # the lines are large, and no longer needed
+    return _Candidates(tuple(replace(one, lines={}) for one in tried), len(reaching), len(hard))
+
+
+def _chosen(mutant: Mutant, hard: Sequence[Reach], most: int) -> Iterator[Reach]:
+    """At most so many of the cases that may fail."""
     chosen: dict[str, Reach] = {}
     for way in (_of_rarest(mutant, hard), _of_rules(mutant, hard), _of_ways(mutant, hard)):
         new = (one for one in way if one.case.name not in chosen)
         chosen.update((one.case.name, one) for one in islice(new, most // 4))
+    yield from chosen.values()
     left = [one for one in hard if one.case.name not in chosen]
     room = most - len(chosen)
-    tried = [*chosen.values(), *left[:: -(-len(left) // room) or 1]] if room else [*chosen.values()]
-    tried += soft[: max(1, most // 10)]
-    # the lines are large, and no longer needed
-    return _Candidates(tuple(replace(one, lines={}) for one in tried), len(reaching), len(hard))
+    if room:
+        yield from left[:: -(-len(left) // room) or 1]
 
 
 def _of_rarest(mutant: Mutant, cases: Sequence[Reach]) -> Iterator[Reach]:

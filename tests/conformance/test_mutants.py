@@ -1,6 +1,7 @@
 """Mutants: which changes there are, that they are put in place and taken out, who notices them."""
 
 import ast
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -46,8 +47,11 @@ def _made(body: str) -> set[tuple[str, str]]:
 
 def _changes(module: str) -> list[tuple[str, str, str]]:
     """Function, was and now of all changes of a module."""
-    text = Path(str(import_module(module).__file__)).read_text(encoding="utf-8")
-    return [(one.function, one.was, one.now) for one in changes(ast.parse(text))]
+    return [(one.function, one.was, one.now) for one in changes(ast.parse(_text(module)))]
+
+
+def _text(module: str) -> str:
+    return Path(str(import_module(module).__file__)).read_text(encoding="utf-8")
 
 
 def _mutant(module: str, function: str, was: str, now: str) -> Mutant:
@@ -299,17 +303,40 @@ def test_known_equivalent_changes_exist() -> None:
         for module, name in searches()
         if all(name != function for function, _, _ in _changes(module))
     ]
+    assert [] == [
+        (module, line)
+        for (module, _), row in searches().items()
+        for line in row.get("deciding", ())
+        if not re.search(rf"^ *{re.escape(line)}$", _text(module), re.MULTILINE)
+    ]
 
 
 @pytest.mark.parametrize(
-    ("runs", "changed", "fate"),
-    [(1, "", "equivalent"), (0, "", "survived"), (1, "a/case", "survived")],
+    ("reached", "runs", "changed", "fate"),
+    [
+        (1, 1, "", "equivalent"),
+        (0, 0, "", "survived"),
+        (2, 1, "", "survived"),
+        (1, 1, "a/case", "survived"),
+    ],
 )
-def test_a_search_may_go_another_way(runs: int, changed: str, fate: Fate) -> None:
-    """A change of one is equivalent where cases ran it and none saw anything else."""
+def test_a_search_may_go_another_way(reached: int, runs: int, changed: str, fate: Fate) -> None:
+    """A change of one is equivalent where all cases that run it did, and saw nothing else."""
     mutant = _mutant("interp.robot.planning.schedule", "_bisected", "2.0", "3.0")
-    trial = Trial(mutant, "survived", reached=1, runs=runs, changed=changed)
+    trial = Trial(mutant, "survived", reached=reached, runs=runs, changed=changed)
     assert fate == mutant_trial._if_equivalent(trial).fate
+
+
+def test_a_search_is_tried_on_all_cases() -> None:
+    """A sample does not tell that nothing seen is another; what decides is no search."""
+    module = "interp.robot.planning.profile"
+    cases = [_case(name) for name in ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose")]
+    counts = []
+    for was, now in (("dt * jerk", "dt / jerk"), ("position <= 0.0", "position > 0.0")):
+        mutant = _mutant(module, "SpeedProfile.time_at", was, now)
+        reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
+        counts.append(len(mutant_trial._candidates(mutant, reaches, 1).tried))
+    assert [3, 1] == counts
 
 
 def test_shares_are_of_what_could_be_noticed() -> None:
