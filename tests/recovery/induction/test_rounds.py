@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from grammar.notation.edits import AddAlternative, AddToken, apply
+from grammar.notation.edits import AddAlternative, AddRule, AddToken, apply
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.induction import list_lengths
+from recovery.induction import list_lengths, rounds
 from recovery.induction.corpus_lines import held_out
 from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
@@ -271,6 +271,22 @@ def test_a_bound_can_be_struck_out(
     for _ in again.rounds():
         pass
     assert accepted == Recognizer(again.grammar).accepts("LINK A, B, C, D\n")
+
+
+def test_lists_are_bounded_in_a_round_of_their_own(
+    toy: Grammar, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While something can be folded no list is bounded: a fold may yet be dropped."""
+    monkeypatch.setattr(list_lengths, "SHORT_LIST_EXAMPLES", 1)
+    monkeypatch.setattr(rounds, "LEAST_FILES_ALONE", 1)  # what is folded first is folded at the end
+    start = apply(toy, (AddRule("halt", "spare\n    : HALT\n    ;"),))
+    none = NegativeSet(())
+    files = (CorpusFile("a.toy", "LINK A\nLINK A, B\nLINK A, B, C\n", frozenset({"a"})),)
+    titles = [
+        [step.title for step in done.taken] for done in Induction(start, files, (), none).rounds()
+    ]
+    folds = [["nothing calls spare"], ["at most 3 items in statement"]]
+    assert folds == [some for some in titles if some][-2:]
 
 
 def test_origins_are_held_out_whole(toy_files: tuple[CorpusFile, ...]) -> None:
