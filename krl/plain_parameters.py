@@ -1,8 +1,8 @@
 """Parameters that need no validation take their values without pydantic.
 
-typer builds an adapter of pydantic for each parameter of a command, given or not, which takes a
-third of the time of a short `krl run`. No value, a default, a text, a path or a word of a choice
-needs none; all else goes on to typer, and so does whatever is wrong.
+typer builds an adapter of pydantic for each parameter of a command, given or not: a sixth of the
+CPU time of a short `krl run`. No value, a default, a text, a path or a word of a choice needs none;
+all else goes on to typer, and so does whatever is wrong or has more to be checked than its kind.
 """
 
 from collections.abc import Callable
@@ -29,9 +29,10 @@ def _parameters(all_of: Callable[..., list[Any]], context: Any) -> list[Any]:
 
 
 def _processed(parameter: Any, process: Callable[..., Any], context: Any, value: Any) -> Any:
-    kind = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
+    descriptor = getattr(parameter, "type_descriptor", None)
+    kind = getattr(descriptor, "annotation", None)
     is_list = get_origin(kind) is list
-    if parameter.required and not value:
+    if (parameter.required and not value) or _has_checks(descriptor):
         return process(context, value)
     try:
         if value is None:
@@ -43,6 +44,15 @@ def _processed(parameter: Any, process: Callable[..., Any], context: Any, value:
     except ValueError:
         return process(context, value)
     return parameter.callback(context, parameter, taken) if parameter.callback else taken
+
+
+def _has_checks(descriptor: Any) -> bool:
+    """Whether typer is asked to convert a value itself, or to look at the file that it names."""
+    info = getattr(descriptor, "parameter_info", None)
+    asked = ("parser", "path_type", "exists", "writable", "resolve_path")
+    refused = ("file_okay", "dir_okay")
+    is_asked = any(getattr(info, name, None) for name in asked)
+    return is_asked or not all(getattr(info, name, True) for name in refused)
 
 
 def _plain(kind: Any, value: Any) -> Any:
