@@ -24,6 +24,7 @@ from grammar.semantics.types import (
 )
 from interp.port.requests import Invoke, Move, MoveSpline, Path, Poll, Read, Request, Value, Write
 from interp.values.faults import Fault, fault
+from interp.values.texts import Outcome
 from interp.values.values import ArrayValue, EnumValue, StructureValue, copied, empty, has_value
 
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN1"})
@@ -102,15 +103,17 @@ class RandomWorld:
         else:
             raise fault("invalid")
 
-    def _invoked(self, request: Invoke) -> tuple[Value | None, tuple[Value | None, ...]]:
+    def _invoked(self, request: Invoke) -> Outcome:
         """A result at random, and values for all that is passed :OUT and has none."""
         function = self._system.functions[request.name]
-        after = list(request.arguments)
-        for place, parameter in enumerate(function.parameters[: len(after)]):
-            if parameter.is_out and not has_value(after[place]):
-                after[place] = self._made(getattr(after[place], "type", parameter.type))
+        given = zip(function.parameters, request.arguments, strict=False)
+        changes = {
+            place: self._made(getattr(value, "type", parameter.type))
+            for place, (parameter, value) in enumerate(given)
+            if parameter.is_out and not has_value(value)
+        }
         result = None if function.result is None else self._made(function.result)
-        return result, tuple(after)
+        return result, changes
 
     # ----------------------------------------------------------------------- values
 

@@ -16,6 +16,7 @@ from grammar.semantics.predefined import System
 from grammar.semantics.types import INT, UNKNOWN, Array, Structure, Type
 from interp.port.executor import Executor
 from interp.port.requests import Crash, End, Fail, Invoke, Path, Read, Request, Value, Write
+from interp.values import texts
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import ArrayValue, StructureValue, copied, has_value, zero
 
@@ -51,16 +52,17 @@ class StubController:
                 return self._invoked(request)
         return None
 
-    def _invoked(self, request: Invoke) -> tuple[Value | None, tuple[Value | None, ...]]:
+    def _invoked(self, request: Invoke) -> texts.Outcome:
         """Zero as the result, and for all that is passed :OUT and has no value."""
         function = self._system.functions[request.name]
-        after = list(request.arguments)
-        for place, parameter in enumerate(function.parameters[: len(after)]):
-            if parameter.is_out and not has_value(after[place]):
-                type_ = getattr(after[place], "type", parameter.type)
-                after[place] = self._zero(type_)
+        given = zip(function.parameters, request.arguments, strict=False)
+        changes = {
+            place: self._zero(getattr(value, "type", parameter.type))
+            for place, (parameter, value) in enumerate(given)
+            if parameter.is_out and not has_value(value)
+        }
         result = None if function.result is None else self._zero(function.result)
-        return result, tuple(after)
+        return result, changes
 
     def read(self, path: Path) -> Value:
         """The value of a system variable or of a part of one; faults `index`, `uninitialised`."""

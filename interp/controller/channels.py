@@ -9,7 +9,7 @@ Timeouts are in seconds; #SYNC and #ABS wait for data, #COND does not (unconfirm
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from typing import Final
 
@@ -59,6 +59,8 @@ class Waiting:
 
 
 Arguments = Sequence[Value | None]
+#: The new values of arguments, by place from 0.
+Changes = Mapping[int, Value]
 
 
 @dataclass(slots=True)
@@ -84,46 +86,44 @@ class Channels:
         """Whether there is something to read."""
         return bool(self._data.get(channel))
 
-    def open(self, arguments: Arguments) -> list[Value | None]:
+    def open(self, arguments: Arguments) -> Changes:
         """COPEN(:NAME, handle)."""
         name = text_of(known(arguments[0])).upper().lstrip(":")
         self._last += 1
         self._handles[self._last] = name
-        return [arguments[0], self._last]
+        return {1: self._last}
 
-    def close(self, arguments: Arguments) -> list[Value | None]:
+    def close(self, arguments: Arguments) -> Changes:
         """CCLOSE(handle, state); what was not read is lost."""
         name = self._name(arguments[0])
         self._handles = {handle: one for handle, one in self._handles.items() if one != name}
         self._data.pop(name, None)
-        return [arguments[0], state_value("CMD_OK")]
+        return {1: state_value("CMD_OK")}
 
-    def write(self, arguments: Arguments) -> list[Value | None]:
+    def write(self, arguments: Arguments) -> Changes:
         """CWRITE: what was formatted is sent; a text without values is sent as it is."""
         if len(arguments) < _WRITTEN_VALUES:
             raise fault("argument")
         name = self._name(arguments[0])
-        after = list(arguments)
         target = empty(Array(CHAR, (_LONGEST,)))
         assert isinstance(target, ArrayValue)
         pattern, values = known(arguments[3]), [known(one) for one in arguments[4:]]
         if not values:
             text = text_of(pattern)
-            after[1] = state_value("CMD_OK", 0, len(text))
+            state: Value = state_value("CMD_OK", 0, len(text))
         else:
             _, changes = swrite(target, None, 0, pattern, *values)
-            after[1] = changes.get(1, state_value("CMD_OK"))
+            state = changes[1]
             text = text_of(changes.get(0, target))
         for listener in self.listeners:
             listener(name, text)
-        return after
+        return {1: state}
 
-    def read(self, arguments: Arguments, since: int) -> list[Value | None] | Waiting:
+    def read(self, arguments: Arguments, since: int) -> Changes | Waiting:
         """CREAD, requested at ``since``; `Waiting` where there is nothing to read yet."""
         if len(arguments) < _READ_VARIABLES:
             raise fault("argument")
         name = self._name(arguments[0])
-        after = list(arguments)
         mode = arguments[2]
         if not self._data[name]:
             timeout = converted(known(arguments[3]), REAL)
@@ -132,22 +132,14 @@ class Channels:
             is_over = until is not None and self.clock.now >= until
             is_cyclic = isinstance(mode, EnumValue) and mode.name.upper() == "COND"
             if is_cyclic or is_over:
-                after[1] = state_value("CMD_TIMEOUT")
-                return after
+                return {1: state_value("CMD_TIMEOUT")}
             return Waiting(name, until)
         text = self._data[name].popleft()
         source = empty(Array(CHAR, (max(1, len(text)),)))
         assert isinstance(source, ArrayValue)
         set_text(source, text)
         _, changes = sread(source, None, known(arguments[4]), known(arguments[5]), *arguments[6:])
-        for place, value in changes.items():
-            if place == 1:
-                after[1] = value
-            elif place == 2:
-                after[4] = value
-            elif place >= 4:
-                after[place + 2] = value
-        return after
+        return {place if place == 1 else place + 2: value for place, value in changes.items()}
 
     def _name(self, handle: Value | None) -> str:
         if isinstance(handle, int) and handle in self._handles:

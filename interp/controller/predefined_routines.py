@@ -6,7 +6,7 @@ advance run is data (`grammar.semantics.predefined`) [ADV-04, ADV-07].
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from grammar.semantics.predefined import PredefinedFunction, System
@@ -20,11 +20,12 @@ from interp.controller.positions import FramesInForce, axes_value, pose_of, pose
 from interp.controller.predefined_values import empty_structure
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
-from interp.port.requests import Invoke, Path, Value
+from interp.port.requests import Invoke, Path
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault
 from interp.values.poses import IDENTITY, Pose
+from interp.values.texts import Outcome
 from interp.values.values import (
     EnumValue,
     StructureValue,
@@ -39,8 +40,6 @@ from interp.values.values import (
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
 
-#: The result, ``None`` for procedures, and the values of all arguments after the call.
-Reply = tuple[Value | None, Sequence[Value | None]]
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 #: Variables whose size is in the profile.
 _SIZES: Final = {
@@ -72,7 +71,7 @@ class PredefinedRoutines:
         self._newest = System.load().functions
 
     def call(self, task: Task, request: Invoke) -> Answer:
-        """The result and the arguments after the call, or a wait. Raises `Fault`."""
+        """The result and the new values of arguments, or a wait. Raises `Fault`."""
         rule = _RULES.get(request.name)
         entry = self._functions.get(request.name) or self._newest[request.name]
         if rule is None:
@@ -81,7 +80,7 @@ class PredefinedRoutines:
             return self._advance.when_reached(task, request, lambda: rule(self, task, request))
         return rule(self, task, request)
 
-    def _unsupported(self, task: Task, request: Invoke, entry: PredefinedFunction) -> Reply:
+    def _unsupported(self, task: Task, request: Invoke, entry: PredefinedFunction) -> Outcome:
         """What is not simulated: a fault, or nothing with a zero as its result."""
         if not self._state.profile.is_tolerant:
             raise own_fault("unsupported")
@@ -89,8 +88,8 @@ class PredefinedRoutines:
         self._state.messages.post(task.name, request.at, 0, text)
         result = entry.result
         if result is None:
-            return None, request.arguments
-        return 0 if result == UNKNOWN else zero(result), request.arguments
+            return None, {}
+        return 0 if result == UNKNOWN else zero(result), {}
 
     @staticmethod
     def _stops_advance(request: Invoke) -> bool:
@@ -104,7 +103,7 @@ class PredefinedRoutines:
 
     # ------------------------------------------------------------------------ outputs, channels
 
-    def _pulse(self, _task: Task, request: Invoke) -> Reply:  # [IOT-07, IOT-08]
+    def _pulse(self, _task: Task, request: Invoke) -> Outcome:  # [IOT-07, IOT-08]
         _, level, time = (*request.arguments, None, None, None)[:3]
         path: Path = request.paths[0] or () if request.paths else ()
         if len(path) != 2 or path[0] != "$OUT" or not isinstance(path[1], int):
@@ -113,25 +112,25 @@ class PredefinedRoutines:
             raise fault("argument")
         seconds: Any = known(time)
         self._state.signals.pulse(path[1], level, float(seconds))
-        return None, request.arguments
+        return None, {}
 
-    def _open(self, _task: Task, request: Invoke) -> Reply:
-        return None, tuple(self._channels.open(request.arguments))
+    def _open(self, _task: Task, request: Invoke) -> Outcome:
+        return None, self._channels.open(request.arguments)
 
-    def _close(self, _task: Task, request: Invoke) -> Reply:
-        return None, tuple(self._channels.close(request.arguments))
+    def _close(self, _task: Task, request: Invoke) -> Outcome:
+        return None, self._channels.close(request.arguments)
 
-    def _send(self, _task: Task, request: Invoke) -> Reply:
-        return None, tuple(self._channels.write(request.arguments))
+    def _send(self, _task: Task, request: Invoke) -> Outcome:
+        return None, self._channels.write(request.arguments)
 
-    def _receive(self, _task: Task, request: Invoke) -> Reply | Blocked:
+    def _receive(self, _task: Task, request: Invoke) -> Outcome | Blocked:
         channels, clock = self._channels, self._state.clock
         since = clock.now
 
-        def attempt() -> Reply | Blocked:
+        def attempt() -> Outcome | Blocked:
             found = channels.read(request.arguments, since)
             if not isinstance(found, Waiting):
-                return None, tuple(found)
+                return None, found
             until = found.until
             return Blocked(
                 request,
@@ -146,69 +145,68 @@ class PredefinedRoutines:
 
     # ------------------------------------------------------------------------------- messages
 
-    def _message(self, task: Task, request: Invoke) -> Reply:
+    def _message(self, task: Task, request: Invoke) -> Outcome:
         kind, message, parameters, *_ = (*request.arguments, None, None)
         word = kind.name.upper() if isinstance(kind, EnumValue) else "NOTIFY"
         return self._show(task, request, word, message, parameters)
 
-    def _dialogue(self, task: Task, request: Invoke) -> Reply:
+    def _dialogue(self, task: Task, request: Invoke) -> Outcome:
         message, parameters, *_ = (*request.arguments, None)
         return self._show(task, request, "DIALOGUE", message, parameters)
 
-    def _show(self, task: Task, request: Invoke, kind: str, message: Any, parameters: Any) -> Reply:
+    def _show(
+        self, task: Task, request: Invoke, kind: str, message: Any, parameters: Any
+    ) -> Outcome:
         if not isinstance(message, StructureValue):
             raise fault("argument")
         number: Any = message.get("NR") or 0
         given: Any = message.get("MSG_TXT")
         text = _filled(text_of(given), parameters)
-        return self._state.messages.show(
-            task.name, request.at, kind, number, text
-        ), request.arguments
+        return self._state.messages.show(task.name, request.at, kind, number, text), {}
 
-    def _exists_message(self, _task: Task, request: Invoke) -> Reply:
-        return self._state.messages.find(_int(request, 0)) is not None, request.arguments
+    def _exists_message(self, _task: Task, request: Invoke) -> Outcome:
+        return self._state.messages.find(_int(request, 0)) is not None, {}
 
-    def _exists_dialogue(self, _task: Task, request: Invoke) -> Reply:
+    def _exists_dialogue(self, _task: Task, request: Invoke) -> Outcome:
         """TRUE as long as it has no answer; then the second argument is the button."""
         shown = self._state.messages.find(_int(request, 0))
-        after = list(request.arguments)
-        if shown is not None and shown.answer is None:
-            return True, request.arguments
-        if shown is not None:
-            after[1] = shown.answer
-            self._state.messages.clear(shown.handle)
-        return False, tuple(after)
+        if shown is None:
+            return False, {}
+        if shown.answer is None:
+            return True, {}
+        self._state.messages.clear(shown.handle)
+        return False, {1: shown.answer}
 
-    def _answer_dialogue(self, _task: Task, request: Invoke) -> Reply:
+    def _answer_dialogue(self, _task: Task, request: Invoke) -> Outcome:
         shown = self._state.messages.find(_int(request, 0))
         if shown is None or not shown.is_dialogue:
-            return False, request.arguments
+            return False, {}
         shown.answer = _int(request, 1)
-        return True, request.arguments
+        return True, {}
 
-    def _clear_message(self, _task: Task, request: Invoke) -> Reply:
-        return self._state.messages.clear(_int(request, 0)), request.arguments
+    def _clear_message(self, _task: Task, request: Invoke) -> Outcome:
+        return self._state.messages.clear(_int(request, 0)), {}
 
-    def _is_set(self, _task: Task, request: Invoke) -> Reply:
-        return self._state.messages.is_set(_int(request, 0)), request.arguments
+    def _is_set(self, _task: Task, request: Invoke) -> Outcome:
+        return self._state.messages.is_set(_int(request, 0)), {}
 
     # --------------------------------------------------------------------------------- errors
 
-    def _clear_error(self, _task: Task, request: Invoke) -> Reply:
+    def _clear_error(self, _task: Task, request: Invoke) -> Outcome:
         """ERR_CLEAR: the error has the number 0 [TYP-13]."""
         error = request.arguments[0]
         if not isinstance(error, StructureValue):
             raise fault("argument")
         cleared = copied(error)
         cleared.set("NUMBER", 0)
-        return None, (cleared, *request.arguments[1:])
+        return None, {0: cleared}
 
-    def _raise_error(self, _task: Task, request: Invoke) -> Reply:
+    def _raise_error(self, _task: Task, request: Invoke) -> Outcome:
         """ERR_RAISE: the fault that the error describes; without one, nothing (unconfirmed)."""
         error = request.arguments[0]
         value = error.get("NUMBER") if isinstance(error, StructureValue) else None
         if value == 0:
-            return None, request.arguments
+            return None, {}
         number: Any = known(value)
         try:
             raise message_fault(number)
@@ -218,7 +216,7 @@ class PredefinedRoutines:
 
     # ------------------------------------------------------------------------------ the robot
 
-    def _stop_robot(self, task: Task, request: Invoke) -> Reply:
+    def _stop_robot(self, task: Task, request: Invoke) -> Outcome:
         """ROB_STOP: the arm stands until ROB_STOP_RELEASE, whatever $OV_PRO is meanwhile.
 
         A submit program shows 81 for a stop on a ramp, 82 for one that keeps to the path [SUB-06]
@@ -231,13 +229,13 @@ class PredefinedRoutines:
             number = 81 if is_ramp else 82
             self._state.messages.post_number(request.at, number, "state", task.name)
         self._arm.hold()
-        return True, request.arguments
+        return True, {}
 
-    def _release_robot(self, _task: Task, request: Invoke) -> Reply:
+    def _release_robot(self, _task: Task, _request: Invoke) -> Outcome:
         self._arm.release()
-        return None, request.arguments
+        return None, {}
 
-    def _forward(self, _task: Task, request: Invoke) -> Reply:
+    def _forward(self, _task: Task, request: Invoke) -> Outcome:
         """The pose of axes, in the base and tool of the advance run [FCT-03]."""
         from interp.robot.kinematics.targets import turn_of
 
@@ -248,9 +246,9 @@ class PredefinedRoutines:
         status = int(kinematics.status(axes))
         externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
         pose = pose_value(placement.at(externals).point(flange), status, turn_of(axes), externals)
-        return pose, (request.arguments[0], 0)
+        return pose, {1: 0}
 
-    def _inverse(self, _task: Task, request: Invoke) -> Reply:
+    def _inverse(self, _task: Task, request: Invoke) -> Outcome:
         """The axes of a pose; the status is not 0 where it cannot be reached [FCT-03]."""
         from interp.robot.kinematics.targets import solve
 
@@ -261,7 +259,6 @@ class PredefinedRoutines:
         externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
         origin = [start.get(name, 0.0) for name in _AXES]
         status, turn = target.get("S"), target.get("T")
-        after = (*request.arguments[:2], 0)
         try:
             found = solve(
                 kinematics,
@@ -271,10 +268,10 @@ class PredefinedRoutines:
                 start=origin,
             )
         except Fault:
-            return axes_value(origin), (*request.arguments[:2], 1)
-        return axes_value([*found.axes, *externals]), after
+            return axes_value(origin), {2: 1}
+        return axes_value([*found.axes, *externals]), {2: 0}
 
-    def _couple(self, task: Task, request: Invoke) -> Reply:
+    def _couple(self, task: Task, request: Invoke) -> Outcome:
         """EK: the frame on an external kinematic system, which $BASE then moves with [FCT-11].
 
         That a base is coupled by this value alone is unconfirmed.
@@ -293,7 +290,7 @@ class PredefinedRoutines:
         for name, number in zip("XYZABC", pose.components, strict=True):
             frame.set(name, single(number))
         self._frames.couple(pose_of(frame) or IDENTITY, table)
-        return frame, request.arguments
+        return frame, {}
 
     def _kinematics(self) -> tuple[Kinematics, Placement]:
         if self._state.machine is None:
@@ -302,37 +299,36 @@ class PredefinedRoutines:
 
     # ---------------------------------------------------------------------------------- others
 
-    def _workspace(self, task: Task, request: Invoke) -> Reply:
+    def _workspace(self, task: Task, _request: Invoke) -> Outcome:
         """Shared workspaces are always free; a submit program may not use them [SUB-06]."""
         if task.name == "submit":
             raise message_fault(2825)
-        return True, request.arguments
+        return True, {}
 
-    def _size(self, _task: Task, request: Invoke) -> Reply:
+    def _size(self, _task: Task, request: Invoke) -> Outcome:
         """GETVARSIZE(#NAME): the elements of an array of the controller."""
         which = request.arguments[0]
         if not isinstance(which, EnumValue):
             raise fault("argument")
         name = which.name.upper()
         if name in _SIZES:
-            return self._state.profile.sizes[_SIZES[name]], request.arguments
-        return self._state.variables.size(f"${name}"), request.arguments
+            return self._state.profile.sizes[_SIZES[name]], {}
+        return self._state.variables.size(f"${name}"), {}
 
-    def _no_message(self, _task: Task, request: Invoke) -> Reply:
+    def _no_message(self, _task: Task, _request: Invoke) -> Outcome:
         """MBX_REC: 1, for nothing has come (unconfirmed); a message would be 0."""
-        return 1, request.arguments
+        return 1, {}
 
-    def _fine(self, _task: Task, request: Invoke) -> Reply:
+    def _fine(self, _task: Task, _request: Invoke) -> Outcome:
         """GETSYSSTATE: known, and 0: no fault (unconfirmed)."""
-        # A number of its own: executors see by identity whether an argument was changed.
-        return True, (request.arguments[0], 0, single(0.0))
+        return True, {1: 0, 2: 0.0}
 
-    def _zero(self, _task: Task, request: Invoke) -> Reply:
+    def _zero(self, _task: Task, _request: Invoke) -> Outcome:
         """SYNC: there is no other robot."""
-        return 0, request.arguments
+        return 0, {}
 
-    def _no(self, _task: Task, request: Invoke) -> Reply:
-        return False, request.arguments
+    def _no(self, _task: Task, _request: Invoke) -> Outcome:
+        return False, {}
 
 
 def _int(request: Invoke, place: int) -> int:
@@ -356,7 +352,7 @@ def _filled(text: str, parameters: Any) -> str:
     return text
 
 
-_Rule = Callable[[PredefinedRoutines, Task, Invoke], Reply | Blocked]
+_Rule = Callable[[PredefinedRoutines, Task, Invoke], Outcome | Blocked]
 _RULES: Mapping[str, _Rule] = {
     "PULSE": PredefinedRoutines._pulse,
     "COPEN": PredefinedRoutines._open,

@@ -74,8 +74,8 @@ class Invoke(Asking):
 
     An argument left out is ``None``. ``paths`` has one entry for each argument: the system variable
     that it is, where it is passed :OUT and is one, so that PULSE knows its output; else ``None``.
-    Reply: the result (``None`` for procedures) and the values of all arguments after the call, or a
-    fault.
+    Reply: the result (``None`` for procedures) and the new values of the arguments that it sets, by
+    their places from 0; or a fault.
     """
 
     name: str

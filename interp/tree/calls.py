@@ -98,15 +98,14 @@ class Calls(Expressions):
             raise untyped_result(name)
         if name in BUILTINS:
             _check(zip(function.parameters, node.arguments, places, values, strict=False))
-            reply = call(name, values, Surroundings(self.run.random, self.find))
-            result, after = reply.result, reply.arguments
+            result, changes = call(name, values, Surroundings(self.run.random, self.find))
         else:
             values = [copied(value) for value in values]
             paths = [place.path if isinstance(place, SystemPlace) else None for place in places]
-            result, after = yield Invoke(self.at(), name, tuple(values), tuple(paths))
-        for place, before, value in zip(places, values, after, strict=True):
-            if place is not None and value is not None and value is not before:
-                yield from self.store(place, value)
+            result, changes = yield Invoke(self.at(), name, tuple(values), tuple(paths))
+        for number, place in enumerate(places):
+            if place is not None and number in changes:
+                yield from self.store(place, changes[number])
         return result
 
     def _given(

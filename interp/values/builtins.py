@@ -206,18 +206,6 @@ class PredefinedFunction:
         return self.changes_more
 
 
-@dataclass(frozen=True, slots=True)
-class Reply:
-    """The result, ``None`` for a procedure, and all arguments after the call.
-
-    Arguments that did not change are the same objects. A changed one is assigned as any value is:
-    a text to an array of CHAR, an INT to a REAL.
-    """
-
-    result: Value | None
-    arguments: tuple[Value | None, ...]
-
-
 def _plain(function: Callable[..., Any]) -> Callable[..., Outcome]:
     return lambda *arguments: (function(*arguments), {})
 
@@ -274,12 +262,13 @@ WORLD: frozenset[str] = frozenset(
 )
 
 
-def call(name: str, arguments: Sequence[Value | None], surroundings: Surroundings) -> Reply:
+def call(name: str, arguments: Sequence[Value | None], surroundings: Surroundings) -> Outcome:
     """Carry out a function of `BUILTINS`; an argument left out is ``None``.
 
     What is passed :IN is converted to the parameter's type [ARI-04]. Faults ``uninitialised`` where
     it has no value, ``argument`` where there are too few or too many arguments or a wrong one, and
-    what the function faults. The arguments themselves are not changed: see `Reply`.
+    what the function faults. The arguments themselves are not changed: the caller assigns the new
+    values as any value is, a text to an array of CHAR, an INT to a REAL.
     """
     builtin = BUILTINS[name.upper()]
     least = len(builtin.parameters)
@@ -292,9 +281,7 @@ def call(name: str, arguments: Sequence[Value | None], surroundings: Surrounding
     given += arguments[least:]
     if builtin.uses_surroundings:
         given.insert(0, surroundings)
-    result, changes = builtin.function(*given)
-    after = (changes.get(place, argument) for place, argument in enumerate(arguments))
-    return Reply(result, tuple(after))
+    return builtin.function(*given)
 
 
 def reads_text(type_: Type) -> bool:

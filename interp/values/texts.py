@@ -26,7 +26,8 @@ from interp.values.values import (
     text_of,
 )
 
-#: The result, and the new values of arguments by place.
+#: The result, ``None`` for a procedure, and the new values of arguments that it sets, by their
+#: places from 0.
 Outcome = tuple[Value | None, Mapping[int, Value]]
 
 _UPPER = str.maketrans(ascii_lowercase, ascii_uppercase)

@@ -252,3 +252,16 @@ def test_a_wrong_argument_of_a_predefined_function_is_one_fault() -> None:
     assert isinstance(seen.last, End)
     numbers = [one.value for one in seen.steps if isinstance(one, Write)]
     assert [2274] * len(wrong) == numbers
+
+
+@pytest.mark.parametrize("last", [5, 500])
+def test_an_argument_that_is_set_twice_has_the_last_value(last: int) -> None:
+    """Whatever it had before; and a system variable is written where its value stays."""
+    seen = _run(
+        f"DEF main()\nDECL STATE_T S\nINT I,O\nBOOL B\nI={last}\nO=0\n$FLAG[1]=TRUE\n"
+        f'SREAD("1 {last}",S,O,"%d %d",I,I)\n$OUT_C[1]=I==1\n$TIMER[1]=I\n'
+        'B=STRTOBOOL("TRUE",$FLAG[1])\nEND\n'
+    )
+    assert isinstance(seen.last, End)
+    written = [one.value for one in seen.steps if isinstance(one, Write)]
+    assert [True, False, last, True] == written

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -157,8 +157,8 @@ class Services:
 
             def completion(reply: Any) -> Operation | None:
                 if is_invoked:
-                    result, new = reply
-                    store = self._stores(entry, block, values, request.arguments, new)
+                    result, changes = reply
+                    store = self._stores(entry, block, values, changes)
                     return self._stored(store, entry, block, result, after)
                 entry.put(block, reply)
                 return after
@@ -187,10 +187,9 @@ class Services:
         def operation() -> Operation | None:
             block = entry.take()
             values = entry.values(block)
-            arguments = make(values, _NOWHERE)
-            reply = call(name, arguments, self._surroundings)
-            store = self._stores(entry, block, values, arguments, reply.arguments)
-            return self._stored(store, entry, block, reply.result, after)
+            result, changes = call(name, make(values, _NOWHERE), self._surroundings)
+            store = self._stores(entry, block, values, changes)
+            return self._stored(store, entry, block, result, after)
 
         return operation
 
@@ -206,14 +205,13 @@ class Services:
         entry: Entry,
         block: Block,
         values: Sequence[Value | None],
-        before: Sequence[Value | None],
-        after: Sequence[Value | None],
+        changes: Mapping[int, Value],
     ) -> Iterator[Request]:
-        """Store the arguments that have another value than before; those of the world are asked."""
+        """Store the arguments that have new values; those of the world are asked."""
         for change in entry.changes:
-            value = after[change.argument]
-            if value is None or value is before[change.argument]:
+            if change.argument not in changes:
                 continue
+            value = changes[change.argument]
             path = change.changed.path
             if path is None:
                 entry.store(block, change, value)

@@ -69,7 +69,7 @@ def _run(verified: Verified, routine: str, replies: Any) -> None:
         if isinstance(request, Read):
             reply = next(replies)
         elif isinstance(request, Invoke):
-            reply = (next(replies), request.arguments)
+            reply = (next(replies), dict(enumerate(request.arguments)))
         elif isinstance(request, DeclareInterrupt):
             with suppress(RuntimeFailure):
                 machine.evaluate(request.condition, read)

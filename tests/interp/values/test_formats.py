@@ -1,5 +1,6 @@
 """SWRITE and SREAD: values into a text and out of it."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
@@ -7,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.semantics.types import CHAR, INT_MAX, INT_MIN, Array, Enumeration
-from interp.values.builtins import Randomness, Reply, Surroundings, call
+from interp.values.builtins import Randomness, Surroundings, call
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 from interp.values.values import ArrayValue, Value, constant, empty, set_text, single, text_of
@@ -15,8 +16,14 @@ from interp.values.values import ArrayValue, Value, constant, empty, set_text, s
 GREEN = constant(Enumeration("COLOUR", ("RED", "Green")), "GREEN")
 
 
-def _call(name: str, *arguments: Any) -> Reply:
-    return call(name, arguments, Surroundings(Randomness(), lambda _name: None))
+#: The new values of arguments, by place.
+Changes = Mapping[int, Value]
+
+
+def _call(name: str, *arguments: Any) -> Changes:
+    result, changes = call(name, arguments, Surroundings(Randomness(), lambda _: None))
+    assert result is None
+    return changes
 
 
 def _text(size: int, text: str) -> ArrayValue:
@@ -26,17 +33,19 @@ def _text(size: int, text: str) -> ArrayValue:
     return array
 
 
-def _state(reply: Reply) -> tuple[str, int, int]:
-    state = to_json(reply.arguments[1])
+def _state(reply: Changes) -> tuple[str, int, int]:
+    state = to_json(reply[1])
     return state["RET1"].removeprefix("#"), state["HITS"], state["LENGTH"]
 
 
-def _swrite(pattern: str, *values: Any, size: int = 60, before: str = "", offset: int = 0) -> Reply:
+def _swrite(
+    pattern: str, *values: Any, size: int = 60, before: str = "", offset: int = 0
+) -> Changes:
     return _call("SWRITE", _text(size, before), None, offset, pattern, *values)
 
 
-def _written(reply: Reply) -> str:
-    return text_of(reply.arguments[0] or "")
+def _written(reply: Changes) -> str:
+    return text_of(reply[0] or "")
 
 
 # ---------------------------------------------------------------------------------- SWRITE
@@ -73,7 +82,7 @@ def test_values_are_written_by_format(pattern: str, value: Value, expected: str)
     reply = _swrite(pattern, single(value) if isinstance(value, float) else value)
     assert expected == _written(reply)
     assert ("CMD_OK", 1, len(expected)) == _state(reply)
-    assert len(expected) == reply.arguments[2]
+    assert len(expected) == reply[2]
 
 
 def test_texts_and_several_values_are_written() -> None:
@@ -90,10 +99,10 @@ def test_offset_is_where_writing_begins() -> None:
     """Writing begins behind the offset, which then lies behind what was written [FCT-09]."""
     reply = _swrite("%d", 12, before="abcdef", offset=2)
     assert "ab12ef" == _written(reply)
-    assert 4 == reply.arguments[2]
+    assert 4 == reply[2]
     assert ("CMD_OK", 1, 2) == _state(reply)
     gap = _swrite("%d", 12, size=6, before="a", offset=3)
-    assert ["a", None, None, "1", "2", None] == to_json(gap.arguments[0])
+    assert ["a", None, None, "1", "2", None] == to_json(gap[0])
     end = _swrite("", size=3, before="abc", offset=3)
     assert ("CMD_OK", 0, 0) == _state(end)
 
@@ -110,7 +119,7 @@ def test_part_of_an_array_is_written() -> None:
     names = empty(Array(CHAR, (2, 4)))
     assert isinstance(names, ArrayValue)
     reply = _call("SWRITE", names.part(2), None, 0, "%d", 42)
-    assert "42" == to_json(reply.arguments[0])
+    assert "42" == to_json(reply[0])
 
 
 @pytest.mark.parametrize(
@@ -138,7 +147,7 @@ def test_writing_stops_at_what_does_not_fit(
     reply = _swrite(pattern, *values)
     assert written == _written(reply)
     assert ("FMT_ERR", hits, len(written)) == _state(reply)
-    assert len(written) == reply.arguments[2]
+    assert len(written) == reply[2]
 
 
 @pytest.mark.parametrize(
@@ -168,9 +177,7 @@ def test_offset_must_lie_in_the_text(name: str, offset: int) -> None:
     target = _text(3, "abc")
     reply = _call(name, target, None, offset, "%s", _text(3, "x"))
     assert ("CMD_ABORT", 0, 0) == _state(reply)
-    assert target is reply.arguments[0]
-    assert offset == reply.arguments[2]
-    assert "x" == text_of(reply.arguments[4] or "")
+    assert [1] == list(reply)
 
 
 @pytest.mark.parametrize("name", ["SWRITE", "SREAD"])
@@ -187,7 +194,11 @@ def test_offset_needs_a_value(name: str) -> None:
 # ---------------------------------------------------------------------------------- SREAD
 
 
-def _sread(text: str, pattern: str, variables: int, offset: int = 0) -> Reply:
+def _read(reply: Changes) -> list[Value]:
+    return [reply[place] for place in sorted(reply) if place >= 4]
+
+
+def _sread(text: str, pattern: str, variables: int, offset: int = 0) -> Changes:
     return _call("SREAD", text, None, offset, pattern, *[None] * variables)
 
 
@@ -207,8 +218,8 @@ def _sread(text: str, pattern: str, variables: int, offset: int = 0) -> Reply:
 def test_values_are_read_by_format(text: str, pattern: str, expected: Value) -> None:
     """Each letter reads its values, no wider than the width [FCT-09]."""
     reply = _sread(text, pattern, 1)
-    assert expected == reply.arguments[4]
-    assert type(expected) is type(reply.arguments[4])
+    assert expected == reply[4]
+    assert type(expected) is type(reply[4])
     assert "CMD_OK" == _state(reply)[0]
     assert 1 == _state(reply)[1]
 
@@ -216,11 +227,11 @@ def test_values_are_read_by_format(text: str, pattern: str, expected: Value) -> 
 def test_reading_moves_the_offset() -> None:
     """Reading begins behind the offset, which then lies behind what was read [FCT-09]."""
     reply = _sread("12 abc 1.5 rest", "%d %s %f", 3, offset=1)
-    assert (2, "abc", 1.5) == reply.arguments[4:]
-    assert 10 == reply.arguments[2]
+    assert [2, "abc", 1.5] == _read(reply)
+    assert 10 == reply[2]
     assert ("CMD_OK", 3, 9) == _state(reply)
     again = _sread("12 abc 1.5 rest", "%s", 1, offset=10)
-    assert "rest" == again.arguments[4]
+    assert "rest" == again[4]
 
 
 @pytest.mark.parametrize(
@@ -240,13 +251,13 @@ def test_reading_stops_at_what_does_not_fit(
 ) -> None:
     """What is not as the format says ends the call; what was read before stays [FCT-08]."""
     reply = _sread(text, pattern, variables)
-    assert (*read, *[None] * (variables - len(read))) == reply.arguments[4:]
+    assert list(read) == _read(reply)
     assert ("FMT_ERR", len(read)) == _state(reply)[:2]
 
 
 def test_state_is_whole() -> None:
     """STATE has the result, no message, the conversions and the characters [FCT-08]."""
-    state = to_json(_sread("5", "%d", 1).arguments[1])
+    state = to_json(_sread("5", "%d", 1)[1])
     expected = {"RET1": "#CMD_OK", "MSG_NO": 0, "MSG_TYPE": None, "MSG_TXT": ""}
     assert {**expected, "HITS": 1, "LENGTH": 1} == state
 
@@ -260,7 +271,7 @@ def test_what_is_written_can_be_read(whole: int, number: float, word: str) -> No
     """Values that SWRITE wrote are read again by SREAD [FCT-09]."""
     written = _swrite("%d %s %x %.9e", whole, word, whole, number, size=80)
     read = _sread(_written(written), "%d %s %x %e", 4)
-    assert (whole, word, whole, number) == read.arguments[4:]
+    assert [whole, word, whole, number] == _read(read)
 
 
 @given(st.text("%+-#0123456789.dfsxcgeu ", max_size=12), st.lists(st.integers(), max_size=3))
@@ -269,5 +280,5 @@ def test_any_format_is_survived(pattern: str, values: list[int]) -> None:
     numbers = [max(INT_MIN, min(INT_MAX, value)) for value in values]
     reply = _swrite(pattern, *numbers, size=20)
     assert _state(reply)[0] in ("CMD_OK", "FMT_ERR")
-    assert 20 == len(reply.arguments[0])  # type: ignore[arg-type]
+    assert 20 == len(reply[0])  # type: ignore[arg-type]
     assert _state(_sread("12 3.5 abc", pattern, len(values)))[0] in ("CMD_OK", "FMT_ERR")

@@ -233,7 +233,7 @@ def test_arguments_come_back(run: Runner) -> None:
     body = (
         "PUSH_INT 1\nSTORE_LOCAL X\nPUSH_INT 5\nREF_LOCAL X INT\nASK RAISE\nLOAD_LOCAL X\nASK SHOW"
     )
-    requests = run(HEAD + routine(body, "local X INT"), (None, (5, 9)))
+    requests = run(HEAD + routine(body, "local X INT"), (None, {1: 9}))
     assert Invoke(At("main.src", 2, 0), "ERR_RAISE", (5, 1), (None, None)) == requests[0]
     assert [9] == shown(requests)
 
@@ -254,11 +254,11 @@ def test_changed_system_variables_are_written(run: Runner) -> None:
         "ASK CLEAR\nLOAD_LOCAL Y\nASK SHOW",
         "local X INT\nlocal Y INT",
     )
-    requests = run(text, (None, (5.6, 7)))
+    requests = run(text, (None, {0: 5.6, 1: 7}))
     assert (1, None) == requests[0].arguments
     assert Write(At("main.src", 2, 0), ("$ERRORS", 3, "N"), 6) == requests[1]
     assert [6, 7] == shown(requests)
-    assert [7] == shown(run(text, (None, (None, 7))))
+    assert [7] == shown(run(text, (None, {1: 7})))
 
 
 def test_what_cannot_be_run_is_told_when_it_is_reached(run: Runner) -> None:
