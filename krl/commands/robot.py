@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.errors import FINE, InputError
-from krl.extras import ARM, expected_extras
+from krl.extras import expected_extras
 from krl.robot_options import read_machine_file
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class _Point:
 
 def _arm(path: Path) -> "Kinematics":
     """The arm of a $machine.dat; imports are late because they take longer than most commands."""
-    with expected_extras(*ARM):
+    with expected_extras():
         from interp.robot.kinematics.arms import kinematics_of
 
         return kinematics_of(read_machine_file(path))

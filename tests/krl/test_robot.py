@@ -221,6 +221,13 @@ def test_without_the_extra(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "[arm]" in err
 
 
+def test_only_numpy_is_needed(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What plans and simulates motions is not asked for."""
+    for name in ("scipy", "ruckig", "mujoco"):
+        monkeypatch.setitem(sys.modules, name, None)
+    assert 0 == ask([])[0]
+
+
 def test_nothing_of_it_is_loaded_before_it_is_asked_for() -> None:
     """Other commands start without the packages for the arm."""
     code = "import sys, krl.cli; print(sorted({'numpy', 'scipy', 'interp'} & set(sys.modules)))"
