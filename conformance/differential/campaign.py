@@ -53,6 +53,7 @@ class Finding:
 class Findings:
     """What a campaign gave; ``ends`` is how programs ended, by the word for it.
 
+    A program that no executor takes, as the check finds an error in it, ends with "LinkError".
     ``counts`` has how many programs reached each of the ``rules``, under the kind "rule".
     """
 
@@ -169,7 +170,10 @@ def _run_all(shard: _Shard) -> _Outcome:
     facts = 0
     for number in range(shard.first, shard.end):
         files = seeded(shard.seed, number).files
-        program = prepared(files)
+        program = loaded(files)
+        if program is None:
+            found.ends["LinkError"] += 1
+            continue
         world = world_seed(shard.seed, number)
         reference, *others = shard.executors
         expected = trace_of(program, EXECUTORS[reference], world)

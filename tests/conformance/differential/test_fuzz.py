@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -265,6 +266,18 @@ def test_executor_that_raises_is_a_finding() -> None:
 
 
 # ------------------------------------------------------------------------------- the command
+
+
+def test_a_program_that_the_check_refuses_ends_no_campaign(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is counted by itself, and the others run."""
+
+    def made(seed: int, number: int) -> Any:
+        refused = SimpleNamespace(files=(("main.src", "DEF MAIN()\nX=\nEND\n"),))
+        return refused if number == 1 else seeded(seed, number)
+
+    monkeypatch.setattr(campaign, "seeded", made)
+    found = fuzz(3, 1, ["tree", "vm"])
+    assert (1, 3, ()) == (found.ends["LinkError"], found.ends.total(), found.findings)
 
 
 def test_command_without_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
