@@ -38,7 +38,8 @@ _TOLERANCE = 1e-9  # degrees, or of a cosine
 class CentralWrist:
     """The kinematics of one machine: a `interp.robot.kinematics.solver.Kinematics`.
 
-    Raises `MachineDataError` for a wrist that is not central or whose axes are not square.
+    Raises `MachineDataError` for a wrist that is not central or whose axes are not square, and for
+    lengths that no arm has.
     """
 
     has_wrist_singularity = True
@@ -53,6 +54,7 @@ class CentralWrist:
         self._directions = np.array([axis.direction for axis in machine.axes], dtype=np.float64)
         self._forearm = np.array(machine.tx3p3.position)
         self._mount = matrix_of(machine.tx3p3)[:3, :3]
+        self._check_lengths()
         self._twists = [_about_x(link.alpha) for link in (machine.dh_4, machine.dh_5)]
         along, turned = self._wrist()
         sense = self._twists[0][2, 1]  # 1 where $DH_4 twists by 90 degrees, -1 by -90
@@ -244,6 +246,18 @@ class CentralWrist:
         return np.stack(
             (ahead * cosine - aside * sine, ahead * sine + aside * cosine, height), axis=-1
         )
+
+    def _check_lengths(self) -> None:
+        machine = self.machine
+        frames = (machine.tiroro, machine.tx3p3, machine.tflwp)
+        lengths = [machine.length_a, machine.length_b, *(x for one in frames for x in one.position)]
+        longest = max(map(abs, lengths))
+        if not longest < _FAR:
+            raise MachineDataError(f"the arm has a length of {longest:g} mm")
+        if machine.length_b < _MARGIN:
+            raise MachineDataError(f"$LENGTH_B is {machine.length_b:g}: the arm has no upper arm")
+        if math.hypot(self._forearm[0], self._forearm[2]) < _MARGIN:
+            raise MachineDataError("X and Z of $TX3P3 are 0: the arm has no forearm")
 
     def _wrist(self) -> tuple[float, float]:
         """Whether axis 4 points along the forearm (1) or against it (-1), and where it is at zero.

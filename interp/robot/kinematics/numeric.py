@@ -186,6 +186,8 @@ class NumericKinematics:
         missing = np.empty((len(pose), 6))
         missing[:, :3] = (wanted[:, :3, 3] - pose[:, :3, 3]) / self._size
         missing[:, 3:] = axial * share[:, None]
+        is_over = (sine <= 1e-12) & (np.trace(turn, axis1=1, axis2=2) < 1.0)
+        missing[is_over, 3] = math.pi  # any axis leads away from a half turn, which shows none
         return missing
 
     def _poses(self, theta: Array) -> tuple[Array, Array]:

@@ -1,5 +1,6 @@
 """Palletisers, and arms that are solved by numbers: there and back on machine data at random."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -198,3 +199,12 @@ def test_a_chain_of_four_joints(arm: Kinematics) -> None:
     tilted = Pose.from_matrix(pose.tolist()) @ Pose.of(b=20)
     with pytest.raises(Fault, match="cannot be reached"):
         solve(scara, tilted)
+
+
+def test_a_half_turn_is_not_met(arm: Kinematics) -> None:
+    """A pose that is a half turn away from another, in the same place, is missed by half a turn."""
+    other = NumericKinematics(arm.machine)
+    poses = np.stack([np.eye(4)] * 3)
+    turned = np.stack([np.diag([*sides, 1.0]) for sides in ((1, -1, -1), (-1, 1, -1), (-1, -1, 1))])
+    missing = other._missing(poses, turned)
+    assert [math.pi] * 3 == np.linalg.norm(missing, axis=1).tolist()
