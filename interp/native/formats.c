@@ -9,6 +9,8 @@
 
 /* Widths and precisions; the variables of a call; and the longest number: digits before the point, and behind. */
 enum { LONGEST = 2047, MOST_VALUES = 10, LONGEST_NUMBER = LONGEST + 64 };
+/* Letters of a constant with its #; Python writes longer ones. */
+enum { LONGEST_WORD = 256 };
 
 /* ---------------------------------------------------------------------------- arguments */
 
@@ -35,10 +37,13 @@ int krl_can_format(const struct krl_program *program, const struct krl_part *par
         return 1;
     if (part->kind != KRL_PART_INPUT)
         return 0;
-    for (int32_t i = 0; type->form == KRL_ENUMERATION && i < type->count; i++)
+    for (int32_t i = 0; type->form == KRL_ENUMERATION && i < type->count; i++) {
+        if (type->constants[i].length >= LONGEST_WORD)
+            return 0;
         for (uint32_t letter = 0; letter < type->constants[i].length; letter++)
             if ((uint8_t)type->constants[i].bytes[letter] > 127)
                 return 0;
+    }
     return part->handed.mode == KRL_BY_VALUE || krl_is_text_array(program, part);
 }
 
@@ -207,7 +212,7 @@ static int put_letters(struct output *output, const struct piece *piece, struct 
 static int put_characters(struct output *output, const struct piece *piece, const struct krl_program *program,
                           const struct krl_part *part, krl_cell value, struct krl_letters text)
 {
-    krl_cell letters[256];
+    krl_cell letters[LONGEST_WORD];
     struct krl_letters found = {letters, 0};
     const struct krl_type *type = &program->types[part->handed.type];
     int is_value = krl_is_value(part);
@@ -234,7 +239,7 @@ static int put_characters(struct output *output, const struct piece *piece, cons
             length = type->constants[krl_int_in(value)].length;
             letters[found.count++] = krl_of_int('#');
         }
-        for (uint32_t i = 0; i < length && found.count < 256; i++) {
+        for (uint32_t i = 0; i < length; i++) {
             uint32_t code = (uint8_t)word[i];
             letters[found.count++] = krl_of_int((int32_t)(code >= 'a' && code <= 'z' ? code - 'a' + 'A' : code));
         }
