@@ -146,6 +146,16 @@ def _left(program: Prepared, executor: str) -> list[str]:
     number=-1,
     real=-0.0,
 )
+@example(
+    calls=[
+        ('SWRITE(A{0}[], T{0}, O{0}, "%d%u%x%i", I, I, I, B)', 0, ""),
+        ('SWRITE(A{0}[], T{0}, O{0}, "%.2d%.2u%#.2x", I, I, I)', 0, ""),
+        ('SWRITE(A{0}[], T{0}, O{0}, "%e", R)', 0, ""),
+        ('SWRITE(A{0}[], T{0}, O{0}, "%#g%-2c%.2s", R, C, S[])', 0, ""),
+    ],
+    number=7,
+    real=1.5,
+)
 def test_as_in_python(calls: list[tuple[str, int, str]], number: int, real: float) -> None:
     """Values, faults, states and offsets are the same for any format, text and arguments."""
     variables = "".join(
