@@ -150,7 +150,9 @@ class Lexer:
                 skip_pattern, token_pattern = pattern_of(skip), pattern_of(token)
                 if skip_pattern and token_pattern:
                     self._leaves_out_skipped = True
-                    return re.compile(f"(?:{skip_pattern})*+({token_pattern}|[\\s\\S]|\\Z)")
+                    # what follows matches anywhere, so nothing is tried again; possessive, a group
+                    # that fails half-way loses its place in Python 3.11.2
+                    return re.compile(f"(?:{skip_pattern})*({token_pattern}|[\\s\\S]|\\Z)")
         automaton = automaton_of(grammar, rules)
         everything = pattern_of(automaton)
         return re.compile(f"({everything}|[\\s\\S])") if everything else automaton

@@ -45,6 +45,8 @@ class _Writer(pickle.Pickler):
     def reducer_override(self, value: Any) -> Any:
         """How a value is made anew; `NotImplemented` for what pickle knows how to."""
         kind: Callable[..., Any] = type(value)
+        if isinstance(value, Enum):  # some Pythons look it up by getattr, which is not to be read
+            return kind, (value.value,)
         names = _fields(kind)
         if names is None:
             return NotImplemented

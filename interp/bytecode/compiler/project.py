@@ -17,6 +17,7 @@ from interp.bytecode.compiler.calls import Formals, formals_of
 from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Binding, Context, Deferred, Refusal, Shared
 from interp.bytecode.compiler.data import declare_data, initial_values
+from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.locations import (
     DataCells,
     FrameCells,
@@ -142,6 +143,9 @@ class Project:
             writer.emit(Op.UNLINKED, self._tables.text(str(too_large(routine))))
             return writer
         result = self._program.result_of(routine)
+        if result is not None and not is_complete(result):
+            Emitter(context).unlinked(f"{routine.name} gives {result}")
+            return writer
         if result is not None:
             self._give(context, result)
         formals = formals_of(routine, self._program.type_of)

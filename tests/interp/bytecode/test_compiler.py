@@ -397,3 +397,13 @@ def test_refusals_are_told() -> None:
     assert isinstance(compiled, Compiled)
     places = [(one.path, one.line, one.reason, one.is_missing) for one in compiled.refusals]
     assert [("main.src", n, "Gone is declared nowhere", True) for n in (2, 3)] == places
+
+
+def test_a_function_of_no_known_type_leaves_the_others() -> None:
+    """It ends a program that begins with it; those that begin elsewhere are compiled."""
+    function = "DEFFCT Lost_T given()\nRETURN 1\nENDFCT\n"
+    compiled = compile_program(_loaded(f"DEF main()\nEND\n{function}"))
+    assert isinstance(compiled, Compiled)
+    places = [(one.path, one.line, one.reason, one.is_missing) for one in compiled.refusals]
+    assert [("main.src", 3, "given gives an unknown type", True)] == places
+    verify(compiled.program)
