@@ -16,7 +16,7 @@ from typing import Final
 from conformance.evaluation.execution import PROFILES
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
-from conformance.suite.expectations import KINDS
+from conformance.suite.expectations import KINDS, Expectation
 from conformance.suite.registry import Rule, basis, registry
 from grammar.syntax.build import read_module
 from interp.controller.input_script import Script, ScriptError
@@ -55,6 +55,9 @@ _SPOKEN_OF: Final = {
     "resume": "RESUME",
     "halt": "HALT",
 }
+#: An expectation of a message of the controller: its number, and numbers in rules, "3214 to 3217".
+_MESSAGE: Final = re.compile(r"(?:fault|message|error KSS|warning KSS) ?(\d{2,})")
+_NUMBERS: Final = re.compile(r"\d{2,}(?: to \d{2,})?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +179,31 @@ def _of_clauses(case: Case) -> Iterator[str]:
                 yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
         if clause.id.startswith("SUB-") and one.when and one.when.relation == "at":
             yield f"line {one.line}: a submit program has no period for {one.text!r} [SUB-03]"
+        number = _message_of(case, one)
+        if number and number not in _numbers_of(case):
+            yield f"line {one.line}: no rule of the case says that {number} is the message"
+
+
+def _message_of(case: Case, one: Expectation) -> int:
+    """The number of the controller's message that is expected, or 0: a case may have its own."""
+    source = next(each.text for each in case.sources if each.path == one.file)
+    line = source.splitlines()[one.line - 1]
+    found = _MESSAGE.match(one.text)
+    if one.kind == "value" and "= $ERR.NUMBER" in line.upper():
+        found = re.fullmatch(r"value \S+ (\d{2,})", one.text)
+    code = "\n".join(re.sub(";.*", "", each.text) for each in case.sources)
+    is_own = found is not None and re.search(rf"\b{found[1]}\b", code)
+    return int(found[1]) if found and not is_own else 0
+
+
+def _numbers_of(case: Case) -> set[int]:
+    """The numbers of messages that the rules of a case tell."""
+    found: set[int] = set()
+    for id_ in case.rules:
+        for text in _NUMBERS.findall(registry()[id_].statement):
+            first, _, last = text.partition(" to ")
+            found.update(range(int(first), int(last or first) + 1))
+    return found
 
 
 def _repeated(cases: Sequence[Case]) -> Iterator[str]:

@@ -59,6 +59,7 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ("control/good.src", "DEF", ";> never\nDEF", "beside no line"),
         ("control/good.src", "runs 1", "path line 0 0 0 to 1 1 1", "CTL-01 says nothing of"),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
+        ("control/good.src", "runs 1", "fault 1444", "no rule of the case says that 1444"),
         (
             "submit/good.src",
             GOOD,
