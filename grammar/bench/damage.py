@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from random import Random
 from typing import Final
 
-from grammar.bench.planted_mistakes import cut, damaged, lines_of_tokens
+from grammar.bench.slips import cut, lines_of_tokens, slip
 from grammar.syntax.source import Source
 
 #: Of the files that a kind concerns, the share that is damaged.
@@ -27,9 +27,9 @@ def _misspelt(source: Source, chance: Random) -> str:
     """One name misspelt in some of the lines."""
     text = source.text
     for tokens in reversed(list(lines_of_tokens(source))):
-        slip = damaged("name misspelt", tokens, chance) if chance.random() < _LINES else None
-        if slip is not None:
-            start, end, new = slip
+        found = slip("name misspelt", tokens, chance) if chance.random() < _LINES else None
+        if found is not None:
+            start, end, new = found
             text = text[:start] + new + text[end:]
     return text
 

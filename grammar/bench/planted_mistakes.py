@@ -1,15 +1,14 @@
-"""How many mistakes the check finds: lines of real programs damaged by chance, one at a time.
+"""How many mistakes the check finds: real programs damaged by chance, at one place at a time.
 
-Nobody picks what is damaged or how: a seed draws the kind of mistake, the file, the line and the
-token, each file alike however long. A mistake is found when its project has an error or a warning
-that it did not have before, and found in its place when one of these is on the damaged line. Files
-that cannot be read as they are get no mistakes, but stay in their projects. To leave an argument
-out is no mistake [SCO-13].
+Nobody picks what is damaged or how: a seed draws the kind of damage, the file, the line and the
+token, each file alike however long (`grammar.bench.slips`). A mistake is found when its project has
+an error or a warning that it did not have before, and found in its place when one of these is on
+the damaged line. Files that cannot be read as they are get no mistakes, but stay in their projects.
+To leave an argument out is no mistake [SCO-13].
 """
 
 from __future__ import annotations
 
-import itertools
 import random
 import re
 import statistics
@@ -20,162 +19,31 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from grammar.bench.slips import Token, cut, damaged, lines_of_tokens
 from grammar.check.dependencies import Contribution, contribution
 from grammar.check.framework import Findings, check_module, check_project
 from grammar.check.project_check import Reading, read_source
 from grammar.diagnostics.diagnostic import Diagnostic
-from grammar.parser.lexer import Lexer
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
-from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.decode import decode
 from support.files.discovery import Found, IngestError, discover, read
 
-#: What a slip can be.
-KINDS = (
-    "name misspelt",
-    "keyword misspelt",
-    "token dropped",
-    "token doubled",
-    "argument added",
-    "literal of another type",
-    "words swapped",
-    "number out of range",
-    "end of a block dropped",
-)
-_DECLARING = frozenset("DECL GLOBAL CONST STRUC ENUM CHAR INT REAL BOOL SIGNAL".split())
-_CLOSERS = frozenset("ENDIF ENDFOR ENDWHILE ENDLOOP UNTIL ENDSWITCH ENDSPLINE END ENDFCT".split())
-# A line is drawn again so often until a kind of mistake can be made in it.
+# A place is drawn again so often until a kind of damage is possible there.
 _TRIES = 200
 # Of the files that end early, the share.
 _CUT = 0.3
-_LETTERS = "abcdefghijklmnopqrstuvwxyz"
+# So many of the worst, of those not found and of those found elsewhere are in the record.
+_LISTED = 100
+# So many findings of one mistake are no cascade.
+_USUAL = 2
+# So many of the findings of each are in it, too.
+_SHOWN = 10
 _WORD = re.compile(r"[A-Z_$][A-Z0-9_$]*", re.IGNORECASE)
-_LITERALS = {"INT": ("TRUE", '"x"'), "REAL": ("TRUE", '"x"'), "BOOL": ("1.5", '"x"')}
-
-
-@dataclass(frozen=True, slots=True)
-class Token:
-    """A token of a line: its kind in the grammar, its place in the text, and the text itself."""
-
-    kind: str
-    start: int
-    text: str
-    is_keyword: bool
-
-    @property
-    def end(self) -> int:
-        """Where it ends in the text of the file."""
-        return self.start + len(self.text)
-
-
-def damaged(
-    kind: str, tokens: Sequence[Token], chance: random.Random
-) -> tuple[int, int, str] | None:
-    """What to exchange for a mistake of a kind in a line: start, end, new text; or ``None``."""
-    match kind:
-        case "name misspelt":
-            return _misspelt([t for t in tokens if t.kind == "NAME" and len(t.text) > 3], chance)
-        case "keyword misspelt":
-            return _misspelt([t for t in tokens if t.is_keyword and len(t.text) > 1], chance)
-        case "token dropped" | "token doubled":
-            token = chance.choice(tokens)
-            return token.start, token.end, "" if kind == "token dropped" else f"{token.text} " * 2
-        case "argument added":
-            return _more_arguments(tokens, chance)
-        case "words swapped":
-            return _swapped(tokens, chance)
-        case "number out of range":
-            return _too_large(tokens, chance)
-        case "end of a block dropped":
-            is_closer = tokens[0].text.upper() in _CLOSERS
-            return (tokens[0].start, tokens[-1].end, "") if is_closer else None
-        case _:
-            literals = [t for t in tokens if _type_of(t)]
-            if not literals:
-                return None
-            token = chance.choice(literals)
-            return token.start, token.end, chance.choice(_LITERALS[_type_of(token)])
-
-
-def _type_of(token: Token) -> str:
-    """The type of a plain literal; ``""`` for all else."""
-    if token.text.upper() in ("TRUE", "FALSE"):
-        return "BOOL"
-    if token.text.isdecimal():
-        return "INT"
-    return "REAL" if token.text.replace(".", "", 1).isdecimal() else ""
-
-
-def _misspelt(words: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
-    """One slip of the finger in one of some words."""
-    if not words:
-        return None
-    token = chance.choice(words)
-    text, at = token.text, chance.randrange(len(token.text))
-    slips = [text[:at] + text[at + 1 :], text[:at] + text[at] + text[at:]]
-    slips.append(text[:at] + chance.choice(_LETTERS) + text[at + 1 :])
-    if at + 1 < len(text):
-        slips.append(text[:at] + text[at + 1] + text[at] + text[at + 2 :])
-    wrong = chance.choice([slip for slip in slips if slip.upper() != text.upper()] or [text + "x"])
-    return token.start, token.end, wrong
-
-
-def _more_arguments(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
-    """One more argument at the end of a call."""
-    ends = []
-    for index, token in enumerate(tokens[:-1]):
-        if token.kind == "NAME" and tokens[index + 1].text == "(":
-            depth = 0
-            for other in tokens[index + 1 :]:
-                depth += (other.text == "(") - (other.text == ")")
-                if depth == 0:
-                    ends.append((other.start, tokens[index + 1].end == other.start))
-                    break
-    if not ends:
-        return None
-    at, is_empty = chance.choice(ends)
-    return at, at, "0" if is_empty else ", 0"
-
-
-def _swapped(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
-    """Two words or signs beside one another change places; of operands, the operator stays."""
-    places = [
-        (left, right)
-        for left, right in itertools.pairwise(tokens)
-        if left.text.upper() != right.text.upper()
-    ]
-    if not places:
-        return None
-    left, right = chance.choice(places)
-    return left.start, right.end, f"{right.text} {left.text}"
-
-
-def _too_large(tokens: Sequence[Token], chance: random.Random) -> tuple[int, int, str] | None:
-    """An index, or the number of an interrupt, far beyond all limits."""
-    numbers = [
-        token
-        for before, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
-        if token.text.isdecimal()
-        and (before.text == "[" or after.text == "]" or before.text.upper() == "DECL")
-    ]
-    is_declared = tokens[0].text.upper() in _DECLARING
-    if (
-        not numbers
-        or is_declared
-        or tokens[1].kind == "NAME"
-        or any(token.text == "{" for token in tokens)
-    ):
-        return None
-    token = chance.choice(numbers)
-    return token.start, token.end, chance.choice(("99999", "0"))
-
-
-# ------------------------------------------------------------------------------ projects
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,12 +148,12 @@ def measure_planted(
     roots: Sequence[Path],
     count: int,
     seed: int,
+    kinds: Sequence[str],
     *,
     missing: str = "0",
-    kinds: Sequence[str] = KINDS,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Plant ``count`` mistakes in programs below ``roots``, each by itself.
+    """Plant ``count`` mistakes of these ``kinds`` in programs below ``roots``, each by itself.
 
     ``missing`` says which files are left out before: a share of them, drawn by ``seed``, ``"dat"``
     for all data lists, ``"others"`` for each file alone; ``"cut"`` leaves all, but three of ten end
@@ -293,8 +161,9 @@ def measure_planted(
     record has for all of them, by kind, and for misspelt names by what they are called for, or
     ``"nowhere else"`` for those that are written in no other place: ``planted``, the shares
     ``found`` and ``in_place``, and of the number of findings of a mistake that is found the
-    ``median``, the 95th percentile ``p95``, and the mean in the ``median_file``. ``survivors`` are
-    the first that were not found, ``elsewhere`` those that were found in another place.
+    ``median``, the 95th percentile ``p95``, the ``most``, and the mean in the ``median_file``.
+    ``survivors`` are the first that were not found, ``elsewhere`` those that were found in another
+    place, ``cascades`` those with the most findings, beyond two.
     ``unplanted`` counts the errors and warnings before, and those ``caused`` by what is missing.
 
     Raises `support.files.discovery.IngestError` where no line can be damaged.
@@ -335,8 +204,11 @@ def measure_planted(
             for kind in sorted({one["name"] for one in done} - {None})
         ],
         "unplanted": {**_unplanted(projects), "caused": dict(sorted(caused.items()))},
-        "survivors": [one for one in done if not one["findings"]][:100],
-        "elsewhere": [one for one in done if one["findings"] and not one["in_place"]][:100],
+        "survivors": [one for one in done if not one["findings"]][:_LISTED],
+        "elsewhere": [one for one in done if one["findings"] and not one["in_place"]][:_LISTED],
+        "cascades": sorted(
+            (one for one in done if one["findings"] > _USUAL), key=lambda one: -one["findings"]
+        )[:_LISTED],
     }
 
 
@@ -365,11 +237,6 @@ def _cut(program: _Program, chance: random.Random) -> _Program:
     return _program(Source(cut(source.text, chance), source.path), program.file.origin)
 
 
-def cut(text: str, chance: random.Random) -> str:
-    """A text that ends early, as that of a file that was not copied to its end does."""
-    return text[: chance.randrange(len(text) // 4, len(text))] if text else ""
-
-
 def _place(finding: Diagnostic) -> tuple[str, int, str]:
     return finding.path, finding.region.line, finding.code
 
@@ -393,24 +260,29 @@ def _trial(
 ) -> dict[str, Any] | None:
     for _ in range(_TRIES):
         project, path, lines = chance.choice(places)
-        exchange = damaged(kind, chance.choice(lines), chance)
+        source = project.programs[path].source
+        exchange = damaged(kind, source, lines, chance)
         if exchange is None:
             continue
         start, end, new = exchange
-        source = project.programs[path].source
         text = source.text[:start] + new + source.text[end:]
         found = project.with_text(path, text)
-        line = source.text.count("\n", 0, start) + 1
-        likely = {line} if new else {line, _next_code(source, line)}
+        line, last = source.place(start)[0], source.place(end)[0]
+        likely = {*range(line, last + 1)}
+        if not new.strip():
+            likely.add(_next_code(source, last))
         return {
             "kind": kind,
-            "name": project.name_at(path, start) if kind == KINDS[0] else None,
+            "name": project.name_at(path, start) if kind == "name misspelt" else None,
             "path": path,
             "line": line,
             "was": source.text[start:end],
             "is": new,
             "findings": len(found),
-            "first": min(((one.path, one.region.line, one.code) for one in found), default=None),
+            "told": [
+                (one.path, one.region.line, one.code, one.message)
+                for one in sorted(found, key=lambda one: (one.path, one.region))[:_SHOWN]
+            ],
             "in_place": any(one.path == path and one.region.line in likely for one in found),
         }
     return None
@@ -449,6 +321,7 @@ def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "in_place": round(sum(one["in_place"] for one in trials) / found, 4) if found else None,
         "median": statistics.median(counts) if counts else None,
         "p95": counts[min(found - 1, int(0.95 * found))] if counts else None,
+        "most": counts[-1] if counts else None,
         "median_file": _median_file(trials),
     }
 
@@ -463,21 +336,3 @@ def _projects(roots: Sequence[Path]) -> Iterator[dict[str, _Program]]:
     bare = [replace(program.file, syntax=None) for program in programs.values()]
     for project in link(bare).projects:
         yield {module.path: programs[module.path] for module in project.modules}
-
-
-def lines_of_tokens(source: Source) -> Iterator[list[Token]]:
-    """The tokens of each line that has some."""
-    lexer: Lexer = builder().failures.recognizer.lexer
-    line: list[Token] = []
-    for lexeme, start in zip(lexer.lexemes(source.text), lexer.offsets(source.text), strict=True):
-        kind = lexer.kinds[lexeme]
-        if kind < 0:
-            continue
-        if "\n" in lexeme or "\r" in lexeme:
-            if line and line[0].text[0] != "&":  # header lines are for KUKA's tools
-                yield line
-            line = []
-        else:
-            line.append(Token(lexer.names[kind], start, lexeme, lexer.is_keyword(kind)))
-    if line:
-        yield line

@@ -43,6 +43,10 @@ class Needs:
     facts: str
     names: str
 
+    def keep(self, before: Needs, *, is_open: bool) -> bool:
+        """Whether findings made with other needs ``before`` stand, by whether the file is open."""
+        return self.facts == before.facts != "" and (self.names == before.names or not is_open)
+
 
 def contribution(
     path: str, text: str, table: ModuleTable | None, unread: frozenset[str] | None

@@ -132,17 +132,13 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     )
 
 
-def check_project(findings: Iterable[Findings], *, is_whole: bool = True) -> list[Diagnostic]:
-    """All findings of a project, from those of its files, in order.
-
-    Where these are not all of its files, what the others would have to do is not missed.
-    """
+def check_project(findings: Iterable[Findings]) -> list[Diagnostic]:
+    """All findings of a project, from those of all its files, in order."""
     kept = list(findings)
     found = [diagnostic for one in kept for diagnostic in one.diagnostics]
-    used = frozenset[str]().union(*(one.uses for one in kept)) if is_whole else None
+    used = frozenset[str]().union(*(one.uses for one in kept))
     found += of_names((reference for one in kept for reference in one.references), used)
-    if is_whole:
-        found += of_effects(one.effects for one in kept)
+    found += of_effects(one.effects for one in kept)
     return in_order(found)
 
 

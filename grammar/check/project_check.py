@@ -106,8 +106,7 @@ class KnownFile:
         """Whether its findings are what another check would find."""
         if self.read.table is None:  # its findings are those of its text alone
             return True
-        is_named = self.needs.names == needs.names or not self.checked.is_open
-        return self.needs.facts == needs.facts != "" and is_named
+        return needs.keep(self.needs, is_open=self.checked.is_open)
 
 
 @dataclass(frozen=True, slots=True)

@@ -69,15 +69,14 @@ class UnresolvedName:
     is_certain: bool = False
 
 
-def of_project(found: Iterable[UnresolvedName], used: Set[str] | None) -> Iterator[Diagnostic]:
+def of_project(found: Iterable[UnresolvedName], used: Set[str]) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
     An error in each file for what nothing declares though all that could is read; a warning for
     what is a slip of a name that is seen there, or that is used again and again and comes from
     elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
     is a slip, what declares them is missing, so that these are notes, too. ``used`` are declared
-    names that some file uses: what is near one that none does is a slip in its declaration. That is
-    not said where ``used`` is ``None``, as not all files were asked.
+    names that some file uses: what is near one that none does is a slip in its declaration.
     """
     uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
     for reference in found:
@@ -106,7 +105,7 @@ def of_project(found: Iterable[UnresolvedName], used: Set[str] | None) -> Iterat
         is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
         if near and (is_rare or any(one.is_swapped for one in some)):
             slips[key] = near
-        elif len(near) == 1 and some[0].is_declared and _is_unused(near[0], used):
+        elif len(near) == 1 and some[0].is_declared and near[0].upper() not in used:
             unused[key] = near
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
             lost[all(one.is_certain for one in some)].append(key)
@@ -125,11 +124,6 @@ def of_project(found: Iterable[UnresolvedName], used: Set[str] | None) -> Iterat
                 yield _undeclared(reference, told[key])
         elif key[0]:
             yield _from_elsewhere(some, counts[key])
-
-
-def _is_unused(name: str, used: Set[str] | None) -> bool:
-    """Whether all files were asked and none uses the name."""
-    return used is not None and name.upper() not in used
 
 
 def _is_usual(near: tuple[int, int], wrong: tuple[int, int], name: str) -> bool:

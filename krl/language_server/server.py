@@ -30,6 +30,9 @@ from krl.language_server.workspace import Looked, OpenProject
 from krl.program_loading import project_root
 from krl.project_settings import FILE_NAME
 
+# Seconds without a change after which files are asked that nobody looks at.
+_PAUSE = 0.3
+
 _AtPlace = (
     lsp.HoverParams
     | lsp.DefinitionParams
@@ -75,6 +78,8 @@ class _Handlers:
         self._project = OpenProject()
         self._open: set[str] = set()
         self._is_read = False
+        self._is_graded = False
+        self._catching_up: asyncio.Task[None] | None = None
         answers: dict[str, Callable[[Any], Any]] = {
             lsp.INITIALIZED: self.initialised,
             lsp.TEXT_DOCUMENT_DID_OPEN: self.opened,
@@ -172,6 +177,24 @@ class _Handlers:
         """
         if not self._is_read:
             return
+        self._tell_open()
+        if self._catching_up is not None:
+            self._catching_up.cancel()
+        self._catching_up = asyncio.get_running_loop().create_task(self._catch_up())
+
+    async def _catch_up(self) -> None:
+        """Once nothing is typed, ask all files that the change concerns."""
+        if self._is_graded:
+            await asyncio.sleep(_PAUSE)
+        count = 0
+        for _ in self._project.catch_up():
+            count += 1
+            await asyncio.sleep(0)
+        self._is_graded = True
+        if count:
+            self._tell_open()
+
+    def _tell_open(self) -> None:
         for path in sorted(self._open):
             looked = self._project.look(path)
             uri = from_fs_path(path)

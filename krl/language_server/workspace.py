@@ -1,19 +1,21 @@
 """The files that an editor works on: those of its folder, and the open ones as they are typed.
 
-A file is read when its text changes; linking takes the tables of all files, and only files that are
-looked at are checked. Paths are absolute with ``/``, lines and columns count from 1 as everywhere
-in the project; what editors count otherwise is translated where it comes in, by
-`krl.language_server.server`.
+A file is read when its text changes; linking takes the tables of all files. A file that is looked
+at is checked at once; what the others say of names is found out by and by (`OpenProject.catch_up`),
+and no name is graded before all files of a project were asked. Paths are absolute with ``/``, lines
+and columns count from 1 as everywhere in the project; what editors count otherwise is translated
+where it comes in, by `krl.language_server.server`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grammar.check.framework import Checked, check_module, check_project
+from grammar.check.dependencies import Contribution, Needs, contribution, needs_of
+from grammar.check.framework import Checked, Findings, check_module, check_project
 from grammar.check.project_check import Reading, read_source
 from grammar.check.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic
@@ -45,6 +47,19 @@ class _Read:
     source: Source
     reading: Reading
     file: File
+    given: Contribution
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """What a file was last found to say, and what that rests on, if that is known."""
+
+    findings: Findings
+    is_open: bool
+    needs: Needs | None = None
+
+    def stands(self, needs: Needs) -> bool:
+        return self.needs is not None and needs.keep(self.needs, is_open=self.is_open)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,6 +107,8 @@ class OpenProject:
         self._files: dict[str, _Read] = {}
         self._linked: Mapping[str, tuple[Project, Module]] | None = None
         self._looked: dict[str, Looked] = {}
+        self._judged: dict[str, _Judged] = {}
+        self._origins: dict[Path, str] = {}
         self._agreed: dict[Path, Settings] = {}
 
     def add_folder(self, folder: Path) -> Iterator[str]:
@@ -107,6 +124,7 @@ class OpenProject:
             return
         for one in found[:MOST_FILES]:
             path = one.file.absolute().as_posix()
+            self._origins.setdefault(one.file.absolute().parent, one.origin)
             if one.member is None and path not in self._files:
                 self.reload(path)
                 yield path
@@ -129,6 +147,8 @@ class OpenProject:
             return
         with gc_paused():
             self._files[path] = _read(path, text)
+        if path in self._judged:
+            self._judged[path] = replace(self._judged[path], needs=None)
         self.changed()
 
     def changed(self) -> None:
@@ -140,6 +160,7 @@ class OpenProject:
     def forget(self, path: str) -> None:
         """A file is gone."""
         if self._files.pop(path, None) is not None:
+            self._judged.pop(path, None)
             self.changed()
 
     def paths(self) -> list[str]:
@@ -168,17 +189,60 @@ class OpenProject:
         return self._looked[path]
 
     def _fresh(self, known: _Read) -> Looked:
-        source, reading = known.source, known.reading
-        agreed = self._settings(source.path)
-        if _is_left_out(source.path, agreed):
-            return Looked(source, ())
+        source = known.source
         place = self._projects().get(source.path)
-        if reading.syntax is None or place is None:
-            return Looked(source, _kept(source, reading.diagnostics, agreed))
+        if place is None:
+            return Looked(source, ())
         project, module = place
-        checked = check_module(project, module, source)
-        found = check_project([reading.completed(checked.findings)], is_whole=False)
-        return Looked(source, _kept(source, found, agreed), module, project, checked)
+        checked = self._check(known, project, module)
+        found = [one for one in self._graded(project, source.path) if one.path == source.path]
+        kept = _kept(source, found, self._settings(source.path))
+        if checked is None:
+            return Looked(source, kept)
+        return Looked(source, kept, module, project, checked)
+
+    def _check(
+        self, known: _Read, project: Project, module: Module, needs: Needs | None = None
+    ) -> Checked | None:
+        """Check a file, and remember what it says; ``None`` for one that cannot be read."""
+        path, reading = known.source.path, known.reading
+        if reading.syntax is None:
+            self._judged[path] = _Judged(reading.alone(), False, needs)
+            return None
+        checked = check_module(project, module, known.source)
+        found = reading.completed(checked.findings)
+        self._judged[path] = _Judged(found, bool(checked.resolution.open_uses), needs)
+        return checked
+
+    def _graded(self, project: Project, path: str) -> Iterable[Diagnostic]:
+        """The findings of a project, or those of a file alone until all others were asked."""
+        paths = [module.path for module in project.modules]
+        if all(one in self._judged for one in paths):
+            return check_project(self._judged[one].findings for one in paths)
+        return self._judged[path].findings.diagnostics
+
+    def catch_up(self) -> Iterator[str]:
+        """Check the files whose findings rest on what has changed, one a step; their paths.
+
+        What is known of looked-at files may be otherwise afterwards. It ends early where something
+        changes meanwhile.
+        """
+        linked = self._projects()
+        for project in dict.fromkeys(project for project, _ in linked.values()):
+            files = [self._files[module.path] for module in project.modules]
+            needed = needs_of(project, [one.given for one in files])
+            for known, module, needs in zip(files, project.modules, needed, strict=True):
+                if self._linked is not linked:
+                    return
+                before = self._judged.get(module.path)
+                if before is not None and module.path in self._looked:  # in this very state
+                    self._judged[module.path] = replace(before, needs=needs)
+                    continue
+                if before is not None and before.stands(needs):
+                    continue
+                self._check(known, project, module, needs)
+                yield module.path
+        self._looked.clear()
 
     def _projects(self) -> Mapping[str, tuple[Project, Module]]:
         if self._linked is None:
@@ -186,7 +250,8 @@ class OpenProject:
             for path, one in self._files.items():
                 agreed = self._settings(path)
                 if not _is_left_out(path, agreed):
-                    groups.setdefault(agreed, []).append(one.file)
+                    file = replace(one.file, origin=self._origin(path))
+                    groups.setdefault(agreed, []).append(file)
             linked: dict[str, tuple[Project, Module]] = {}
             for agreed, files in groups.items():
                 packages = frozenset(agreed.packages)
@@ -194,6 +259,11 @@ class OpenProject:
                 linked |= {module.path: (at, module) for at, module in workspace.modules()}
             self._linked = linked
         return self._linked
+
+    def _origin(self, path: str) -> str:
+        """The origin of a file, which may be new: that of the files beside it, or around it."""
+        known = (self._origins.get(folder) for folder in Path(path).parents)
+        return next((origin for origin in known if origin is not None), "")
 
     def _settings(self, path: str) -> Settings:
         """What was agreed on for a file.
@@ -215,7 +285,8 @@ def _read(path: str, text: str) -> _Read:
     source = Source(text, path)
     reading = read_source(source)
     table = None if reading.syntax is None else table_of(reading.syntax)
-    return _Read(source, reading, File(path, reading.syntax, table=table, words=reading.words))
+    file = File(path, reading.syntax, table=table, words=reading.words)
+    return _Read(source, reading, file, contribution(path, text, table, reading.words))
 
 
 def _is_left_out(path: str, agreed: Settings) -> bool:

@@ -18,16 +18,32 @@ def test_figures_are_printed_and_written(
     )
     (tmp_path / "A.src").write_text("DEF A()\nEXIT\nEND\n", encoding="utf-8", newline="\n")
     target = tmp_path / "out" / "speed.json"
-    given = ["bench", "check", str(tmp_path), "--sizes", "0.01", "--json", str(target)]
+    given = ["bench", "check", str(tmp_path), "--sizes", "0.01"]
+    given += ["--planted", "0", "--json", str(target)]
     assert 0 == main(given)
     said, complained = capsys.readouterr()
     assert "" == complained
     assert said.startswith("1 files of 1 projects, 0.00 MB; 1 warnings; Python 3.")
     for row in ("first check", "nothing changed", "building", "resolving", "peak memory"):
         assert row in said
+    assert "planted mistakes" not in said
     record = json.loads(target.read_text(encoding="utf-8"))
     assert "check" == record["bench"]
     assert {"s_per_mb", "unchanged_s_per_mb", "phases", "linear"} <= record.keys()
+
+
+def test_mistakes_are_planted_without_measuring_speed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``--no-speed`` starts no measurement, and tells the findings of each kind of damage."""
+    monkeypatch.setattr(check_speed, "call_isolated", lambda *_: pytest.fail("a measurement"))
+    (tmp_path / "A.src").write_text("DEF A()\nEXIT\nEND\n", encoding="utf-8", newline="\n")
+    given = ["bench", "check", str(tmp_path), "--no-speed", "--planted", "6", "--damage", "tokens"]
+    assert 0 == main(given)
+    said = capsys.readouterr().out
+    for row in ("token dropped", "token exchanged", "findings each in the median file"):
+        assert row in said
+    assert "first check" not in said
 
 
 def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 pytest.importorskip("lsprotocol")
 
+from grammar.check.batch import CheckOptions, check_paths
 from krl.cli import main
 from krl.language_server.calls import signature_at
 from krl.language_server.hover import hover
@@ -144,17 +145,57 @@ def test_hover_explains_a_finding(project: OpenProject) -> None:
     assert "message of the controller: 2296" in said[0]
 
 
-def test_what_other_files_use_is_no_slip(project: OpenProject, tmp_path: Path) -> None:
-    """A declared name that the file at hand leaves out is not called a slip: another may use it."""
-    for name, body in (
-        ("RESETCLOK", ""),
-        ("USER", "RESETCLOK()\n"),
-        ("CALLS", "RESETCLOCK()\n" * 4),
-    ):
-        project.change(f"{tmp_path.as_posix()}/{name}.src", f"DEF {name}()\n{body}END\n")
-    looked = project.look(f"{tmp_path.as_posix()}/CALLS.src")
+SLIPS = {
+    "RESETCLOK": "DEF RESETCLOK()\nEND\n",
+    "USER": "DEF USER()\nRESETCLOK()\nEND\n",
+    "ALONE": "DEF ALONE()\nHALT\nEND\n",
+    "CALLS": "DEF CALLS()\n" + "RESETCLOCK()\n" * 4 + "END\n",
+}
+
+
+def graded(project: OpenProject, folder: Path, name: str) -> set[str]:
+    """The severities of what is said of unknown routines in a file."""
+    looked = project.look(f"{folder.as_posix()}/{name}.src")
     assert looked is not None
-    assert {"note"} == {one.severity for one in looked.diagnostics}
+    return {one.severity for one in looked.diagnostics if "RESETCLOCK" in one.message}
+
+
+def test_names_have_the_grade_of_the_project(tmp_path: Path) -> None:
+    """Nothing is said before all files were asked; then what another file uses is no slip.
+
+    Once that file no longer uses it, it is one.
+    """
+    project = OpenProject()
+    for name, text in SLIPS.items():
+        project.change(f"{tmp_path.as_posix()}/{name}.src", text)
+    assert set() == graded(project, tmp_path, "CALLS")
+    assert {*project.paths()} >= {*project.catch_up()}
+    assert {"note"} == graded(project, tmp_path, "CALLS")
+    project.change(f"{tmp_path.as_posix()}/USER.src", "DEF USER()\nEND\n")
+    assert f"{tmp_path.as_posix()}/ALONE.src" not in [*project.catch_up()]
+    assert {"warning"} == graded(project, tmp_path, "CALLS")
+    assert [] == [*project.catch_up()]
+
+
+def test_an_editor_finds_what_a_check_finds(tmp_path: Path) -> None:
+    """Of each file of a folder that is part of a backup, and of a second cell in another folder."""
+    for name, text in (
+        ("KRC/R1/System/$config.dat", "DEFDAT $CONFIG\nDECL INT PARTS\nENDDAT\n"),
+        ("KRC/R1/Program/cell.src", "DEF CELL()\nPARTZ = 1\nPARTS = 2\nGRIP()\nEND\n"),
+        ("KRC/R1/Program/grip.src", "DEF GRIP()\nINTERRUPT DECL 3 WHEN $IN[1] DO CELL()\nEND\n"),
+    ):
+        for cell in ("one", "two"):
+            path = tmp_path / cell / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+    project = OpenProject()
+    assert 6 == len([*project.add_folder(tmp_path)]) == len([*project.catch_up()])
+    told = [one for path in project.paths() for one in project.look(path).diagnostics]  # type: ignore[union-attr]
+    checked = check_paths([tmp_path], CheckOptions(), jobs=1).diagnostics
+    assert {"KRL101", "KRL504"} & {one.code for one in checked}
+    assert [(one.code, one.severity, one.region) for one in checked] == [
+        (one.code, one.severity, one.region) for one in told
+    ]
 
 
 def test_settings_count_in_an_editor(project: OpenProject, tmp_path: Path) -> None:
