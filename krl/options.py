@@ -41,6 +41,8 @@ CorpusArgument = Annotated[
     ),
 ]
 
+#: Programs that a grammar has to reject, where a checkout has them.
+NEGATIVES = Path("corpus", "negatives")
 _CORPUS = Path("corpus")
 _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
 

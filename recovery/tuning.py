@@ -214,8 +214,9 @@ STILL_NAMES_PART = 2
 # ---------------------------------------------------------------------------------- trials
 # `recovery.clustering.edit_trial`, `file_trial`, `regression`, `negative_score`.
 
-#: Recognisers of edited grammars that are kept. Bound on memory.
+#: Recognisers of edited grammars that are kept, and their configurations together. Bound on memory.
 MOST_RECOGNIZERS_KEPT = 160
+MOST_CONFIGURATIONS_KEPT = 40_000
 #: Configurations of one state under an edited grammar; an edit that needs more gives lines
 #: exponentially many readings and is no good one. Bound: without it one edit could use up the
 #: memory.

@@ -132,12 +132,29 @@ class Automaton(ABC):
         self.line_kind = line_kind
         self._bottom = Stack(-1, None, passing)
         self._cores: dict[Collection[Configuration], Core] = {}
+        #: How many configurations its cores have: what it takes of memory goes with it.
+        self.configurations = 0
         self._no_tail = Stack(-1, None, passing)
 
     @property
     def size(self) -> int:
         """How many cores have been built so far."""
         return len(self._cores)
+
+    def release(self) -> None:
+        """Break every circle in it, so that its memory is free as soon as nobody refers to it.
+
+        Whoever reads on with it works the steps out once more.
+        """
+        for core in self._cores.values():
+            core.clear()
+            core.absorbed.clear()
+            core.pushes.clear()
+        stacks = [self._bottom, self._no_tail]
+        while stacks:
+            stack = stacks.pop()
+            stacks += stack.above.values()
+            stack.above.clear()
 
     @abstractmethod
     def _close(self, core: Core) -> None:
@@ -191,6 +208,7 @@ class Automaton(ABC):
         if core is None:
             core = self._cores[kernel] = Core()
             core.kernel = kernel
+            self.configurations += len(kernel)
             core.absorbed = {}
             core.pushes = {}
             self._close(core)

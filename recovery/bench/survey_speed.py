@@ -22,7 +22,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.lazy_automaton import Core
 from grammar.parser.recognizer import Recognizer
-from recovery.bench.resampling import readable, spread, templates, write_corpus
+from recovery.bench.resampling import Written, readable, spread, templates, write_corpus
 from recovery.survey.survey import Survey, survey
 from support.files.decode import decode, digest
 from support.files.discovery import Found, IngestError, Skipped, discover, read
@@ -311,17 +311,26 @@ def _recovering_antlr() -> Callable[[str], object]:
 def _scaled_to(size: float, roots: Sequence[Path], grammar: Grammar, seed: int) -> dict[str, Any]:
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
-        call_isolated(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
+        call_isolated(synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
         return {"mb": size, **call_isolated(_scaled, Path(folder), grammar.text)}
 
 
-def _synthesise(
-    roots: Sequence[Path], grammar_text: str, folder: Path, size: int, seed: int
-) -> None:
+def synthesise(
+    roots: Sequence[Path],
+    grammar_text: str,
+    folder: Path,
+    size: int,
+    seed: int,
+    damages: Sequence[str] = (),
+) -> Written:
+    """Write copies of the programs below the roots, other ones for another seed.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to copy.
+    """
     texts = spread(_decoded(_contents(roots)))
     lexer = Recognizer(g4.read(grammar_text)).lexer
     try:
-        write_corpus(list(templates(texts, lexer)), folder, size, seed)
+        return write_corpus(list(templates(texts, lexer)), folder, size, seed, damages)
     except ValueError as error:
         raise IngestError(f"no larger corpus can be made of these files: {error}") from error
 

@@ -17,7 +17,12 @@ from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import LINES_READ_TWICE, MOST_READINGS, MOST_RECOGNIZERS_KEPT
+from recovery.tuning import (
+    LINES_READ_TWICE,
+    MOST_CONFIGURATIONS_KEPT,
+    MOST_READINGS,
+    MOST_RECOGNIZERS_KEPT,
+)
 from support.gc_pause import gc_paused
 
 
@@ -145,10 +150,18 @@ class EditTrial:
         """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
         key = tuple(edits)
         if key not in self._wider:
-            if len(self._wider) >= MOST_RECOGNIZERS_KEPT:
-                del self._wider[next(iter(self._wider))]
+            self._forget_some()
             self._wider[key] = edited(self.recognizer, edits)
         return self._wider[key]
+
+    def _forget_some(self) -> None:
+        """Keep so many recognisers, and fewer where they are large: one may be as all others."""
+        size = sum(kept.configurations for kept in self._wider.values() if kept is not None)
+        while len(self._wider) >= MOST_RECOGNIZERS_KEPT or size > MOST_CONFIGURATIONS_KEPT:
+            oldest = self._wider.pop(next(iter(self._wider)))
+            if oldest is not None:
+                size -= oldest.configurations
+                oldest.release()
 
     def result(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> TrialResult:
         """Try the edits on the lines ``among`` those they might mend, by default on all of them."""

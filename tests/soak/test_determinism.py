@@ -1,8 +1,10 @@
 """The same input gives the same record, whatever else differs (`make determinism`).
 
 Each command runs twenty times: with other numbers of processes, hash seeds, orders in which files
-were made, time zones, languages and widths of the terminal, on the programs of the corpus, some of
-them damaged by a seed. Only times and durations may differ.
+were made, time zones, languages and widths of the terminal, on the programs of the corpus or of
+``KRL_DETERMINISM_CORPUS``, some of them damaged by ``KRL_DETERMINISM_SEED``. Only times and
+durations may differ. That no option that writes is missing here is a test of its own
+(`tests/krl/test_written_files.py`).
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import json
 import os
 import random
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -20,6 +23,8 @@ from typing import Any
 
 import pytest
 
+from grammar.bench.damage import DAMAGES
+from grammar.syntax.source import Source
 from tests.soak.given import REPOSITORY
 
 pytestmark = pytest.mark.soak
@@ -31,42 +36,75 @@ TIMES = {"analysis_seconds", "generated", "seconds"}
 #: What each command line writes, the words of a command with ``{in}``, ``{out}`` and ``{jobs}``.
 COMMANDS = {
     "recover": "recover --jobs {jobs} --no-start --out {out} {in}",
-    "recover under the start": "recover --jobs {jobs} --out {out} {in}/machine_tending",
+    "recover under the start": "recover --jobs {jobs} --out {out} --json {out}/r.json {some}",
     "recover --auto": "recover --auto --hold-out 0.3 --target grammar/KRL.g4 --out {out} {in}",
     "check": "check --no-cache --jobs {jobs} --format json --out {out}/c.json {in}",
     "check as SARIF": "check --no-cache --jobs {jobs} --format sarif --out {out}/c.sarif {in}",
-    "diff": "diff --json {out}/d.json --html {out}/d.html {in} {in}/machine_tending",
-    "growth": "growth --jobs {jobs} --out {out} {in}/machine_tending",
-    "conform": "conform --jobs {jobs} --robot none --json {out}/c.json --junit {out}/c.xml types",
+    "check as JUnit": "check --no-cache --jobs {jobs} --format junit --out {out}/c.xml {in}",
+    "check, kept": "check --cache {out}/cache --jobs {jobs} --write-baseline {out}/b.json {in}",
+    "diff": "diff --json {out}/d.json --html {out}/d.html {in} {some}",
+    "growth": "growth --jobs {jobs} --out {out} --json {out}/g.json {some}",
+    "conform": "conform --jobs {jobs} --robot none --json {out}/c.json --junit {out}/c.xml "
+    "--html {out} types",
     "fuzz": "fuzz --programs 40 --seed 3 --jobs {jobs} --json {out}/f.json",
-    "run": "run --trace {out}/t.jsonl --html {out}/r.html --max-time 20 {program}",
+    "run": "run --robot kinematic --trace {out}/t.jsonl --html {out}/r.html --path {out}/p.csv "
+    "--max-time 20 {program}",
     "compile": "compile -o {out}/p.krlb {program}",
+    "asm": "asm -o {out}/p.krlb {assembly}",
+    "test": "test -n {jobs} --junit {out}/t.xml --cov-html {out} --lcov {out}/t.info {tests}",
+    "construct list": "construct list --json {out}/l.json",
+    "construct replay": "construct replay --out {out}/G.g4",
+    "construct oracle": "construct oracle --bundle {out}/bundle",
+    "corpus synth": "corpus synth --size 40kB --seed 7 --out {out}/synth",
+    "bench programs": "bench programs --jobs {jobs} --max-time 5 --cache {out}/cache "
+    "--json {out}/p.json {some}",
+    "bench real-code": "bench real-code --executor vm --json {out}/c.json {some}",
 }
+_CORPUS = Path(os.environ.get("KRL_DETERMINISM_CORPUS") or REPOSITORY / "corpus" / "programs")
+#: A program that can be begun.
+_MAIN = re.compile(rb"(?:\s*[&;].*\n)*\s*DEF +\w+ *\( *\)", re.IGNORECASE)
+_TESTS = REPOSITORY / "examples" / "cell-tests" / "tests"
 
 
 def _copied(source: Path, target: Path, order: int) -> Path:
-    """The files, made in another order, some of them cut or with lines exchanged by the seed."""
+    """The files, made in another order, three of twenty damaged in ways that the seed draws."""
     files = sorted(path for path in source.rglob("*") if path.is_file())
-    damage = random.Random(SEED)
-    damaged = {path: damage.random() for path in files if damage.random() < 0.15}
+    chance = random.Random(SEED)
+    damaged = {path: chance.choice(list(DAMAGES)) for path in files if chance.random() < 0.15}
     random.Random(order).shuffle(files)
     for path in files:
-        data = path.read_bytes()
-        if path in damaged:
-            data = data[: int(len(data) * damaged[path])]
-        copy = target / path.relative_to(source)
-        copy.parent.mkdir(parents=True, exist_ok=True)
-        copy.write_bytes(data)
+        name = path.relative_to(source)
+        data: bytes | None = path.read_bytes()
+        if path in damaged and path.suffix.lower() in (".src", ".dat", ".sub"):
+            text = path.read_bytes().decode("latin-1")
+            changed = DAMAGES[damaged[path]](
+                Source(text, name.as_posix()), random.Random(f"{SEED} {name.as_posix()}")
+            )
+            data = None if changed is None else changed.encode("latin-1")
+        if data is not None:
+            copy = target / name
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(data)
     return target
 
 
 def _written(words: str, folder: Path, run: int) -> dict[str, Any]:
     """What a command writes in one of the ways, by file; and its exit status."""
-    corpus = _copied(REPOSITORY / "corpus" / "programs", folder / "in", run)
+    corpus = _copied(_CORPUS, folder / "in", run)
     out = folder / "out"
     out.mkdir()
-    program = next(iter(sorted(corpus.rglob("*.src"))))
-    places = {"in": corpus, "out": out, "jobs": (1, 2, 4)[run % 3], "program": program}
+    programs = [path for path in sorted(corpus.rglob("*.src")) if _MAIN.match(path.read_bytes())]
+    places: dict[str, Any] = {
+        "in": corpus,
+        "out": out,
+        "jobs": (1, 2, 4)[run % 3],
+        "program": programs[SEED % len(programs)],
+        "some": sorted(path for path in corpus.iterdir() if path.is_dir())[SEED % 3],
+        "assembly": folder / "p.krla",
+        "tests": _TESTS,
+    }
+    everything = runpy.run_path(str(REPOSITORY / "tests/interp/bytecode/conftest.py"))
+    places["assembly"].write_text(everything["EVERYTHING"], encoding="utf-8")
     environment = os.environ | {
         "PYTHONHASHSEED": str(run * 7919 % 4_000_000),
         "TZ": ("UTC", "Asia/Kolkata", "America/Los_Angeles")[run % 3],
@@ -85,7 +123,7 @@ def _written(words: str, folder: Path, run: int) -> dict[str, Any]:
     return {"status": done.returncode} | {
         str(path.relative_to(out)): _content(path, str(folder))
         for path in sorted(out.rglob("*"))
-        if path.is_file() and path.parent.name != "cache"
+        if path.is_file() and "cache" not in path.parts
     }
 
 

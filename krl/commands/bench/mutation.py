@@ -7,13 +7,12 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINE, as_input_errors
-from krl.options import JobsOption, JsonOption, all_cores
+from krl.options import NEGATIVES, JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
 _PROGRAMS = Path("corpus", "programs")
-_NEGATIVES = Path("corpus", "negatives")
 _AIMS = (
     ("mutants", ""),
     ("detected", "0.99"),
@@ -42,7 +41,7 @@ def mutation(
     ] = None,
     negatives: Annotated[
         Path, typer.Option(metavar="DIR", help="Programs that must stay rejected.")
-    ] = _NEGATIVES,
+    ] = NEGATIVES,
     singles: Annotated[
         int, typer.Option(min=0, metavar="N", help="At most so many single mutants; 0 for all.")
     ] = 0,

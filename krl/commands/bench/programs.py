@@ -11,6 +11,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from krl.commands.bench.scaling import damage_kinds
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.options import JobsOption, JsonOption, ProgramsArgument, all_cores, programs_or_ours
 from krl.output_files import check_files, write_json
@@ -49,16 +50,6 @@ class Part(StrEnum):
     MODULES = "modules"
     CODE = "code"
     FILE = "file"
-
-
-def _kinds(value: str) -> str:
-    """The value of ``--damage``, if each of its kinds is one."""
-    from grammar.bench.damage import DAMAGES
-
-    kinds = list(DAMAGES) if value == "all" else value.split(",")
-    if value and not DAMAGES.keys() >= set(kinds):
-        raise typer.BadParameter(f"kinds are {', '.join(DAMAGES)} and all")
-    return ",".join(kinds)
 
 
 def programs(
@@ -108,7 +99,7 @@ def programs(
         str,
         typer.Option(
             metavar="KIND,…",
-            callback=_kinds,
+            callback=damage_kinds,
             help="Run all once more with three of ten files damaged: files (lost), lists (data "
             "lists lost), cut, lines (lost), names (misspelt), characters (exchanged), latin (read "
             "so), or all of these.",

@@ -1,21 +1,43 @@
 """`krl bench recover`: how fast a corpus is surveyed."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
-from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
+from krl.commands.bench.scaling import (
+    MB,
+    SizesOption,
+    damage_kinds,
+    peak,
+    phases_table,
+    print_growth,
+    sizes_of,
+)
 from krl.errors import FINE, as_input_errors
-from krl.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.options import NEGATIVES, JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
 
 
 def recover(
-    paths: ProgramsArgument = None, json_file: JsonOption = None, sizes: SizesOption = "1,10,100"
+    paths: ProgramsArgument = None,
+    json_file: JsonOption = None,
+    sizes: SizesOption = "1,10,100",
+    damage: Annotated[
+        str,
+        typer.Option(
+            metavar="KIND,…",
+            callback=damage_kinds,
+            help="Only what damaged source costs, causes included: three of ten copies are damaged "
+            "in each of these ways. See krl bench programs for the kinds.",
+        ),
+    ] = "",
+    seed: Annotated[int, typer.Option(metavar="N", help="Draws the copies and the damage.")] = 1,
 ) -> int:
     """Measure the survey: bytes a second, beside ANTLR, unchanged, and as the corpus grows.
 
@@ -30,13 +52,54 @@ def recover(
     check_files(json_file)
     wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
+    if damage:
+        return _damaged(roots, wanted, damage.split(","), seed, json_file)
     with as_input_errors(GrammarError, IngestError):
         grammar = krl_grammar()
         with progress_bar("measuring", steps(wanted)) as advance:
-            record = measure(roots, grammar, sizes=wanted, on_step=advance)
+            record = measure(roots, grammar, sizes=wanted, seed=seed, on_step=advance)
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
     write_json(record, json_file, indent=1)
     _print(record)
+    return FINE
+
+
+def _damaged(
+    roots: Sequence[Path], sizes: Sequence[float], damages: list[str], seed: int, out: Path | None
+) -> int:
+    from grammar.notation.krl_grammar import krl_grammar
+    from recovery.bench.damaged_survey import measure_damaged
+    from recovery.negatives.negatives import load
+    from support.files.discovery import IngestError
+
+    negatives = load(NEGATIVES) if NEGATIVES.is_dir() else ()
+    with as_input_errors(IngestError), progress_bar("measuring", len(sizes)) as advance:
+        rows = list(
+            measure_damaged(
+                roots,
+                krl_grammar(),
+                negatives,
+                sizes=sizes,
+                damages=damages,
+                seed=seed,
+                on_step=advance,
+            )
+        )
+    record = {"bench": "recover damaged", "damage": damages, "seed": seed, "scaling": rows}
+    write_json(record, out, indent=1)
+    shown = [
+        (
+            f"{row['bytes'] / MB:,.1f} MB",
+            *(f"{row[count]:,}" for count in ("files", "failures", "forms", "clusters")),
+            f"{row['read_seconds']:.1f} s",
+            f"{row['cause_seconds']:.1f} s",
+            f"{(row['read_seconds'] + row['cause_seconds']) * MB / row['bytes']:.1f}",
+            peak(row),
+        )
+        for row in rows
+    ]
+    titles = ("damaged", "files", "failures", "forms", "clusters", "reading", "causes", "s/MB")
+    Console(highlight=False).print(figures((*titles, "peak memory"), shown))
     return FINE
 
 

@@ -17,7 +17,7 @@ from krl.construct_ledger import (
     print_refusals,
 )
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import JobsOrOneOption
+from krl.options import NEGATIVES, JobsOrOneOption
 from krl.progress import progress_bar
 from support.files.atomic_write import write_atomic
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 _OPEN = Path("corpus", "open")
 _OWN = Path("corpus", "programs")
-_NEGATIVES = Path("corpus", "negatives")
 _CACHE = Path("reports", "out", "recover", "cache")
 
 _Paths = Annotated[
@@ -183,7 +182,7 @@ def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":
     return Corpora(
         paths,
         _OWN if _OWN.is_dir() else None,
-        load(_NEGATIVES) if _NEGATIVES.is_dir() else (),
+        load(NEGATIVES) if NEGATIVES.is_dir() else (),
         cache=_CACHE,
         jobs=jobs,
     )

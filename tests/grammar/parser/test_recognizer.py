@@ -1,5 +1,6 @@
 """The recogniser reads as far as some program goes, and knows exactly what could come next."""
 
+import gc
 from collections.abc import Callable, Sequence
 from random import Random
 
@@ -15,6 +16,7 @@ from grammar.parser.lexer import EOF, ERROR
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.sentences import Sentences
 from grammar.parser.shortest_paths import Paths
+from support.gc_pause import gc_paused
 
 Parse = Callable[[Grammar, Sequence[str]], tuple[bool, list[frozenset[str]]]]
 RandomGrammar = Callable[[Random], Grammar]
@@ -376,3 +378,22 @@ def test_ways_to_read_can_be_limited() -> None:
     assert failed is not None
     assert 3 < failed < 10
     assert limited.accepts("aabbc")
+
+
+def test_a_released_recogniser_waits_for_no_garbage_collector() -> None:
+    """Cores and stacks refer to each other; released ones go with the last reference."""
+
+    def cores() -> int:
+        return sum(isinstance(each, lazy_automaton.Core) for each in gc.get_objects())
+
+    gc.collect()
+    before = cores()
+    with gc_paused():
+        recognizer = Recognizer(OWN["KRL"].grammar)
+        kinds = recognizer.kinds("DEF A()\nIF B THEN\nC=1\nENDIF\nEND\n")
+        for _ in range(2):  # it still reads
+            assert recognizer.run(recognizer.start, kinds)[1] is None
+            assert cores() > before
+            recognizer.release()
+        del recognizer
+        assert before == cores()

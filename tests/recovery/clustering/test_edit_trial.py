@@ -23,6 +23,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
+from recovery.clustering import edit_trial
 from recovery.clustering.edit_trial import EditTrial, TrialResult, edited
 from recovery.proposals.candidates import CandidateFinder
 from recovery.proposals.edit_site import LinePattern
@@ -257,3 +258,17 @@ def test_two_readings_are_told() -> None:
     trial = EditTrial(Recognizer(grammar), [LinePattern(form, ())])
     assert trial.is_ambiguous([Insert("halt", (1, 2), "(C_DIS | criterion)?")], [0])
     assert not trial.is_ambiguous([Insert("halt", (1, 2), "criterion?")], [0])
+
+
+def test_large_recognisers_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kept are many small recognisers or few large ones."""
+    trial = EditTrial(Recognizer(read_file(GRAMMAR)), ())
+    edits = [[AddAlternative("simpleStatement", " ".join(["INTEGER"] * n))] for n in range(1, 4)]
+    first = trial.wider(edits[0])
+    assert first is not None
+    assert first is trial.wider(edits[0])
+    assert trial.wider(edits[1]) is not None
+    assert first is trial.wider(edits[0])
+    monkeypatch.setattr(edit_trial, "MOST_CONFIGURATIONS_KEPT", 0)
+    assert trial.wider(edits[2]) is not None
+    assert first is not trial.wider(edits[0])

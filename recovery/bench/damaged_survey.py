@@ -1,0 +1,64 @@
+"""What surveying damaged source costs, causes and proposals included, as there is more of it."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from grammar.notation import g4
+from grammar.notation.model import Grammar
+from recovery.analysis import analyse
+from recovery.bench.survey_speed import MB, synthesise
+from recovery.negatives.negatives import Negative
+from recovery.survey.survey import survey
+from support.measure.isolated import call_isolated
+from support.measure.peak_memory import peak_memory
+
+
+def measure_damaged(
+    roots: Sequence[Path],
+    grammar: Grammar,
+    negatives: Sequence[Negative],
+    *,
+    sizes: Sequence[float],
+    damages: Sequence[str],
+    seed: int,
+    on_step: Callable[[], object] = lambda: None,
+) -> Iterator[dict[str, Any]]:
+    """Yield the cost of each of the ``sizes`` in MB: copies of what lies below ``roots``, damaged.
+
+    Each is surveyed by a process of its own, with one core. ``read_seconds`` and ``cause_seconds``
+    are of CPU; ``forms`` counts the different failing lines. ``on_step`` is called for each.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to copy.
+    """
+    for size in sizes:
+        with tempfile.TemporaryDirectory() as folder:
+            place = Path(folder)
+            call_isolated(synthesise, roots, grammar.text, place, round(size * MB), seed, damages)
+            yield {"mb": size, **call_isolated(_surveyed, place, grammar.text, negatives)}
+        on_step()
+
+
+def _surveyed(folder: Path, grammar_text: str, negatives: Sequence[Negative]) -> dict[str, Any]:
+    clock = time.process_time
+    grammar = g4.read(grammar_text)
+    began = clock()
+    found = survey([folder], grammar, jobs=1)
+    read = clock()
+    record = analyse(found, negatives, grammar_name="")
+    peak = peak_memory()
+    return {
+        "files": record["files"],
+        "parsed": record["parsed"],
+        "bytes": record["bytes"],
+        "failures": len(record["failures"]),
+        "forms": len(found.forms),
+        "clusters": len(record["clusters"]),
+        "read_seconds": read - began,
+        "cause_seconds": clock() - read,
+        "peak_mb": None if peak is None else peak / MB,
+    }
