@@ -200,6 +200,7 @@ class _Candidates:
 def _candidates(mutant: Mutant, reaches: Sequence[Reach], most: int) -> _Candidates:
     """Of the cases that run its lines ``most`` that may fail, and a tenth as many of the others.
 
+    Where fewer may fail there are more of the others, as executors that differ fail any case.
     First one for each line around it, the rarest first; then one of each rule that the code there
     cites; then one of each way through its module, as cases that run the same lines there mostly
     notice the same; then every so many of what is left, so that long ones are among them. A change
@@ -211,19 +212,20 @@ def _candidates(mutant: Mutant, reaches: Sequence[Reach], most: int) -> _Candida
     tried = reaching
     if not _search(mutant):
         soft = [one for one in reaching if not one.case.may_fail]
-        tried = [*_chosen(mutant, hard, most), *soft[: max(1, most // 10)]]
+        room = max(most - len(hard), most // 10, 1)
+        tried = [*_chosen(mutant, hard, most), *_chosen(mutant, soft, room)]
     # the lines are large, and no longer needed
     return _Candidates(tuple(replace(one, lines={}) for one in tried), len(reaching), len(hard))
 
 
-def _chosen(mutant: Mutant, hard: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """At most so many of the cases that may fail."""
+def _chosen(mutant: Mutant, cases: Sequence[Reach], most: int) -> Iterator[Reach]:
+    """At most so many of the cases."""
     chosen: dict[str, Reach] = {}
-    for way in (_of_rarest(mutant, hard), _of_rules(mutant, hard), _of_ways(mutant, hard)):
+    for way in (_of_rarest(mutant, cases), _of_rules(mutant, cases), _of_ways(mutant, cases)):
         new = (one for one in way if one.case.name not in chosen)
         chosen.update((one.case.name, one) for one in islice(new, most // 4))
     yield from chosen.values()
-    left = [one for one in hard if one.case.name not in chosen]
+    left = [one for one in cases if one.case.name not in chosen]
     room = most - len(chosen)
     if room:
         yield from left[:: -(-len(left) // room) or 1]

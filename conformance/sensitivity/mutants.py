@@ -33,12 +33,16 @@ from conformance.sensitivity.mutation_operators import Change, Operator, changes
 #: robots needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
     # left out: how values are written in traces, equality, which tests alone ask for, which random
-    # numbers there are, and what only the compiler asks
+    # numbers there are, what is skipped where parts of a program are stood in for, what only the
+    # compiler or the verifier asks, and what runs while modules are loaded
     "values": (
         ("interp.values.*",),
         (
             "interp.values.json_form",
             "interp.values.builtins.Randomness.*",
+            "interp.values.builtins.PredefinedFunction.is_out",
+            "interp.values.builtins._builtin",
+            "interp.values.faults.*.is_of_statement",
             "interp.values.operators.kind_of",
             "*.__eq__",
         ),
@@ -64,7 +68,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.controller._listed",
             *(
                 f"interp.controller.controller.Controller.{name}"
-                for name in ("arm", "levels", "look", "unfulfilled")
+                for name in ("arm", "assign", "levels", "look", "unfulfilled")
             ),
             "interp.controller.input_script",
             "interp.controller.motion_requests.MotionRequests._skip",
@@ -232,7 +236,7 @@ def uses_of(mutant: Mutant) -> Mapping[str, frozenset[int]]:
 
 
 def around(mutant: Mutant) -> Mapping[str, frozenset[int]]:
-    """The lines of its function, and of all functions that its statement names, by module."""
+    """The lines of its function, and of what its statement names: functions, methods, classes."""
     first, last = sorted(map(abs, mutant.lines))
     words = {mutant.function.rpartition(".")[2]}
     for node in ast.walk(_tree(mutant.module)):
@@ -257,12 +261,12 @@ def cited(mutant: Mutant) -> frozenset[str]:
 
 @cache
 def _functions_of_modules() -> Sequence[tuple[str, str, range]]:
-    """Module, name and lines of each function."""
+    """Module, name and lines of each function and class."""
     return [
         (module, node.name, range(node.lineno, (node.end_lineno or node.lineno) + 1))
         for module in modules()
         for node in ast.walk(_tree(module))
-        if isinstance(node, ast.FunctionDef)
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
     ]
 
 

@@ -83,8 +83,7 @@ def _is_timed(task: Task) -> bool:
 
 def _waits(task: Task, *kinds: type[Request]) -> bool:
     """Whether a program is over, or only waits: for a time, or for a condition."""
-    if task.is_over:
-        return True
-    if task.blocked is None or task.is_halted or task.signals:
-        return False
-    return isinstance(task.blocked.request, kinds)
+    blocked = task.blocked
+    return task.is_over or (
+        blocked is not None and not task.signals and isinstance(blocked.request, kinds)
+    )

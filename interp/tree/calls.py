@@ -81,7 +81,7 @@ class Calls(Expressions):
                 return place
             if not is_referable(type_, place.type):
                 raise mismatched(type_)
-            return LocalPlace(place.parts, place.at, place.type, (name,))
+            return LocalPlace(place.parts, place.type, (name,), place.at)
         value = yield from self.value(argument, type_)
         made = fresh(sized(type_, value), name)
         made.set(value)

@@ -62,7 +62,7 @@ class Designators(ABC):
             case ast.Subscript():
                 base = yield from self.place(node.base)
                 return (yield from self.element(base, node.indices))
-        return LocalPlace([(yield from self.value(node))], 0, UNKNOWN, ())
+        return LocalPlace([(yield from self.value(node))], UNKNOWN, ())
 
     def element(self, base: Place, nodes: tuple[ast.Expression | None, ...]) -> Steps[Place]:
         """An element; an index left out, and all behind it, mean the rest of the array."""

@@ -101,7 +101,7 @@ class Expressions(Designators):
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Steps[Value]:
         type_ = self._structure(node, wanted)
         made = empty(type_)
-        whole = LocalPlace([made], 0, type_, ())
+        whole = LocalPlace([made], type_, ())
         for component in node.components:
             place = member(whole, component.name.text)
             if component.indices:

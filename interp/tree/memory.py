@@ -43,7 +43,7 @@ def fill_data(run: ProgramState) -> None:
     filled = _filled(run.program)
     run.cells = filled.cells
     run.data = {
-        symbol: LocalPlace([copied(place.get())], 0, place.type, place.path)
+        symbol: LocalPlace([copied(place.get())], place.type, place.path)
         for symbol, place in filled.places.items()
     }
 

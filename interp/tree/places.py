@@ -31,9 +31,9 @@ class LocalPlace:
     """A place of the program. ``path`` is what the routine that uses it calls it."""
 
     parts: list[Any]
-    at: int
     type: Type
     path: Path
+    at: int = 0
 
     def get(self) -> Value | None:
         """What is there, if anything."""
@@ -84,7 +84,7 @@ def of_type(type_: Type, value: Value) -> Value:
 def fresh(type_: Type, name: str) -> LocalPlace:
     """A variable without a value."""
     is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
-    return LocalPlace([None if is_open else empty(type_)], 0, type_, (name,))
+    return LocalPlace([None if is_open else empty(type_)], type_, (name,))
 
 
 def is_left_out(place: Place) -> bool:
@@ -119,7 +119,7 @@ def member(base: Place, name: str) -> Place:
             fault("uninitialised") if whole is None else LinkError(f"{key} is a member of nothing")
         )
     at = member_place(whole.type, key)
-    return LocalPlace(whole.members, at, whole.type.members[at].type, (*base.path, key))
+    return LocalPlace(whole.members, whole.type.members[at].type, (*base.path, key), at)
 
 
 def element(base: Place, indices: Sequence[int]) -> Place:
@@ -136,5 +136,5 @@ def element(base: Place, indices: Sequence[int]) -> Place:
         raise LinkError("an array has too many indices")
     if len(indices) < len(whole.sizes):
         part = whole.part(*indices)
-        return LocalPlace([part], 0, part.type, path)
-    return LocalPlace(whole.elements, whole.place(indices), whole.type.element, path)
+        return LocalPlace([part], part.type, path)
+    return LocalPlace(whole.elements, whole.type.element, path, whole.place(indices))

@@ -157,16 +157,17 @@ def swrite(
 
 
 def _written(specification: _Specification, value: Value) -> str:
-    flags, width, precision, letter = specification
+    flags, least, precision, letter = specification
+    width = least or 0
     if letter in "cs":
         body = _characters(letter, precision, value)
-        return body.ljust(width or 0) if "-" in flags else body.rjust(width or 0)
+        return body.ljust(width) if "-" in flags else body.rjust(width)
     sign, prefix, digits = _digits(specification, value)
     if "-" in flags:
-        return sign + (prefix + digits).ljust(width or 0)
+        return sign + (prefix + digits).ljust(width)
     if "0" in flags:
-        return sign + prefix + digits.rjust((width or 0) - len(prefix), "0")
-    return " " * ((width or 0) - len(prefix + digits)) + sign + prefix + digits
+        return sign + prefix + digits.rjust(width - len(prefix), "0")
+    return " " * (width - len(prefix + digits)) + sign + prefix + digits
 
 
 def _characters(letter: str, precision: int | None, value: Value) -> str:
