@@ -179,7 +179,7 @@ def run(
     from krl.run_notes import run_notes
 
     with as_input_errors(RuntimeFailure):
-        program, _ = load_program(Path(file), strict=strict, stands_in=not strict)
+        program, _ = load_program(Path(file), strict=strict, stands_in=not strict, routine=routine)
         setup = RunSetup(
             executor=executor or available()[-1],
             robot=robot,

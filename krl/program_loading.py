@@ -24,22 +24,25 @@ _Folder_contra = TypeVar("_Folder_contra", bound=PurePath, contravariant=True)
 
 
 def load_program(
-    file: Path, *, strict: bool = False, stands_in: bool = False
+    file: Path, *, strict: bool = False, stands_in: bool = False, routine: str | None = None
 ) -> "tuple[CheckedProgram, list[str]]":
     """The program that begins with a file, and why files of its project were left out.
 
     ``archive.zip/folder/name.src`` names a file in an archive. Without ``strict`` an error that the
     checker finds is no obstacle: what it is about fails when it is reached. With ``stands_in`` the
-    project gets stand-ins for what it lacks. A program that was loaded before is not checked anew
+    project gets stand-ins for what it lacks, also for arguments of ``routine``, its first by
+    default, where it begins with that. A program that was loaded before is not checked anew
     (`support.files.kept_values`). Raises `InputError` for what cannot be read, and
     `interp.values.faults.LinkError` for what cannot be run.
     """
     from interp.program.load import load
+    from interp.program.routine_callers import with_caller
 
     def loaded(sources: "list[Source]", main: str, unread: list[str]) -> "CheckedProgram":
-        return load(sources, main, strict=strict, stands_in=stands_in, unread=unread)
+        program = load(sources, main, strict=strict, stands_in=stands_in, unread=unread)
+        return with_caller(program, routine) if stands_in else program
 
-    return _made_once(file, f"{strict} {stands_in}", loaded)
+    return _made_once(file, f"{strict} {stands_in} {routine}", loaded)
 
 
 class Image(NamedTuple):

@@ -178,7 +178,9 @@ def prepared_run(
         *(options.machine, options.urdf, options.mjcf, options.scene),
         has_robot=options.robot is not Robot.NONE,
     )
-    program, left = load_program(file, strict=options.strict, stands_in=not options.strict)
+    program, left = load_program(
+        file, strict=options.strict, stands_in=not options.strict, routine=options.routine
+    )
     submit = submit_of(program) if is_auto and options.submit is None else options.submit
     seconds = options.max_time or (_AUTO_SECONDS if is_auto else _SECONDS)
     setup = RunSetup(

@@ -14,7 +14,6 @@ from functools import partial
 from typing import Final, Literal
 
 from conformance.differential import divergence
-from conformance.differential.routine_callers import with_callers
 from conformance.differential.runs import facts_of
 from grammar.syntax.source import Source
 from interp.bench.executor_differences import Observed, difference, observe
@@ -26,6 +25,7 @@ from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.port.requests import Crash, End, Fail, Value
 from interp.program.load import CheckedProgram, Limits, Routine, load_all
+from interp.program.routine_callers import with_callers
 from interp.tree import TreeExecutor, system_values
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 

@@ -27,6 +27,7 @@ from interp.controller.profile import Profile
 from interp.controller.trace import TraceEvent
 from interp.executors import Prepared
 from interp.program.load import CheckedProgram, load_all
+from interp.program.routine_callers import with_caller
 from interp.session import RunResult, RunSetup, run_program, submit_of
 from interp.standins.uses import FOLDER
 from interp.values.faults import FAULTS, Fault, LinkError
@@ -104,9 +105,14 @@ def main_programs(
 ) -> tuple[list[MainProgram], list[tuple[str, str]]]:
     """The main programs of files of one origin, and which files cannot be read and why.
 
-    Files that are not laid out like a backup have none of R1: all their folders count.
+    Files that are not laid out like a backup have none of R1: all their folders count. A file that
+    is all there is counts wherever it lay; where something ``stands_in``, with parameters too.
     """
-    programs, unread = load_all(sources, stands_in=stands_in)
+    files = list(sources)
+    programs, unread = load_all(files, stands_in=stands_in)
+    is_alone = len(files) == 1
+    if is_alone and stands_in:
+        programs = tuple(map(with_caller, programs))
     called: dict[int, set[str]] = {}
     moving: dict[int, set[str]] = {}
     for program in programs:
@@ -119,8 +125,8 @@ def main_programs(
         first = program.routines_of(program.main)[0]
         is_wanted = (
             program.main.module.suffix == ".src"
-            and _is_of_users(path, is_controller=program.project.is_controller)
-            and program.can_begin(first)
+            and (is_alone or _is_of_users(path, is_controller=program.project.is_controller))
+            and (program.can_begin(first) or first.node.name.key in program.callers)
             and (_moves(first.node) or calls_in(first.node.body) & moving[key])
             and first.node.name.key not in called[key]
         )

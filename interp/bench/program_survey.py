@@ -70,10 +70,10 @@ class Chance:
         return Random(f"{self.seed} {path}").random() < self.share
 
 
-def remaining(origins: Iterable[Origin], part: Part, kept: Chance) -> Iterator[Origin]:
-    """The origins with what there is of them; `kept` draws from that the files that are there."""
+def remaining(origins: Iterable[Origin], part: Part) -> Iterator[Origin]:
+    """The origins with what there is of them."""
     for origin in origins:
-        some = [one for one in origin.sources if _remains(one, part) and kept.draws(one.path)]
+        some = [one for one in origin.sources if _remains(one, part)]
         if part == "file":
             yield from (replace(origin, name=one.path, sources=(one,)) for one in some)
         else:

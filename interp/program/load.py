@@ -8,14 +8,14 @@ called [SCO-10].
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain
 
 from grammar.check.context import placed
 from grammar.check.framework import Checked, check_module, check_project, typed_module
-from grammar.semantics.link import File, Project, link
+from grammar.semantics.link import File, Project, extended, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found, Module, Scope
 from grammar.semantics.symbols import ImportSymbol, Kind, RoutineTable, Symbol
@@ -89,7 +89,8 @@ class Routine:
 class CheckedProgram:
     """A project, and the file that it begins with; without errors if it ``is_strict``.
 
-    ``stand_ins`` are those for all files of the project, see `used_stand_ins`.
+    ``stand_ins`` are those for all files of the project, see `used_stand_ins`. ``callers`` are the
+    routines that were added to begin with one that has parameters, by its name in upper case.
     """
 
     project: Project
@@ -97,6 +98,7 @@ class CheckedProgram:
     units: Mapping[Module, Unit]
     is_strict: bool = True
     stand_ins: tuple[StandIn, ...] = ()
+    callers: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def routines(self) -> Mapping[Symbol, Routine]:
@@ -132,6 +134,8 @@ class CheckedProgram:
         ]
         if not found:
             raise LinkError(f"there is no routine {name or 'in ' + self.main.module.path}")
+        if found[0].node.name.key in self.callers:
+            return self.start(self.callers[found[0].node.name.key])
         if not self.can_begin(found[0]):
             has = "parameters" if found[0].node.parameters else "a structure or array as its result"
             raise LinkError(f"{found[0].name} has {has}, so a program cannot begin with it")
@@ -285,16 +289,33 @@ def _checked(
         whole = complete(project, sources)
         project, stand_ins = whole.project, tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}
-    units: dict[Module, Unit] = {}
-    for module in project.modules:
-        source = sources[module.path]
-        known = typed_module if stands_in and not strict else check_module
-        units[module] = Unit(module, source, known(project, module, source))
+    units = _units(project, sources, typed_module if stands_in and not strict else check_module)
     for one in check_project(unit.checked.findings for unit in units.values()) if strict else ():
         if one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)
     return CheckedProgram(project, first, units, strict, stand_ins)
+
+
+def with_main(program: CheckedProgram, source: Source) -> CheckedProgram:
+    """A program that is not strict with another text of its first file."""
+    project = extended(program.project, [File(source.path, _read(source))])
+    sources = {unit.source.path: unit.source for unit in program.units.values()}
+    units = _units(project, sources | {source.path: source}, typed_module)
+    main = next(unit for unit in units.values() if unit.source is source)
+    return replace(program, project=project, main=main, units=units)
+
+
+def _units(
+    project: Project,
+    sources: Mapping[str, Source],
+    known: Callable[[Project, Module, Source], Checked],
+) -> dict[Module, Unit]:
+    units: dict[Module, Unit] = {}
+    for module in project.modules:
+        source = sources[module.path]
+        units[module] = Unit(module, source, known(project, module, source))
+    return units
 
 
 def _read(source: Source) -> ast.Module:

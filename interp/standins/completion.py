@@ -44,14 +44,17 @@ _ORIGINS: Final = {
     "signature": "by its uses only",
     "place": "at a place that the arm reaches",
     "default": "with the controller's default",
+    "argument": "as arguments of the routine that it begins with",
     "unset": "with a value that nothing in the project sets",
     "unreadable": "in place of lines that cannot be read, which are left out,",
 }
 #: Where a stand-in comes from: our own version of it, the signature that its option package has,
 #: that which its uses tell, also of points, which get places of their own, or the controller's
-#: default for data that $config.dat would declare; ``unset`` is declared and has no value,
-#: ``unreadable`` a line that cannot be read.
-Origin = Literal["library", "package", "signature", "place", "default", "unset", "unreadable"]
+#: default for data that $config.dat would declare; ``argument`` is a parameter of what the program
+#: begins with, ``unset`` is declared and has no value, ``unreadable`` a line that cannot be read.
+Origin = Literal[
+    "library", "package", "signature", "place", "default", "argument", "unset", "unreadable"
+]
 _Kind = Literal["routine", "variable", "type"]
 _Places = dict[str, tuple[Module, ast.Name]]
 

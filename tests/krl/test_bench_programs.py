@@ -152,8 +152,7 @@ def test_own_machine_data_is_asked_for(tmp_path: Path) -> None:
     ("options", "found"),
     [
         (["--part", "modules"], {"cell", "ends", "lacks"}),
-        (["--part", "file"], {"cell", "ends", "lacks", "part"}),
-        (["--missing", "0.5", "--seed", "3"], {"cell", "ends"}),
+        (["--part", "file"], {"cell", "ends", "lacks", "part", "tech"}),
         (["--sample", "0.5", "--seed", "6"], {"ends", "lacks"}),
         (["--sample", "0"], set()),
     ],

@@ -355,7 +355,7 @@ def test_broken_scripts(run: Run, script: str, said: str) -> None:
         ("missing.src", None, "no such file"),
         ("data.dat", b"DEFDAT data\nENDDAT\n", "there is no routine"),
         ("binary.src", b"\x00\x01\x02\xff\xfe" * 40, "binary.src"),
-        ("takes.src", b"DEF takes (A :IN )\nINT A\nEND\n", "takes has parameters"),
+        ("takes.src", b"DEF takes (A :IN )\nEND\n", "takes has parameters"),
         ("empty.src", b"", "empty.src"),
     ],
 )

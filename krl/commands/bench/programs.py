@@ -91,10 +91,6 @@ def programs(
             "alone."
         ),
     ] = Part.WHOLE,
-    missing: Annotated[
-        float,
-        typer.Option(min=0, max=0.99, metavar="SHARE", help="Leave so many files out, by chance."),
-    ] = 0.0,
     damage: Annotated[
         str,
         typer.Option(
@@ -109,7 +105,7 @@ def programs(
         float,
         typer.Option(min=0, max=1, metavar="SHARE", help="Run so many of the programs, by chance."),
     ] = 1.0,
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws files, programs and damage.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Draws programs and damage.")] = 1,
 ) -> int:
     """Run the main programs of backups with their own machine, tools, bases and points.
 
@@ -134,7 +130,7 @@ def programs(
         sample=Chance(sample, seed),
     )
     whole = _origins(programs_or_ours(paths), scripts)
-    left = remaining(whole, part.value, Chance(1.0 - missing, seed))
+    left = remaining(whole, part.value)
     kinds = ["", *damage.split(",")] if damage else [""]
     origins = list(damaged(left, kinds, seed))
     record: dict[str, Any] = {
@@ -142,7 +138,6 @@ def programs(
         "executor": bounds.executor,
         "robot": bounds.robot,
         "part": part.value,
-        "missing": missing,
         "damages": [],
         "sample": sample,
         "seed": seed,

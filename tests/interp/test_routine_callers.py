@@ -1,10 +1,10 @@
 """Routines that call those with parameters, and variables of which no type is known."""
 
-from conformance.differential.routine_callers import with_callers
 from grammar.semantics.predefined import System
 from grammar.semantics.types import INT, UNKNOWN, Array, Enumeration, Member, Structure
 from grammar.syntax.source import Source
 from interp.program.load import load
+from interp.program.routine_callers import with_caller, with_callers
 from interp.program.variables import cells, is_complete, is_referable
 
 
@@ -24,6 +24,24 @@ def test_callers_give_every_parameter_a_value() -> None:
     assert given <= set(added)
     assert "R[]=f(P1[],P2,P3[],P4,P5)" in added
     load([made.source], "main.src")  # it checks without an error
+
+
+def test_a_program_begins_with_arguments_that_stand_in() -> None:
+    """A routine with parameters gets constants of calls or of its SWITCH, and places for points."""
+    text = (
+        "DEF job(N:IN,SIDE:IN,P:IN,F:IN)\nINT N,SIDE\nE6POS P\nBOOL F\nSWITCH SIDE\nCASE 4\n"
+        "ENDSWITCH\nEND\n"
+    )
+    other = "DEF other()\nINT I\njob(I,I)\njob(-I,I,,FALSE)\njob(7,I,,TRUE)\nEND\n"
+    sources = [Source(text, "job.src"), Source(other, "other.src")]
+    program = with_caller(load(sources, "job.src", strict=False, stands_in=True))
+    added = program.main.source.text[len(text) :].split("\n")
+    assert {"P1=7", "P2=4", "P4=FALSE"} <= set(added)
+    assert any(line.startswith("P3={X ") for line in added)
+    assert "KRL_CALLS_0" == program.start().name
+    assert ["N", "SIDE", "P", "F"] == [
+        one.name for one in program.stand_ins if one.origin == "argument"
+    ]
 
 
 def test_what_cannot_be_called_is_told() -> None:

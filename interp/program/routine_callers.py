@@ -1,0 +1,197 @@
+"""Programs for routines with parameters, so that each routine can be run by itself.
+
+A program cannot begin with a routine that has parameters. So a routine is added behind its file
+that declares a variable for each of them, gives these values and calls it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import islice, product
+from typing import Final
+
+from grammar.semantics.types import (
+    BOOL,
+    CHAR,
+    INT,
+    REAL,
+    Array,
+    Enumeration,
+    Scalar,
+    Structure,
+    Type,
+    is_position,
+)
+from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.source import Source
+from grammar.syntax.walk import walk
+from interp.program.load import CheckedProgram, Routine, with_main
+from interp.program.variables import is_complete, is_complete_parameter
+from interp.robot.models.stand_in import Places
+from interp.standins.completion import StandIn
+from interp.standins.signatures import Signatures
+
+#: What an array has where a parameter does not tell its size.
+_LENGTH: Final = 8
+#: So many values at most are given to one variable.
+_MOST_VALUES: Final = 200
+#: A letter, a number, a truth value for each scalar; 1 is an index of any array.
+_VALUES: Final[Mapping[Type, str]] = {INT: "1", REAL: "1.0", BOOL: "TRUE", CHAR: '"A"'}
+_PREFIX: Final = "KRL_CALLS_"
+
+#: Makes a value of a structure as it is written, for a name; ``""`` where its parts are given some.
+_MakeValue = Callable[[Structure, str], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Callers:
+    """The file of a program with routines added, and which of them calls which routine."""
+
+    source: Source
+    called: Mapping[str, str]
+
+
+def with_callers(program: CheckedProgram) -> Callers:
+    """Add routines to the first file of a program that call those with parameters."""
+    return _added(program, lambda one: not program.can_begin(one))
+
+
+def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProgram:
+    """A program that can begin with a routine of its first file, by default the first one.
+
+    Parameters get what calls in the project have in their place, if that is a constant, or the
+    first value that a SWITCH of the routine asks for; points get places. All are told as stand-ins.
+    A program that can begin as it is, or whose parameters have unknown types, comes back unchanged.
+    """
+    found = program.routines_of(program.main)
+    if name is not None:
+        found = tuple(one for one in found if one.node.name.key == name.upper())
+    if not found or program.can_begin(found[0]):
+        return program
+    routine, unit = found[0], program.main
+    places = Places([one.source for one in program.units.values()])
+    signatures = Signatures((), lambda _name: None, {}, places)
+
+    def point(type_: Structure, name: str) -> str:
+        return signatures.value(type_, name) if is_position(type_) else ""
+
+    made = _added(
+        program, lambda one: one.node is routine.node, _constants(program, routine), point
+    )
+    if not made.called:
+        return program
+    stand_ins = tuple(
+        StandIn(one.name.text, "variable", "argument", unit.module.path, unit.line(routine.node))
+        for one in routine.node.parameters
+    )
+    callers = {called.upper(): caller for caller, called in made.called.items()}
+    return replace(
+        with_main(program, made.source),
+        stand_ins=(*program.stand_ins, *stand_ins),
+        callers=callers,
+    )
+
+
+def _constants(program: CheckedProgram, routine: Routine) -> Mapping[str, str]:
+    """Values that parameters are known to have, by their names in upper case."""
+    names = [one.name.key for one in routine.node.parameters]
+    known: dict[str, str] = {}
+    for unit in program.units.values():
+        assert unit.module.syntax is not None, "only what can be read is loaded"
+        for node in walk(unit.module.syntax):
+            if isinstance(node, ast.Call) and node.name.key == routine.node.name.key:
+                for name, argument in zip(names, node.arguments, strict=False):
+                    if isinstance(argument, ast.Literal):
+                        known.setdefault(name, unit.source.text[slice(*argument.span)])
+    for node in walk(routine.node):
+        if isinstance(node, ast.Switch) and isinstance(node.selector, ast.Variable):
+            for value in (value for branch in node.branches for value in branch.values):
+                if isinstance(value, ast.Literal):
+                    text = routine.unit.source.text[slice(*value.span)]
+                    known.setdefault(node.selector.name.key, text)
+    return known
+
+
+def _added(
+    program: CheckedProgram,
+    is_called: Callable[[Routine], bool],
+    known: Mapping[str, str] | None = None,
+    point: _MakeValue = lambda _type, _name: "",
+) -> Callers:
+    """The first file with callers of some of its routines; ``known`` are values of parameters."""
+    unit = program.main
+    parts, called = [unit.source.text], {}
+    for number, routine in enumerate(program.routines_of(unit)):
+        name = f"{_PREFIX}{number}"
+        lines = _lines(program, routine, name, known or {}, point) if is_called(routine) else None
+        if lines is not None:
+            parts += lines
+            called[name] = routine.name
+    source = replace(unit.source, text="\n".join([*parts, ""])) if called else unit.source
+    return Callers(source, called)
+
+
+def _lines(
+    program: CheckedProgram,
+    routine: Routine,
+    name: str,
+    known: Mapping[str, str],
+    point: _MakeValue,
+) -> list[str] | None:
+    declared, given, arguments = [], list[str](), []
+    for number, parameter in enumerate(routine.node.parameters, start=1):
+        found = routine.scope.own(Space.VALUE, parameter.name.key)
+        type_ = None if found is None else program.type_of(found)
+        if type_ is None or not is_complete_parameter(type_):
+            return None
+        declared.append(_declared(f"P{number}", type_))
+        value = known.get(parameter.name.key)
+        if value is not None and isinstance(type_, Scalar | Enumeration):
+            given.append(f"P{number}={value}")
+        else:
+            given += islice(_given(f"P{number}", type_, point), _MOST_VALUES)
+        arguments.append(f"P{number}{_whole(type_)}")
+    call = f"{routine.name}({','.join(arguments)})"
+    result = program.result_of(routine)
+    if result is not None:
+        if not is_complete(result):
+            return None
+        declared.append(_declared("R", result))
+        call = f"R{_whole(result)}={call}"
+    return [f"DEF {name}()", *declared, *given, call, "END"]
+
+
+def _declared(name: str, type_: Type) -> str:
+    if isinstance(type_, Array):
+        return f"DECL {type_.element} {name}[{','.join(map(str, _sizes(type_)))}]"
+    return f"DECL {type_} {name}"
+
+
+def _whole(type_: Type) -> str:
+    return f"[{',' * (len(type_.sizes) - 1)}]" if isinstance(type_, Array) else ""
+
+
+def _sizes(type_: Array) -> list[int]:
+    return [size or _LENGTH for size in type_.sizes]
+
+
+def _given(place: str, type_: Type, point: _MakeValue) -> Iterator[str]:
+    """Assignments of a value to every part."""
+    match type_:
+        case Array(element=element) if element == CHAR and len(type_.sizes) == 1:
+            yield f'{place}[]="A"'
+        case Array(element=element):
+            for indices in product(*(range(1, size + 1) for size in _sizes(type_))):
+                yield from _given(f"{place}[{','.join(map(str, indices))}]", element, point)
+        case Structure(members=members):
+            value = point(type_, place)
+            if value:
+                yield f"{place}={value}"
+            for member in members if not value else ():
+                yield from _given(f"{place}.{member.name}", member.type, point)
+        case Enumeration(constants=constants):
+            yield f"{place}=#{constants[0]}"
+        case _:
+            yield f"{place}={_VALUES[type_]}"
