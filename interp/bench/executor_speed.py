@@ -28,7 +28,7 @@ from grammar.syntax.source import Source
 from interp.bench.kernels import Kernel, kernels_in
 from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_available
 from interp.native import AVAILABLE
-from interp.port.requests import Crash, End, Fail, Write
+from interp.port.requests import Crash, End, Fail, StopAdvance, Write
 from interp.program.load import Limits, load
 from interp.values.faults import LinkError
 
@@ -199,7 +199,7 @@ def _run(program: Prepared, executor: str, repeats: int) -> tuple[float, _Timed]
     while not isinstance(request, End | Fail | Crash):
         if isinstance(request, Write):
             result = request.value
-        request = running.advance()
+        request = running.advance(_REPEATS if isinstance(request, StopAdvance) else None)
     ended = time.process_time()
     if not isinstance(request, End):
         raise MeasurementError(f"{executor}: {request}")

@@ -26,7 +26,7 @@ from interp.controller.spline_stops import SplineStops
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Answer, Blocked, Task
 from interp.controller.waits import Waits
-from interp.port.requests import At, Crash, End, Fail, Request, Slice
+from interp.port.requests import At, Crash, End, Fail, Request, Slice, StopAdvance
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass
@@ -255,13 +255,14 @@ class Scheduler:
             error = BudgetExhausted("an endless loop: it only computes, and nothing can end it")
             self._fail(task, Fail(request.at, error))
             return None
+        most = None
         if task.level is None or task.level.signal is None:
             profile = self.state.profile
             most = profile.requests if task is self._robot else profile.submit_requests
             last = self.waits.next_slice(task)
             if task.slice_end != last:
                 task.slice_end, task.spent = last, 0
-            task.spent += 1
+            task.spent += request.count if isinstance(request, StopAdvance) else 1
             if task.spent > self.waits.requests_left(task, request, most):
                 return self.waits.until(request, last, lambda: self._answer(task, request))
         exempt = task.exempt_line
@@ -269,7 +270,11 @@ class Scheduler:
             task.exempt_line = None
         task.last_at = request.at
         self.state.trace.origin = task.name, request.at
-        return self.requests.answer(task, request)
+        answer = self.requests.answer(task, request)
+        is_passed = isinstance(request, StopAdvance) and answer is None
+        if is_passed and most is not None and task.exempt_line is None:
+            return most - task.spent  # nothing is ahead, until it makes another request
+        return answer
 
     def _end(self, task: Task, request: End) -> Answer:
         """The program has ended once the arm has come to where it left it [ADV-07]."""

@@ -13,7 +13,7 @@ from interp.controller.trace import TaskName
 from interp.port.events import Sink
 from interp.port.executor import Executor, Reader
 from interp.port.inspection import Inspectable
-from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, Value
+from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, StopAdvance, Value
 from interp.values.faults import Fault
 
 
@@ -68,7 +68,7 @@ class DebuggedExecutor:
         if self._again is not None:  # behind an action, as it was asked before
             self._open, self._again = self._again, None
             return inside.advance(None)
-        if isinstance(self._open, Slice):
+        if isinstance(self._open, Slice | StopAdvance):
             reply = None  # it may ask sooner than the controller would have it
         while True:
             inside.ask_at(min(self._due, inside.begun + hook.unseen))

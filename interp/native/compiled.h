@@ -139,6 +139,9 @@ enum { CALLED = -1 };
             goto out_##out;                                                                        \
         put otherwise                                                                              \
     }
+#define STOP(out)                                                                                  \
+    if (UNLIKELY(!krl_passes_stop(machine, &left)))                                                \
+        goto out_##out;
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;

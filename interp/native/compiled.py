@@ -295,6 +295,8 @@ class _Routine:
             yield self._call(place, out)
         elif name in INTERPRETED:
             yield f"goto out_{out};"
+        elif name == "STOP":
+            yield f"STOP({out})"
         elif name == "AT":
             yield f"statement = {step.b};"
         elif name == "RETURN":

@@ -109,6 +109,9 @@ struct krl_machine {
     int32_t open; /* calls */
     int32_t most_calls;
     int32_t left; /* statements that may begin before something has to be done, and one more */
+    int32_t quota; /* what it was, and what it has got by steps STOP, of which `stops` may pass */
+    int32_t whole; /* what it is where a slice begins */
+    int32_t stops;
     int32_t last; /* the cell that was written last through a reference */
     int32_t top;  /* behind the last place of the stack of operands that is in use, when it stops */
 

@@ -411,7 +411,8 @@ static PyMethodDef core_methods[] = {
 static PyMemberDef core_members[] = {
     MEMBER(code, READONLY),   MEMBER(fp, READONLY), MEMBER(serial, READONLY), MEMBER(open, READONLY),
     MEMBER(statement, 0),     MEMBER(left, 0),      MEMBER(last, 0),          MEMBER(top, 0),
-    MEMBER(most_calls, 0),    {NULL, 0, 0, 0, NULL},
+    MEMBER(most_calls, 0),    MEMBER(quota, 0),     MEMBER(whole, 0),     MEMBER(stops, 0),
+    {NULL, 0, 0, 0, NULL},
 };
 
 static PyGetSetDef core_getset[] = {

@@ -81,7 +81,8 @@
     X(RETURN) X(RETURN_VALUE) /* b */                                                              \
     X(END_ACTION)                                                                                  \
     X(AT)                /* the statement is that of place b */                                    \
-    X(PYTHON)            /* for Python: matter tag of the instruction at place b; stack up to a */
+    X(PYTHON)            /* for Python: matter tag of the instruction at place b; stack up to a */ \
+    X(STOP)              /* the same, unless it may pass without a request to stop the advance run */
 
 enum krl_step_op {
 #define KRL_STEP_NUMBER(name) KRL_STEP_##name,

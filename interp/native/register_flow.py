@@ -55,7 +55,7 @@ class RegisterFlow:
             step = self._steps[place]
             roles = roles_of(step.name)
             later = frozenset[int]().union(*(found[one] for one in self.after(place)))
-            if step.name == "PYTHON":
+            if step.name in ("PYTHON", "STOP"):
                 live = frozenset(one for one in whole if one < step.a)
             elif roles is None and step.name not in (*ENDS, "AT"):  # from `a` on
                 live = frozenset(one for one in whole if one >= step.a or one in later)
@@ -156,6 +156,6 @@ class RegisterFlow:
                 counted[leader] = counted.get(leader, 0) + 1
             if leader >= 0:
                 begun[place] = leader, counted[leader]
-            if step.is_jump or step.name in (*CALLS, *ENDS, *INTERPRETED):
+            if step.is_jump or step.name in ("STOP", *CALLS, *ENDS, *INTERPRETED):
                 leader = -1
         return counted, {place: counted[first] - count for place, (first, count) in begun.items()}

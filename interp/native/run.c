@@ -90,8 +90,15 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
         statement = pc->b;
         NEXT();
     }
+    STEP(STOP)
+    {
+        if (LIKELY(krl_passes_stop(machine, &left)))
+            NEXT();
+        goto outside;
+    }
     STEP(PYTHON)
     {
+    outside:
         machine->top = (int32_t)(&A - cells);
         stopped.at = (int32_t)(pc - machine->steps);
         goto stop;

@@ -724,6 +724,19 @@ KRL_INLINE void krl_give(struct krl_machine *machine, krl_cell *const cells, krl
     cells[machine->top++] = value;
 }
 
+/* ---------------------------------------------------------------------------- slices */
+
+/* Whether the advance run need not be asked to stop, as Counter.passes_stop has it; then a slice begins. */
+KRL_INLINE int krl_passes_stop(struct krl_machine *machine, int32_t *left)
+{
+    if (machine->stops == 0)
+        return 0;
+    machine->stops--;
+    machine->quota += machine->whole - *left;
+    *left = machine->whole;
+    return 1;
+}
+
 #undef STEP
 #undef NEXT
 #undef JUMP

@@ -122,10 +122,17 @@ void krl_leave(struct translator *at, int32_t place)
 
 /* ---------------------------------------------------------------------------- requests */
 
+static int is_named(const struct krl_entry *entry, const char *name)
+{
+    return entry->name.length == strlen(name) && memcmp(entry->name.bytes, name, strlen(name)) == 0;
+}
+
 void krl_ask(struct translator *at, const struct krl_entry *entry, int32_t place)
 {
     int is_large = entry->result >= 0 && !krl_is_plain(at->program, entry->result);
-    krl_to_python(at, KRL_MATTER_INSTRUCTION, place);
+    struct krl_step *step = krl_to_python(at, KRL_MATTER_INSTRUCTION, place);
+    if (is_named(entry, "StopAdvance") && entry->input_cells == 0 && entry->result < 0)
+        step->op = KRL_STEP_STOP;
     at->height -= entry->input_cells + is_large;
     krl_push_places(at, entry->result >= 0 && !is_large);
 }
@@ -142,9 +149,7 @@ static int all_reals(const struct krl_entry *entry)
 /* INV_POS of a pose, into a pose. */
 static int is_inversion(const struct translator *at, const struct krl_entry *entry)
 {
-    static const char name[] = "INV_POS";
-    if (entry->name.length != sizeof name - 1 || memcmp(entry->name.bytes, name, sizeof name - 1) != 0 ||
-        entry->part_count != 1 || entry->parts[0].kind != KRL_PART_INPUT ||
+    if (!is_named(entry, "INV_POS") || entry->part_count != 1 || entry->parts[0].kind != KRL_PART_INPUT ||
         entry->parts[0].handed.mode != KRL_BY_REFERENCE || entry->result < 0 ||
         at->program->types[entry->result].size < 6)
         return 0;

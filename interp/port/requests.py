@@ -96,7 +96,14 @@ class SetCyclicFlag(Asking):
 
 @dataclass(frozen=True, slots=True)
 class StopAdvance(Asking):
-    """An imported variable is accessed, which stops the advance run [ADV-05]."""
+    """An imported variable is accessed or a text formatted, which stops the advance run [ADV-05].
+
+    Where the reply is a number, nothing is ahead that it would wait for: so many more may pass
+    before the executor asks again, up to its next other request; it may ask sooner. ``count`` are
+    those that this one stands for.
+    """
+
+    count: int = 1
 
 
 # ------------------------------------------------------------------------------------------ waiting

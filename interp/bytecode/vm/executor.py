@@ -35,6 +35,7 @@ from interp.port.requests import (
     Request,
     Skip,
     Slice,
+    StopAdvance,
     Value,
     Write,
 )
@@ -155,12 +156,20 @@ class Machine:
             state.request = Crash(self._services.at(), f"{type(error).__name__}: {error}")
         request = state.request
         assert request is not None, "a machine stops for a request"
-        passed = self._services.counter.passed()
+        told = self._passed(request.at)
         if state.completion is not None:
-            self._open = _Open(None, request, state.completion, is_asked=not passed)
+            self._open = _Open(None, request, state.completion, is_asked=told is None)
         elif isinstance(request, Fail | Crash):
             self._final = request
-        return Slice(request.at, passed) if passed else request
+        return told or request
+
+    def _passed(self, at: At) -> Request | None:
+        """What has passed before a request without being asked for, if anything has."""
+        counter = self._services.counter
+        if stops := counter.stopped():
+            return StopAdvance(at, stops)
+        slices = counter.passed()
+        return Slice(at, slices) if slices else None
 
     def enter(self, code: CodeHandle) -> None:
         """Push an action, which runs before the program goes on.

@@ -17,7 +17,7 @@ from interp.bytecode.vm.statement_budget import Counter, Guard, Pause
 from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
 from interp.port import requests
 from interp.port.events import Sink, wanting
-from interp.port.requests import At, MoveEmily, Request, Slice, Value, Write
+from interp.port.requests import At, MoveEmily, Request, Slice, StopAdvance, Value, Write
 from interp.port.requests import CodeHandle as HandedOver
 from interp.program.load import Limits
 from interp.values.builtins import FUNCTIONS, Surroundings, call
@@ -141,6 +141,8 @@ class Services:
     def ask(self, number: int, after: Operation) -> Operation:
         """What `ASK` does. While a condition is evaluated the reader answers."""
         ask, state = self._program.asks[number], self._state
+        if ask.request == "StopAdvance":
+            return self._stop_advance(after)
         is_invoked = ask.request == "Invoke"
         arguments = arguments_of(ask.parts) if is_invoked else ()
         entry = Entry(self._program, state, ask.parts, arguments, ask.result)
@@ -164,13 +166,28 @@ class Services:
                 return after
 
             if state.reader is not None:
-                if ask.request == "StopAdvance":
-                    return after
                 if ask.request != "Read":
                     raise LinkError(NOT_IN_CONDITIONS)
                 return completion(state.reader(request.path))
             state.request, state.completion = _finished(request), completion
             self.counter.asked()
+            return None
+
+        return operation
+
+    def _stop_advance(self, after: Operation) -> Operation:
+        state, counter = self._state, self.counter
+
+        def completion(reply: object) -> Operation:
+            if isinstance(reply, int):
+                counter.allow(reply)
+            return after
+
+        def operation() -> Operation | None:
+            if state.reader is not None or counter.passes_stop():
+                return after
+            state.request, state.completion = StopAdvance(self.at()), completion
+            counter.asked()
             return None
 
         return operation

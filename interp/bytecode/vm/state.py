@@ -25,9 +25,11 @@ class State:
     ``code`` is the number of its code object, ``fp`` its first cell, ``base`` the height of the
     stack of operands when it began, ``statement`` the place of the LINE that began last, -1 before.
     ``serial`` distinguishes activations whose actions and conditions may be handed over, else it is
-    0. ``left`` is how many statements may begin before something has to be done, ``most_calls`` how
-    many calls may be open, ``most_cells`` where the frames have to end, ``last`` the cell that was
-    written last through a reference.
+    0. ``left`` is how many statements may begin before something has to be done, out of ``quota``;
+    ``whole`` is ``left`` where a slice begins, as it does with each
+    `interp.port.requests.StopAdvance`, of which ``stops`` may pass without being asked for.
+    ``most_calls`` is how many calls may be open, ``most_cells`` where the frames have to end,
+    ``last`` the cell that was written last through a reference.
 
     When the machine stops, ``request`` is why, and ``completion`` takes the reply. ``reader`` is
     there while a condition is evaluated, which does not stop.
@@ -44,12 +46,15 @@ class State:
         "left",
         "most_calls",
         "most_cells",
+        "quota",
         "reader",
         "request",
         "serial",
         "serials",
         "stack",
         "statement",
+        "stops",
+        "whole",
     )
 
     def __init__(
@@ -68,7 +73,8 @@ class State:
         self.statement = -1
         self.serial = 0
         self.serials = 0
-        self.left = 1
+        self.left = self.quota = self.whole = 1
+        self.stops = 0
         self.last = 0
         self.reader: Reader | None = None
         self.request: Request | None = None

@@ -6,6 +6,7 @@ It is the same for all executors:
   the next one fails with `interp.values.faults.BudgetExhausted`; where as many as the slice
   has, or all slices that may pass at once, have begun since the last request,
   `interp.port.requests.Slice` is asked before the next one begins;
+- a `interp.port.requests.StopAdvance` that may pass without a request begins a slice all the same;
 - ON_ERROR_PROCEED holds for the statement that begins next, wherever that is, until another one
   begins.
 
@@ -15,9 +16,13 @@ A statement costs a subtraction: ``State.left`` says when there is more to do.
 from __future__ import annotations
 
 from enum import Enum
+from typing import Final
 
 from interp.bytecode.vm.state import State
 from interp.program.load import Limits
+
+#: The largest ``State.quota``, which C holds in 32 bits.
+_LARGEST: Final = 2**31 - 1
 
 
 class Guard(Enum):
@@ -47,7 +52,9 @@ class Counter:
         self._due = limits.per_slice
         self._slices = 1
         self._passed = 0
-        self._quota = 0
+        self._allowed = 0
+        self._stopped = 0
+        state.whole = limits.per_slice + 1
         self._refill()
 
     @property
@@ -57,14 +64,14 @@ class Counter:
 
     @guard.setter
     def guard(self, guard: Guard) -> None:
-        self._settle(self._quota - self._state.left)
+        self._settle()
         self._guard = guard
         self._refill()
 
     @property
     def begun(self) -> int:
         """How many statements have begun."""
-        return self._begun + self._quota - self._state.left
+        return self._begun + self._state.quota - self._state.left
 
     def asked(self) -> None:
         """A request was made: a new slice begins."""
@@ -75,6 +82,30 @@ class Counter:
         self._passed += self._whole_slices()
         self._due = count
         self._refill()
+
+    def allow(self, stops: int) -> None:
+        """So many `StopAdvance` may pass before the next request of another kind."""
+        if self._guard is Guard.OFF:
+            most = min(self._limits.statements - self.begun, _LARGEST) // self._state.whole - 1
+            self._allowed = self._state.stops = max(min(stops, most), 0)
+
+    def passes_stop(self) -> bool:
+        """Whether a `StopAdvance` need not be asked for: then a slice begins."""
+        state = self._state
+        if state.stops == 0:
+            return False
+        state.stops -= 1
+        state.quota += state.whole - state.left
+        state.left = state.whole
+        return True
+
+    def stopped(self) -> int:
+        """The `StopAdvance` that have passed before the last request, or the end; told once."""
+        if self._allowed:
+            self._settle()
+            self._refill()
+        count, self._stopped = self._stopped, 0
+        return count
 
     def passed(self) -> int:
         """The slices that have passed before the last request, or the end, though not asked for.
@@ -89,8 +120,7 @@ class Counter:
 
     def pause(self) -> Pause:
         """What comes before the statement that has used up ``State.left``."""
-        self._settle(self._quota - 1)
-        self._quota = self._state.left  # all of them are settled
+        self._settle(begins=1)
         self._guard = Guard.NOW if self._guard is Guard.NEXT else Guard.OFF
         if self._begun >= self._limits.statements:
             return Pause.EXHAUSTED
@@ -104,12 +134,19 @@ class Counter:
         self._begun += 1
         self._refill()
 
-    def _settle(self, begun: int) -> None:
-        self._begun += begun
+    def _settle(self, begins: int = 0) -> None:
+        """Count what has begun but what ``begins`` now, and the `StopAdvance` that have passed."""
+        state = self._state
+        if count := self._allowed - state.stops:
+            self._due = self._begun + state.quota - 1
+            self._stopped += count
+        self._allowed = state.stops = 0
+        self._begun += state.quota - state.left - begins
+        state.quota = state.left
 
     def _whole_slices(self) -> int:
         """Those used up before the one that runs, which is the only one from now on."""
-        self._settle(self._quota - self._state.left)
+        self._settle()
         count = 0
         if self._slices > 1:
             size = self._limits.per_slice
@@ -121,4 +158,4 @@ class Counter:
 
     def _refill(self) -> None:
         free = min(self._due, self._limits.statements) - self._begun
-        self._quota = self._state.left = 1 + (max(free, 0) if self._guard is Guard.OFF else 0)
+        self._state.quota = self._state.left = 1 + (max(free, 0) if self._guard is Guard.OFF else 0)

@@ -55,6 +55,13 @@ PROGRAMS: Mapping[str, tuple[str, str]] = {
         "t=2.5 IN[1]=TRUE",
     ),
     "fault": (f"DEF main()\nINT I\n{HOME}PTP {{A1 5}}\nI=0\nI=7/I\nEND\n", ""),
+    "texts": (  # more of them than a cycle has requests, some of them while the arm moves
+        f"DEF main()\nINT I,K,N\nCHAR S[20]\nDECL STATE_T R\nN=0\n{HOME}FOR I=1 TO 900\nK=0\n"
+        'SWRITE(S[],R,K,"%d",I*I)\nN=N+STRLEN(S[])\nIF I==450 THEN\n$OUT[1]=TRUE\nPTP {A1 1}\n'
+        "ON_ERROR_PROCEED\nI=I/(K-K)\nENDIF\nENDFOR\nFOR I=1 TO 1500\nN=N+1\nENDFOR\n"
+        'CONTINUE\nSWRITE(S[],R,K,"%d",N)\nSWRITE(S[],R,K,"%d",N)\n$OUT[2]=TRUE\nEND\n',
+        "t=1.5 IN[1]=TRUE",
+    ),
     "polling": (
         "DEF main()\nINT I\nI=0\nWHILE NOT $IN[1]\nI=I+1\nENDWHILE\nLOOP\nI=I+1\nEND_HERE:\n"
         "IF I>2500 THEN\nEXIT\nENDIF\nENDLOOP\nEND\n",

@@ -15,7 +15,7 @@ from grammar.generation.closed.programs import seeded
 from grammar.syntax.source import Source
 from interp.bench.kernels import kernels_in
 from interp.executors import Prepared, is_available
-from interp.port.requests import End, Fail, Request
+from interp.port.requests import End, Fail, Request, StopAdvance
 from interp.program.load import Limits, load
 
 pytestmark = pytest.mark.skipif(not is_available("compiled"), reason="there is no C compiler")
@@ -54,6 +54,9 @@ DEFFCT INT MOVED(P:IN, N:IN)
    RETURN P.X * P.Y
 ENDFCT
 """
+
+
+FORMATS = 'K = 0\nSWRITE(S[], T, K, "%d", K)\n' * 6 + "K = 1\n" * 4
 
 
 NEGATED = """DEF RUN()
@@ -111,6 +114,20 @@ def test_slices(name: str, size: int) -> None:
     limits = Limits(statements=3000, per_slice=size)
     expected = repr(_requests(program, "native", limits))  # a budget that is exhausted is no value
     assert expected == repr(_requests(program, "compiled", limits))
+
+
+@pytest.mark.parametrize("executor", ["vm", "native", "compiled"])
+def test_stops_that_pass(executor: str) -> None:
+    """So many stops of the advance run pass as the reply says; each begins a slice."""
+    text = f"DEF RUN()\nCHAR S[9]\nINT K\nDECL STATE_T T\n{FORMATS}$OV_PRO = 1\nEND\n"
+    program = Prepared(load([Source(text, "run.src")], "run.src"))
+    running = program.executor(executor, Limits(per_slice=4))
+    found = [running.advance()]
+    while not isinstance(found[-1], End):
+        found.append(running.advance(2 if isinstance(found[-1], StopAdvance) else None))
+    kinds = [(type(one).__name__, getattr(one, "count", 0)) for one in found]
+    stop, passed, time = ("StopAdvance", 1), ("StopAdvance", 2), ("Slice", 1)
+    assert [stop, passed, stop, passed, time, ("Write", 0), ("End", 0)] == kinds
 
 
 def test_calls_deeper_than_those_in_c() -> None:
