@@ -297,6 +297,7 @@ class _Making:
         )
         for one in checked:
             uses.read(one)
+        uses.settle()
         return uses
 
     def _has_no_list(self, module: Module, _name: str) -> bool:

@@ -2,10 +2,10 @@
 
 A routine becomes its signature alone: it does nothing, gives variables passed to it a value where
 they have none, and returns a default. The defaults are those with which a program goes on: TRUE for
-a function that tells whether something has worked, but FALSE where a WHILE waits for its end; 0 for
-its numbers; for a number that nothing assigns the first that a SWITCH asks for, else 1; for
-a point a place of its own that the arm reaches. What is only waited for, and never assigned, is an
-input.
+a function that tells whether something has worked, but what ends a loop where one asks for it, as
+for a truth value that nothing assigns; 0 for a function's numbers; for a number that nothing
+assigns the first that a SWITCH asks for, else 1; for a point a place of its own that the arm
+reaches. What is only waited for, and never assigned, is an input.
 """
 
 from __future__ import annotations
@@ -55,6 +55,8 @@ _FIRST_INPUT: Final = 1024
 _LONGEST: Final = 20
 #: Of a structure of arrays, whose elements nothing sets: it cannot be written.
 _NOTHING: Final = "{}"
+#: Of an enumeration of which no constant is known.
+_NO_CONSTANT: Final = "NOT_KNOWN"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +133,9 @@ class Signatures:
     def type(self, name: str, use: DataUse) -> None:
         """Declare a type that only its name is known of, from how its variables are used."""
         self._named_types.add(name)
-        if use.constants and not use.members:
-            self.types[name] = f"GLOBAL ENUM {name} {','.join(use.constants.values())}"
+        if (use.constants or use.is_compared) and not use.members:  # no structure is compared
+            constants = use.constants.values() or [_NO_CONSTANT]
+            self.types[name] = f"GLOBAL ENUM {name} {','.join(constants)}"
         else:
             self._structure(name, use)
 
@@ -178,7 +181,8 @@ class Signatures:
 
     def _known(self, name: str, type_: Type, use: DataUse) -> _Kind | None:
         if type_ in (BOOL, CHAR):
-            return _Kind(str(type_), "FALSE" if type_ == BOOL else '" "', use.is_text)
+            truth = "TRUE" if use.left_by and not use.is_assigned else "FALSE"
+            return _Kind(str(type_), truth if type_ == BOOL else '" "', use.is_text)
         if not isinstance(type_, Structure | Enumeration) or self._find_type(type_.name) != type_:
             return None
         value = self._values.get(type_.name.upper())
@@ -300,7 +304,7 @@ class Signatures:
             if known is not None and known.default and kind.name == known.result:
                 value = known.default
             elif kind.name == "BOOL":
-                value = "FALSE" if use.result.is_left_by_false else "TRUE"
+                value = "FALSE" if use.result.left_by is False else "TRUE"
             elif kind.name in ("INT", "REAL"):
                 value = "0" if kind.name == "INT" else "0.0"
             lines = [

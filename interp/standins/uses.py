@@ -52,7 +52,8 @@ class DataUse:
     that of a loop's counter.
     ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
     kinds of motions that go to it. ``is_index``: an array has it as an index; ``is_part``: it is a
-    member. ``asked_for`` is the first number that a SWITCH or a comparison asks for.
+    member; ``is_compared``: it is asked whether it is another value. ``asked_for`` is the first
+    number that a SWITCH or a comparison asks for, ``left_by`` the truth value that ends a loop.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -64,9 +65,10 @@ class DataUse:
     is_text: bool = False
     is_assigned: bool = False
     is_waited_for: bool = False
-    is_left_by_false: bool = False
+    left_by: bool | None = None
     is_index: bool = False
     is_part: bool = False
+    is_compared: bool = False
     asked_for: str = ""
 
     def member(self, name: ast.Name) -> DataUse:
@@ -113,6 +115,8 @@ class Uses:
         self._result: Type = UNKNOWN
         self._statements: set[ast.Call] = set()
         self._numbers: set[tuple[ast.Binary, Type]] = set()
+        #: What is of one type because it is assigned or compared.
+        self._alike: list[tuple[DataUse, DataUse]] = []
         #: The largest number that loops of a routine count to, by the counter.
         self._counted: dict[str, int] = {}
 
@@ -130,6 +134,20 @@ class Uses:
             self._counted.clear()
             self._look(routine)
 
+    def settle(self) -> None:
+        """Types have the constants of all that is of them, once all files have been read."""
+        known = {id(one): dict(one.constants) for pair in self._alike for one in pair}
+        grows = True
+        while grows:
+            grows = False
+            for pair in self._alike:
+                one, other = (known[id(use)] for use in pair)
+                grows |= one.keys() != other.keys()
+                one.update(other)
+                other.update(one)
+        for use in self.types.values():
+            use.constants.update(known.get(id(use), {}))
+
     # ------------------------------------------------------------------------- statements
 
     def _look(self, root: ast.Node) -> None:
@@ -146,15 +164,40 @@ class Uses:
         use = self._use(node.target)
         if use is not None:
             use.is_assigned = True
+            self._parts(use, node.value)
 
-    def _condition(self, node: ast.If | ast.Repeat | ast.InterruptDeclaration) -> None:
+    def _parts(self, use: DataUse, value: ast.Expression) -> None:
+        """The parts of a structure that is written out."""
+        if isinstance(value, ast.Aggregate):
+            for part in value.components:
+                inner = use.member(part.name)
+                type_ = self._type(part.value)
+                inner.types += [type_] if isinstance(type_, Scalar) else ()
+                self._parts(inner, part.value)
+
+    def _condition(self, node: ast.If | ast.InterruptDeclaration) -> None:
         self._expect(node.condition, BOOL)
 
-    def _while(self, node: ast.While) -> None:
+    def _loop(self, node: ast.While | ast.Repeat) -> None:
         self._expect(node.condition, BOOL)
-        use = self._use(node.condition)
-        if use is not None:
-            use.is_left_by_false = True
+        self._leaves(node.condition, is_true=isinstance(node, ast.Repeat))
+
+    def _leaves(self, node: ast.Expression, *, is_true: bool) -> None:
+        """A condition ends a loop where it is so; which of several does is not asked."""
+        match node:
+            case ast.Parenthesised(inner=inner):
+                self._leaves(inner, is_true=is_true)
+            case ast.Unary(operator="NOT", operand=operand):
+                self._leaves(operand, is_true=not is_true)
+            case ast.Binary(operator="==" | "<>", left=left, right=ast.BoolLiteral(value=value)):
+                self._leaves(left, is_true=is_true == ((node.operator == "==") == value))
+            case ast.Binary(operator="AND" | "OR"):
+                for part in (*(one.right for one in left_chain(node)), left_chain(node)[0].left):
+                    self._leaves(part, is_true=is_true)
+            case _:
+                use = self._use(node)
+                if use is not None:
+                    use.left_by = is_true
 
     def _wait(self, node: ast.WaitFor) -> None:
         self._expect(node.condition, BOOL)
@@ -255,6 +298,8 @@ class Uses:
         use, sign = self._use(node), ""
         if isinstance(value, ast.Unary) and value.operator == "-":
             value, sign = value.operand, "-"
+        if use is not None:
+            use.is_compared = True
         if use is not None and isinstance(value, ast.IntegerLiteral) and not use.asked_for:
             use.asked_for = f"{sign}{value.value}"
 
@@ -356,10 +401,16 @@ class Uses:
         if found == UNKNOWN and isinstance(node, ast.Variable):
             symbol = self._checked.resolution.found(node.name)
             found = UNKNOWN if symbol is None else self._project.types.of(symbol)
+        if found == UNKNOWN and isinstance(node, ast.Subscript):  # of data of a lost $config.dat
+            array = self._type(node.base)
+            found = array.element if isinstance(array, Array) else UNKNOWN
         return found
 
     def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
         """Both sides are of one type; no statement has whole arrays on its sides."""
+        uses = self._use(left), self._use(right)
+        if uses[0] is not None and uses[1] is not None:
+            self._alike.append((uses[0], uses[1]))
         for node, other in ((left, right), (right, left)):
             type_ = self._type(other)
             if not isinstance(type_, Array) or type_.element == CHAR:
@@ -385,9 +436,8 @@ class Uses:
                 use.indices = max(use.indices, len(sizes))
                 use.types.append(element)
             case Aggregate(structure=structure, names=names):
-                if structure is not None:
-                    use.types.append(structure)
-                for name in () if structure is not None else names:
+                use.types += [structure] if structure is not None else ()
+                for name in names:
                     use.members.setdefault(name.upper(), DataUse())
             case Scalar() | Structure() | Enumeration():
                 use.types.append(type_)
@@ -417,7 +467,7 @@ _RULES: Mapping[type[ast.Node], Callable[[Uses, Any], object]] = {
     ast.InterruptDeclaration: Uses._condition,
     ast.Member: Uses._use,
     ast.Motion: Uses._motion,
-    ast.Repeat: Uses._condition,
+    ast.Repeat: Uses._loop,
     ast.Return: Uses._return,
     ast.Subscript: Uses._subscript,
     ast.Switch: Uses._switch,
@@ -425,7 +475,7 @@ _RULES: Mapping[type[ast.Node], Callable[[Uses, Any], object]] = {
     ast.Unary: Uses._unary,
     ast.WaitFor: Uses._wait,
     ast.WaitSeconds: Uses._pause,
-    ast.While: Uses._while,
+    ast.While: Uses._loop,
 }
 
 

@@ -213,6 +213,25 @@ def test_input_that_is_waited_for() -> None:
     assert "GLOBAL SIGNAL PARTTHERE $IN[1024]" in text
 
 
+@pytest.mark.parametrize(
+    ("body", "declared"),
+    [
+        ("REPEAT\nGO ( )\nUNTIL (READY) OR NOT LATE ( )\n", "BOOL READY=TRUE"),
+        ("WHILE NOT READY\nGO ( )\nENDWHILE\n", "BOOL READY=TRUE"),
+        ("WHILE BUSY==TRUE\nGO ( )\nENDWHILE\n", "BOOL BUSY=FALSE"),
+        ("B=BASE_DATA[3]\n", "FRAME B={X 0.0"),
+        ("WHERE=TARGET\nIF WHERE==#LEFT THEN\nENDIF\n", "ENUM KIND LEFT"),
+        ("IF TARGET<>TARGET THEN\nENDIF\n", "ENUM KIND NOT_KNOWN"),
+        ("SIZES[1]={W 2.5,H 3}\nSIZES[2]=SIZES[1]\n", "STRUC SIZES_T REAL W,INT H"),
+    ],
+)
+def test_values_that_uses_tell(body: str, declared: str) -> None:
+    """Loops end, states have one type with all their constants, structures their written parts."""
+    program = _main(body, declared="DECL KIND TARGET\n")
+    assert f"GLOBAL {declared}" in _data_list(program)
+    assert {} == _run(program).controller.skipped
+
+
 def test_same_name_elsewhere() -> None:
     """A name that another routine has for itself is no evidence for the undeclared one."""
     files = {
