@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
 _ENDINGS = frozenset({".src", ".dat", ".sub"})
-_MOST_FILES = 20_000
+#: Of a project that is larger, only what is named is read: 16 MB take some 20 s.
+_MOST_FILES, _MOST_BYTES = 20_000, 1 << 24
 _MOST_SHOWN = 5
 
 _T = TypeVar("_T")
@@ -146,10 +147,13 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         found = [one for one, path in paths.items() if path.is_relative_to(inside)]
     main = _shown(asked, root)
     found = _of_one_project(found, root, main)
-    if len(found) > _MOST_FILES:
-        found = [one for one in found if one.file.parent == asked.file.parent]
     sources: list[Source] = []
     left: list[str] = []
+    if len(found) > _MOST_FILES or sum(one.size for one in found) > _MOST_BYTES:
+        whole, found = found, _named_from(asked, found)
+        left.append(
+            f"{len(whole) - len(found):,} of {len(whole):,} files that the program does not name"
+        )
     for one in found:
         data = read(one)
         decoded = data.reason if isinstance(data, Skipped) else decode(data)
@@ -160,6 +164,31 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
             continue
         sources.append(Source(decoded.text, _shown(one, root)))
     return sources, main, left
+
+
+def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
+    """The files whose names a file has, or one of these, and data and submit of the controller."""
+    from grammar.semantics.link import words_of
+    from support.files.decode import decode
+    from support.files.discovery import Skipped, read
+
+    by_name: dict[str, list[Found]] = {}
+    todo = [asked]
+    for one in found:
+        name = PurePosixPath(one.path).name.upper()
+        by_name.setdefault(name.rpartition(".")[0], []).append(one)
+        todo += [one] if name.startswith("$") or name.endswith(".SUB") else []
+    todo += by_name[PurePosixPath(asked.path).stem.upper()]
+    named: dict[Found, None] = {}
+    while todo:
+        one = todo.pop()
+        if one not in named:
+            named[one] = None
+            data = read(one)
+            text = data.reason if isinstance(data, Skipped) else decode(data)
+            words = frozenset[str]() if isinstance(text, str) else words_of(text.text)
+            todo += [other for name in words & by_name.keys() for other in by_name[name]]
+    return [one for one in found if one in named]
 
 
 def _programs_in(place: Path) -> str:

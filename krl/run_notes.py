@@ -26,8 +26,31 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     if len(skipped) > _MOST_TOLD:
         yield f"skipped: {len(skipped) - _MOST_TOLD} more lines, which --trace and --html tell"
     yield from _seen(done)
+    if not done.controller.points and setup.routine is None:
+        yield from _elsewhere(program)
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"
+
+
+def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
+    """Which routines of the file move the arm, where the one that the run began with does not."""
+    from grammar.syntax import ast
+    from grammar.syntax.references import calls_in
+    from grammar.syntax.walk import walk
+
+    first, *others = program.routines_of(program.main)
+    called = calls_in(first.node.body)
+    moving = [
+        one.name
+        for one in others
+        if one.node.name.key not in called
+        and one.name not in program.callers.values()
+        and any(isinstance(node, ast.Motion | ast.SplineBlock) for node in walk(one.node))
+    ]
+    if moving:
+        more = f" and {len(moving) - _MOST_TOLD} more" if len(moving) > _MOST_TOLD else ""
+        names = ", ".join(moving[:_MOST_TOLD])
+        yield f"no motion in {first.name}; --routine begins elsewhere: {names}{more}"
 
 
 def _seen(done: "RunResult") -> Iterator[str]:

@@ -6,7 +6,7 @@ from zipfile import ZipFile
 import pytest
 
 from krl.cli import main
-from krl.program_loading import load_program, project_root
+from krl.program_loading import load_program, project_root, read_sources
 
 FILES = {
     "R1/Program/main.src": "DEF main ( )\nhelp ( )\nEND\n",
@@ -115,6 +115,24 @@ def test_unreadable_file_is_left_out(tmp_path: Path) -> None:
         len(program.units),
         [reason.partition(":")[0] for reason in left],
     )
+
+
+def test_only_what_is_named_is_read_of_a_large_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of more bytes than are read, what the program names counts, and the controller's own data."""
+    monkeypatch.setattr("krl.program_loading._MOST_BYTES", 100)
+    for name, text in {
+        "main.src": "DEF main ( )\nPart ( )\nEND\n",
+        "part.src": "DEF part ( )\nEND\n",
+        "part.dat": "DEFDAT part\nENDDAT\n",
+        "$config.dat": "DEFDAT $config PUBLIC\nENDDAT\n",
+        "other.src": "DEF other ( )\nEND\n",
+    }.items():
+        (tmp_path / name).write_text(text, "utf-8")
+    sources, main, left = read_sources(tmp_path / "main.src")
+    assert ["$config.dat", "main.src", "part.dat", "part.src"] == [one.path for one in sources]
+    assert ("main.src", ["1 of 5 files that the program does not name"]) == (main, left)
 
 
 def test_a_program_that_was_loaded_before_runs_as_it_did(

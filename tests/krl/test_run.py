@@ -369,6 +369,12 @@ def test_bad_files(run: Run, tmp_path: Path, name: str, content: bytes | None, s
     assert 1 == err.count("\n")
 
 
+def test_routines_that_move_are_named(run: Run) -> None:
+    """Where a run began with a routine that does not move, those of its file that do are named."""
+    status, _, err = run("END\nDEF go ( )\nPTP {A1 5}\nEND\nDEF idle ( )\n")
+    assert (0, "no motion in main; --routine begins elsewhere: go\n") == (status, err)
+
+
 def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
     """What could be run in a folder or an archive is named in one line."""
     (tmp_path / "cell").mkdir()
