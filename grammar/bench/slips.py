@@ -86,7 +86,8 @@ def damaged(
     (start, end), (first, last) = ((one[0].start, one[-1].end) for one in lines[index : index + 2])
     text = source.text
     if kind == "line end lost":
-        return (end, first, " ") if ";" not in text[end:first] else None
+        between = text[end:first]  # goes behind both, so that what follows keeps its lines
+        return None if ";" in between else (end, last, f" {text[first:last]}{between}")
     return start, last, f"{text[first:last]}{text[end:first]}{text[start:end]}"
 
 

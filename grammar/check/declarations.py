@@ -25,8 +25,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
     _check_use(checker)
     data = context.data
     if data is not None:
+        _check_globals(checker, data)
         for item in data.items:
-            _check_item(checker, data, item)
+            if not isinstance(item, ast.Assignment):
+                _check_definition(checker, item, open_sizes=frozenset())
     for routine in context.routines:
         _check_parameters(checker, routine)
         _check_body(checker, routine)
@@ -63,16 +65,20 @@ def _check_use(checker: TypeChecker) -> None:
 # ------------------------------------------------------------------------------- declarations
 
 
-def _check_item(checker: TypeChecker, data: ast.DataList, node: ast.Item) -> None:
-    """What a data list declares."""
-    if isinstance(node, ast.Assignment):
-        return
-    is_global = getattr(node, "is_global", False)
+def _check_globals(checker: TypeChecker, data: ast.DataList) -> None:
+    """What is GLOBAL in a data list that is not PUBLIC, told once: one word is missing [SCO-04]."""
     is_public = data.is_public or checker.context.module.is_head_unread(data.name.key)
-    if is_global and not is_public and not checker.context.table.is_system:
-        message = f"GLOBAL needs DEFDAT {data.name.text} PUBLIC"
-        checker.report("global-not-public", _name_of(node), message)
-    _check_definition(checker, node, open_sizes=frozenset())
+    if is_public or checker.context.table.is_system:
+        return
+    found = [
+        one
+        for one in data.items
+        if not isinstance(one, ast.Assignment) and getattr(one, "is_global", False)
+    ]
+    if found:
+        more = f", and so do {len(found) - 1} below" if len(found) > 1 else ""
+        message = f"GLOBAL needs DEFDAT {data.name.text} PUBLIC{more}"
+        checker.report("global-not-public", _name_of(found[0]), message)
 
 
 def _name_of(node: ast.Definition) -> ast.Node:

@@ -9,8 +9,8 @@ whose opener was blanked, and blocks whose closer was.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
@@ -53,13 +53,26 @@ class Recovered:
 def recover(text: str, path: str = "") -> Recovered:
     """Read a text that has failures; ``path`` is where it comes from."""
     if len(text) <= _LARGEST:
-        # the last line of a file that is cut may be whole
-        found = _Recovery(text if text.endswith("\n") else f"{text}\n", path).run()
+        found = _Recovery(text, path).run()
         if found is not None:
             return found
     failures = builder().read(text, path)
     assert isinstance(failures, list), "only what cannot be read is to be recovered"
-    return Recovered(None, tuple(failures), text)
+    marked = tuple(_causes_first(Source(text, path), failures))
+    is_cut = any(not failure.text and not failure.follows for failure in marked)
+    return Recovered(None, marked, text, is_cut=is_cut)
+
+
+def _causes_first(source: Source, failures: Sequence[SyntaxFailure]) -> Iterator[SyntaxFailure]:
+    """Failures of a text, those marked that only follow from a block that was not closed."""
+    blocks = open_blocks(source, [failure.line for failure in failures])
+    is_unclosed = False
+    for failure in failures:
+        line = source.line(failure.line)
+        cause = _unclosed(line, failure.text, blocks[failure.line])
+        is_structural = cause is not None or lead(line) in CLOSERS or not failure.text
+        yield replace(failure, follows=failure.follows or (is_unclosed and is_structural))
+        is_unclosed |= cause is not None
 
 
 class _Recovery:
@@ -67,8 +80,9 @@ class _Recovery:
 
     def __init__(self, text: str, path: str) -> None:
         self._path = path
-        self._written = Source(text, path)
-        self._text = text
+        self._is_open_ended = not text.endswith(("\n", "\r"))
+        self._text = f"{text}\n" if self._is_open_ended else text
+        self._written = Source(self._text, path)
         self._dropped: set[int] = set()
         self._exchanged: dict[int, str] = {}
         self._failures: list[SyntaxFailure] = []
@@ -165,38 +179,47 @@ class _Recovery:
         if cause is None:
             return self._write(line, "")
         if is_at_end:
-            self._close_all(cause)
-            return True
+            return self._close_all(cause)
         if any(self._write(free, cause.closer) for free in self._free_lines(cause.line + 1, line)):
             return True
         if cause.word not in _ROUTINES:
             return self._write(cause.line, "")
         return False
 
-    def _close_all(self, block: OpenBlock | None) -> None:
-        """Close the blocks that are open at the end."""
+    def _close_all(self, block: OpenBlock | None) -> bool:
+        """Close the blocks that are open at the end, which may lie within a line or a name."""
         self._is_cut = True
+        if self._is_open_ended:
+            last = len(self._written.lines) - 1
+            word = lead(self._written.line(last))
+            if word in _ROUTINES:
+                return False
+            if word not in BLOCKS and word not in BRANCHES and word not in CLOSERS:
+                self._write(last, "")
         self._text = self._text.rstrip()
         while block is not None:
             self._text += f"\n{block.closer}"
             block = block.outer
         self._text += "\n"
+        return True
 
     def _free_lines(self, first: int, end: int) -> Iterator[int]:
-        """Lines that a closer can be written on: those left out, then comments, the last first."""
+        """Lines for a closer: those left out, blank ones, then comments, the last first each."""
         lines = range(end - 1, first - 1, -1)
         yield from (line for line in lines if line in self._dropped)
+        yield from (line for line in lines if not self._written.line(line).strip())
         yield from (line for line in lines if self._written.line(line).lstrip()[:1] == ";")
 
     def _write(self, line: int, text: str) -> bool:
         """Exchange a line for a text that is no longer; once only."""
         written = self._written.line(line)
-        if len(text) > len(written) or not written.strip() or self._exchanged.get(line) == text:
+        is_blank = not written.strip()
+        if len(text) > len(written) or (is_blank and not text):
             return False
-        if self._exchanged.get(line):
+        if self._exchanged.get(line) or self._exchanged.get(line) == text:
             return False
         self._exchanged[line] = text
-        if not written.lstrip().startswith(";"):
+        if not is_blank and not written.lstrip().startswith(";"):
             self._dropped.add(line)
         start = self._written.starts[line - 1]
         self._text = (

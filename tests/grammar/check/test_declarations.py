@@ -51,6 +51,7 @@ Agrees = Callable[..., None]
         ("IOT-03", ["SIGNAL $NO_SUCH_SIGNAL $IN[1] ;> KSS2078?"]),
         ("SCO-04", ["GLOBAL INT A = 1 ;> KRL108"]),
         ("SCO-04", ["GLOBAL ENUM T X, Y ;> KRL108"]),
+        ("SCO-04", ["INT A = 1", "GLOBAL INT B = 1 ;> KRL108", "GLOBAL INT C = 1"]),
         ("TYP-06", ["DECL NO_SUCH_TYPE A ;> KRL103"]),
     ],
 )

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.diagnostics.error_recovery import recover
+from grammar.semantics.link import words_of
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 
@@ -52,6 +53,7 @@ def routines(module: ast.Module | None) -> list[str]:
         ("CASE 1", "CSE 1", 13),
         ("ENDSWITCH", "ENDSWICH", 17),
         ("END\n\nDEF", "EEND\n\nDEF", 18),
+        ("END\n\nDEF", "\n   \nDEF", 20),
         ("DEF CELL()", "DFE CELL()", 2),
         ("DEF WORK(A:IN)", "DEF WORK(A:IN", 20),
         ("DEF WORK(A:IN)", "DEF WORK(A:IN) =", 20),
@@ -69,6 +71,15 @@ def test_one_mistake_is_one_failure_and_keeps_all_routines(
     assert ["CELL", "WORK"] == routines(found.syntax)
 
 
+def test_what_follows_from_a_routine_that_is_not_closed() -> None:
+    """Where its end has no room in the text, the whole cannot be read; it is one failure still."""
+    text = CELL.replace("  ; counting\n", "").replace("END\n\nDEF", "\n\nDEFFCT BOOL", 1)
+    found = recover(f"{text[:-4]}ENDFCT\n; the last line")
+    assert found.syntax is None
+    assert [19] == [failure.line for failure in found.failures if not failure.follows]
+    assert len(found.failures) > 1
+
+
 def test_what_was_left_out_is_known() -> None:
     """The text of the lines that cannot be read is kept: they may declare something."""
     found = recover(CELL.replace("DECL INT A\n", "DECL INT A B\n"))
@@ -80,6 +91,23 @@ def test_a_file_without_its_end_is_cut(lost: int) -> None:
     """What ends too early may have declared anything; a line that cannot be read ends nothing."""
     text = CELL.replace("WORK(1)", "WORK(1").rstrip()
     assert (lost > 0) == recover(text[: len(text) - lost]).is_cut
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("DEFDAT CELL\nENUM STATES EMPTY, FU", {"STATES"}),
+        ("DEF CELL()\nHALT\nCOUNT = COU", {"COU"}),
+        ("DEFDAT CE", {"CE"}),
+    ],
+)
+def test_a_line_that_is_cut_is_not_read(text: str, words: set[str]) -> None:
+    """A name in it may be the beginning of one, whether a controller would read it or not."""
+    found = recover(text)
+    assert found.is_cut
+    assert words <= words_of(found.dropped)
+    assert 1 == len(found.failures)
+    assert (found.syntax is None) == (text == "DEFDAT CE")
 
 
 def test_places_stay() -> None:
