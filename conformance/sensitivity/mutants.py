@@ -12,7 +12,7 @@ import gc
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -81,9 +81,9 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.variables.Variables.part_type",
         ),
     ),
-    # left out: files of machine data and torques; motions written in Python and what only they ask
-    # of the core, which also checks what it is given; and planning in batches, which is there to
-    # be compared with, and what it takes back
+    # left out: files of machine data, what checks them, and torques; motions written in Python and
+    # what only they ask of the core, which also checks what it is given; and planning in batches,
+    # which is there to be compared with, and what it takes back
     "robot": (
         (
             "interp.robot.path.*",
@@ -102,6 +102,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                     *("_check", "_check_link", "_settle"),
                 )
             ),
+            "interp.robot.kinematics.*._check_*",
             "interp.robot.kinematics.data_list",
             "interp.robot.kinematics.dynamics_data",
             "interp.robot.kinematics.machine_data",
@@ -154,18 +155,18 @@ class Mutant:
         return self.module.replace(".", "/") + ".py"
 
 
-def all_mutants() -> Iterator[str]:
-    """The names of all mutants there are, package by package."""
+def all_mutants(packages: Iterable[str] = PACKAGES) -> Iterator[str]:
+    """The names of all mutants there are of some of `PACKAGES`, one package behind the other."""
     left_out = [one for _, some in PACKAGES.values() for one in some]
-    for module in modules():
+    for module in (name for package in packages for name in _modules(package)):
         for number, function in enumerate(_changed(module)):
             if not any(fnmatchcase(f"{module}.{function}", each) for each in left_out):
                 yield f"{module}:{number}"
 
 
-def drawn(seed: int, count: int) -> tuple[Mutant, ...]:
-    """So many of all mutants, drawn by chance, in the order of `all_mutants`."""
-    every = tuple(all_mutants())
+def drawn(seed: int, count: int, packages: Iterable[str] = PACKAGES) -> tuple[Mutant, ...]:
+    """So many of all mutants of some packages, drawn by chance, in the order of `all_mutants`."""
+    every = tuple(all_mutants(packages))
     chosen = Random(f"mutants {seed}").sample(range(len(every)), min(count, len(every)))
     return tuple(named(every[at]) for at in sorted(chosen))
 

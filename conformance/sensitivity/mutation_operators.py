@@ -12,10 +12,10 @@ statement    a call, an assignment to a part, ``raise``, ``break``, ``continue``
 A ``raise`` is left out where a program of KRL that a controller selects can come to it. What tells
 a caller in Python of a mistake, or who wrote machine data, a profile or a program of which parts
 are missing, is left as it is, and so is the condition of an ``if`` that does nothing else. So are
-texts, annotations, assertions, defaults of parameters, class bodies, and what stands behind a
-``return`` or ``raise``: they decide nothing, or what they have decided cannot be replaced in a
-module that is loaded. A boundary is not moved where a number that is not whole is compared: what is
-equal to it is so by chance.
+texts, annotations, assertions, ``strict`` of a zip among them, defaults of parameters, class
+bodies, and what stands behind a ``return`` or ``raise``: they decide nothing, or what they have
+decided cannot be replaced in a module that is loaded. A boundary is not moved where a number that
+is not whole is compared: what is equal to it is so by chance.
 """
 
 from __future__ import annotations
@@ -221,6 +221,8 @@ def _of_place(
     parent: ast.AST, name: str, index: int | None, node: ast.AST, scope: _Scope
 ) -> Iterator[Change]:
     if isinstance(node, ast.JoinedStr) or _is_type_test(parent, name, index):
+        return
+    if isinstance(node, ast.keyword) and node.arg == "strict":
         return
     for operator, new in _others(parent, name, node, scope.reals):
         yield _change(operator, parent, name, index, node, new, scope)

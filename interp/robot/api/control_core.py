@@ -152,7 +152,6 @@ class ControlCore:
 
         This core never does; `interp.robot.api.batch` does.
         """
-        self._advance(now)
 
     def pending(self) -> int:
         """How many motions are planned and not yet ended."""

@@ -29,7 +29,9 @@ _BENT = 1e-3
 """Sine of A5 above which the wrist is plainly bent."""
 _SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
 _MARGIN = 1e-7
-"""mm that rounding may take away: of reach, and of the distance from axis 1."""
+"""mm that rounding may take away of reach."""
+_OVERHEAD = 1e-3
+"""mm from axis 1 within which a point is on it: a REAL has 32 bits, which is 1e-4 mm at 1 m."""
 _FAR = 1e9
 """mm beyond which no pose is looked at, nor where it is no number."""
 _TOLERANCE = 1e-9  # degrees, or of a cosine
@@ -95,7 +97,7 @@ class CentralWrist:
         given = np.asarray(poses, dtype=np.float64)
         is_sound = (np.abs(given) < _FAR).all(axis=(-2, -1), keepdims=True)
         inner = self._to_inner @ np.where(is_sound, given, math.nan) @ self._to_wrist
-        inner[np.hypot(inner[..., 0, 3], inner[..., 1, 3]) < _MARGIN, :2, 3] = 0.0
+        inner[np.hypot(inner[..., 0, 3], inner[..., 1, 3]) < _OVERHEAD, :2, 3] = 0.0
         inner = inner[..., None, :, :]
         main = self._main_axes(inner[..., :3, 3], _SHOULDER, _ELBOW)
         wrist = self._wrist_of(main, inner)

@@ -40,18 +40,11 @@ class Palletiser:
         self.machine = machine
         self.elbow = arm.elbow
         self._arm = arm
-        flange = machine.tflwp
-        is_aside = abs(machine.tx3p3.position[1]) > _TOLERANCE
-        is_aside |= math.hypot(*flange.position[:2]) > _TOLERANCE
-        is_aside |= abs(abs(machine.tx3p3.rows[1][1]) - 1.0) > _TOLERANCE
-        if is_aside or abs(flange.rows[2][2] - 1.0) > _TOLERANCE:
-            raise MachineDataError(
-                "the flange of a palletiser does not lie in the plane of the arm"
-            )
+        self._check_plane()
         self._is_linked = machine.palletising is Palletising.LINKED_A5
         self._to_inner = matrix_of(machine.tiroro.inverse())
         self._from_inner = matrix_of(machine.tiroro)
-        self._after = matrix_of(flange)[:3, :3]
+        self._after = matrix_of(machine.tflwp)[:3, :3]
         twist = math.copysign(1.0, math.sin(math.radians(machine.dh_4.alpha)))
         self._senses = -twist * machine.axes[4].direction, float(machine.axes[5].direction)
         forward, _, down = (-part for part in machine.tx3p3.rows[2][:3])
@@ -59,6 +52,15 @@ class Palletiser:
         self._pitch = -machine.tx3p3.rows[1][1] * np.array(
             [axis.direction for axis in machine.axes[1:3]]
         )
+
+    def _check_plane(self) -> None:
+        forearm, flange = self.machine.tx3p3, self.machine.tflwp
+        aside = abs(forearm.position[1]), math.hypot(*flange.position[:2])
+        turned = abs(forearm.rows[1][1]), flange.rows[2][2]
+        if max(*aside, *(abs(cosine - 1.0) for cosine in turned)) > _TOLERANCE:
+            raise MachineDataError(
+                "the flange of a palletiser does not lie in the plane of the arm"
+            )
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
         """A4 at 0, and with a parallelogram A5 as it is guided."""

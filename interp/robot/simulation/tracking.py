@@ -32,7 +32,8 @@ class PathRecord:
     and A, B, C in degrees of the tool in the base, those that were in force at the time; ``tips``
     (n, 3) are X, Y, Z of the tool in $WORLD, whatever the base. The measured
     ones are ``None`` where the robot measures nothing. ``placements`` are the frames in force, each
-    with the time in µs from which on; ``torques`` (n, axes) in Nm, ``None`` without masses.
+    with the time in µs from which on; ``motions`` are those that began, each with the time in µs
+    at which; ``torques`` (n, axes) in Nm, ``None`` without masses.
     """
 
     times: npt.NDArray[np.int64]
@@ -43,6 +44,7 @@ class PathRecord:
     points_measured: Array | None
     tips_measured: Array | None
     placements: tuple[tuple[int, Placement], ...] = ()
+    motions: tuple[tuple[int, Motion], ...] = ()
     torques: Array | None = None
 
     def columns(self) -> dict[str, npt.NDArray[np.int64] | Array]:
@@ -88,7 +90,7 @@ class Tracking:
         self._torques: list[Array] = [np.zeros((1, len(stands)))]
         self._torque_check = TorqueCheck(machine)
         self._observer = observer
-        self._begun: list[tuple[int, str]] = []
+        self._begun: list[tuple[int, Motion]] = []
         self._loads: Mapping[str, Load] = {}
         #: Loads from times on that set-points were not sent for yet.
         self._changes: list[tuple[int, Mapping[str, Load]]] = []
@@ -106,7 +108,7 @@ class Tracking:
         """A motion begins: its frames and loads are in force from now on."""
         settings = motion.settings
         self.placed(time, settings.placement)
-        self._begun.append((time, f"{motion.at.file}:{motion.at.line}"))
+        self._begun.append((time, motion))
         if settings.loads != self._loads:
             self._loads = settings.loads
             self._changes.append((time, settings.loads))
@@ -142,13 +144,14 @@ class Tracking:
         times, axes = np.concatenate(self._times), np.concatenate(self._axes)
         points, tips = self._points(times, axes)
         frames = tuple(zip(self._place_times, self._placements, strict=True))
+        begun = tuple(self._begun)
         rows = [axes[:1] if row is None else row for row in self._measured]
         if self._last is None:
-            return PathRecord(times, axes, points, tips, None, None, None, frames)
+            return PathRecord(times, axes, points, tips, None, None, None, frames, begun)
         measured = np.concatenate(rows)
         found = self._points(times, measured)
         torques = np.concatenate(self._torques)
-        return PathRecord(times, axes, points, tips, measured, *found, frames, torques)
+        return PathRecord(times, axes, points, tips, measured, *found, frames, begun, torques)
 
     def observations(self) -> tuple[Observation, ...]:
         """What was touched, and torques beyond their limits, in the order in which it began."""
@@ -160,7 +163,10 @@ class Tracking:
     def _line_at(self, time: int) -> str:
         """The line of the motion that ran at a time."""
         place = bisect_right(self._begun, time, key=lambda begun: begun[0])
-        return self._begun[place - 1][1] if place else ""
+        if not place:
+            return ""
+        at = self._begun[place - 1][1].at
+        return f"{at.file}:{at.line}"
 
     def _send(self, until: int) -> None:
         """Send set-points up to a time, with the loads that are carried at theirs."""

@@ -30,6 +30,10 @@ def conform(
         list[int] | None,
         typer.Option(metavar="N", help="Draw with this seed; may be repeated; default: 1."),
     ] = None,
+    package: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Only mutants of this package; may be repeated."),
+    ] = None,
     most: Annotated[
         int,
         typer.Option(
@@ -76,6 +80,7 @@ def conform(
     with expected_extras(*ARM):
         from conformance.evaluation.execution import Setup, missing
         from conformance.sensitivity.bench import measure, speed_of
+        from conformance.sensitivity.mutants import PACKAGES
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases
     if removed:
@@ -84,13 +89,19 @@ def conform(
     for name in group or ():
         if name not in (*groups, "none"):
             raise InputError(f"--group {name}: the groups are {', '.join(groups)}, none")
+    for name in package or ():
+        if name not in PACKAGES:
+            raise InputError(f"--package {name}: the packages are {', '.join(PACKAGES)}")
     if lacking := missing(Setup(executor.value, "none")):
         raise InputError(f"--executor {executor.value}: {lacking}")
     faults = [one for one in all_faults() if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
     seeds = seed or [_SEED]
-    drawn = _mutants(cases, seeds, mutants, most, all_cores(jobs), cache) if mutants else {}
+    packages = [one for one in PACKAGES if not package or one in package]
+    drawn: dict[str, Any] = {}
+    if mutants:
+        drawn = _mutants(cases, seeds, mutants, packages, most, all_cores(jobs), cache)
     with progress_bar("timing cases", len(cases)) as bar:
         speed = speed_of(cases, bar)
     with progress_bar("planting faults", len(faults)) as bar:
@@ -106,7 +117,13 @@ def conform(
 
 
 def _mutants(
-    cases: "list[Case]", seeds: list[int], count: int, most: int, jobs: int, cache: Path | None
+    cases: "list[Case]",
+    seeds: list[int],
+    count: int,
+    packages: list[str],
+    most: int,
+    jobs: int,
+    cache: Path | None,
 ) -> dict[str, Any]:
     from conformance.sensitivity.bench import mutants_record
     from conformance.sensitivity.mutant_trial import (
@@ -119,7 +136,7 @@ def _mutants(
 
     if not is_possible():
         raise InputError("mutants need a system that can copy a process (fork): use --mutants 0")
-    wanted = {one: drawn(one, count) for one in dict.fromkeys(seeds)}
+    wanted = {one: drawn(one, count, packages) for one in dict.fromkeys(seeds)}
     every = tuple(dict.fromkeys(mutant for found in wanted.values() for mutant in found))
     running = sum(case.phase == "run" for case in cases)
     with kept_trials(cache) as store:

@@ -1,0 +1,237 @@
+"""How long motions take from rest to rest, where the override is 100.
+
+A PTP is as quick as its axes allow, in closed form; a LIN or CIRC no quicker than its speed and
+acceleration, and no slower where all axes are far from their limits. Rows of motions are compared
+with others of the same run.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import permutations
+from typing import Final
+
+import numpy as np
+
+from conformance.evaluation.motions import (
+    NEAR_DEGREES,
+    NEAR_MM,
+    ROUNDING,
+    Array,
+    EndedMotion,
+    ended,
+)
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.path_geometry import change_rates
+from conformance.evaluation.run_laws import Violation
+from interp.robot.kinematics.placement import IpoMode
+
+#: Share of a time that rounding may add to it, and seconds for its two ends.
+_SHARE, _ENDS = 2e-4, 1e-4
+#: Share of a time by which a way back may take longer: its samples are others.
+_BACK: Final = 0.05
+#: How many times as long a row of blends may take as what it is compared with; a straight way is
+#: planned only as far as the advance run has come.
+_SLOWER, _STRAIGHT = 1.001, 1.05
+#: Share of the limits of axes below which none of them slows a path down.
+_IDLE: Final = 0.1
+#: mm/s³ and deg/s³ of spline motions, and seconds over which other paths build up acceleration.
+_SPLINE_JERKS: Final = (500e3, 50e3)
+_RAMP: Final = 0.08
+
+
+def delays(seen: Observation) -> Iterator[Violation]:
+    """Motions that take another time than they have to, of a run whose override is 100."""
+    motions = list(ended(seen))
+    for one in motions:
+        yield from _is_quick(one)
+    yield from _compared(motions)
+
+
+def seconds_of(length: float, speed: float, acceleration: float, jerk: float) -> float:
+    """How long a length takes at least, from rest to rest."""
+
+    def ramp(reached: float) -> float:
+        if reached < acceleration**2 / jerk:
+            return 2.0 * math.sqrt(reached / jerk)
+        return reached / acceleration + acceleration / jerk
+
+    if ramp(speed) * speed <= length:
+        return 2.0 * ramp(speed) + (length - ramp(speed) * speed) / speed
+    low, high = 0.0, speed
+    for _ in range(100):
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if ramp(middle) * middle <= length else (low, middle)
+    return 2.0 * ramp(low)
+
+
+def _is_quick(one: EndedMotion) -> Iterator[Violation]:
+    """A PTP that is not as quick as its axes can be [MOT-20], or a LIN or CIRC out of its time.
+
+    That is quicker than speed and acceleration allow, or slower though all axes are far from their
+    limits.
+    """
+    motion = one.motion
+    took = (one.end - one.start) / 1e6
+    if not one.begins or not one.stops or motion.parts:
+        return
+    is_free = True
+    if motion.kind in ("PTP", "SPTP"):
+        wanted, law, rule = (
+            _of_axes(one, one.ends[1] - one.ends[0]),
+            "a PTP is as quick as its axes allow",
+            "MOT-20",
+        )
+        is_free = not motion.settings.is_reduced
+    else:
+        wanted, law, rule = _of_path(one), "a path takes what its speed and acceleration allow", ""
+        is_free = took > wanted and _most_used(one) < _IDLE
+    rounding = wanted * _SHARE + _ENDS
+    if wanted and (took < wanted - rounding or (is_free and took > wanted + rounding)):
+        yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
+
+
+def _of_axes(one: EndedMotion, way: Array) -> float:
+    """The seconds that the slowest axis takes to its end; 0 where it is not known."""
+    most, way = one.axis_rates, np.abs(way)
+    moved = way > ROUNDING
+    if most is None or not moved.any():
+        return 0.0
+    return seconds_of(1.0, *(float((row[moved] / way[moved]).min()) for row in most))
+
+
+def _of_path(one: EndedMotion) -> float:
+    """The seconds of a path, as the slowest of way, swivel and rotation would take; 0: unknown."""
+    motion, settings, most = one.motion, one.motion.settings, one.machine
+    first, *_, last = poses = one.poses(
+        np.vstack((one.ends[:1], one.path.axes[one.rows], one.ends[1:]))
+    )
+    way = float(np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).sum())
+    turned = first[:3, :3].T @ last[:3, :3]
+    swivel = math.degrees(math.acos(min(max(turned[0, 0], -1.0), 1.0)))
+    twist = 2.0 * math.atan2(abs(turned[2, 1] - turned[1, 2]), 1.0 + np.trace(turned))
+    is_known = settings.placement.mode is IpoMode.BASE and settings.orientation != "#JOINT"
+    if not is_known or way < 1.0 or ("CIRC" in motion.kind and swivel + twist > ROUNDING):
+        return 0.0
+    speed = min(settings.velocity, most.velocity.path)
+    if settings.is_reduced:
+        speed = min(speed, most.t1_speed)
+    gain = min(settings.acceleration, most.acceleration.path)
+    limits = [(way, speed * 1000.0, gain * 1000.0, _SPLINE_JERKS[0])]
+    for angle, (fastest, steepest), turn, turn_gain in (
+        (swivel, settings.swivel, most.velocity.swivel, most.acceleration.swivel),
+        (
+            math.degrees(twist),
+            settings.rotation,
+            most.velocity.rotation,
+            most.acceleration.rotation,
+        ),
+    ):
+        if angle > ROUNDING:
+            limits.append((angle, min(fastest, turn), min(steepest, turn_gain), _SPLINE_JERKS[1]))
+    v, a, j = (min(row[place] / row[0] for row in limits) for place in (1, 2, 3))
+    return seconds_of(1.0, v, a, j if motion.kind[0] == "S" else a / _RAMP)
+
+
+def _most_used(one: EndedMotion) -> float:
+    """The greatest share of speed, acceleration or jerk that an axis has."""
+    rows, most = one.path.axes[one.rows], one.axis_rates
+    if most is None or len(rows) < 5:
+        return math.inf
+    used = 0.0
+    for order, limits in enumerate(most):
+        rows = change_rates(one.path.times[one.rows][order:], rows)
+        used = max(used, float((np.abs(rows) / limits).max()))
+    return used
+
+
+# ------------------------------------------------------------------------------ rows of motions
+
+
+def _rows(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
+    """The motions from rest to rest, blended where there are several."""
+    row: list[EndedMotion] = []
+    for one in motions:
+        row = [one] if one.begins else [*row, one]
+        if one.stops and row[0].begins:
+            yield tuple(row)
+
+
+def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Rows that take another time than others of the same run allow them.
+
+    A way back takes the time of the way there. Blended motions are no slower than the same to exact
+    stops, nor than one motion straight on.
+    """
+    rows = [row for row in _rows(motions) if not any(one.motion.parts for one in row)]
+    for one, other in permutations(rows, 2):
+        took, known = (row[-1].end - row[0].start for row in (one, other))
+        ends, others = (np.stack((row[0].ends[0], row[-1].ends[1])) for row in (one, other))
+        if len(one) == len(other) == 1 and _is_alike(one[0], other[0], is_back=True):
+            is_back = np.abs(ends[::-1] - others).max() < NEAR_DEGREES
+            if is_back and took > known * (1.0 + _BACK):
+                law = "a way back takes the time of the way there"
+                yield one[0].broken(law, f"{took} us, not {known} us")
+        if len(one) < 2 or np.abs(ends - others).max() > NEAR_DEGREES or took <= known * _STRAIGHT:
+            continue
+        if len(other) == 1 and _is_straight((*one, *other)):
+            yield one[0].broken(
+                "points on a straight way cost no time", f"{took} us, not {known} us"
+            )
+    for row in rows:
+        stops = _exact(rows, row)
+        took = row[-1].end - row[0].start
+        if len(row) > 1 and stops is not None and took > stops * _SLOWER:
+            law = "blended motions are no slower than exact ones"
+            yield row[0].broken(law, f"{took} us, not {stops} us")
+
+
+def _is_alike(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) -> bool:
+    """Whether two motions have the same kind, settings, auxiliary and end point."""
+    first, second = one.motion, other.motion
+    return (
+        first.kind == second.kind
+        and first.auxiliary == second.auxiliary
+        and first.angle == second.angle
+        and first.is_relative == second.is_relative
+        and (is_back or first.target == second.target)
+        and first.settings == second.settings
+    )
+
+
+def _is_straight(row: Sequence[EndedMotion]) -> bool:
+    """Whether they are PTP or LIN of the same settings on one line; the last is the whole of it."""
+    whole = row[-1]
+    if whole.motion.kind not in ("PTP", "LIN"):
+        return False
+    if any(
+        one.motion.kind != whole.motion.kind or one.motion.settings != whole.motion.settings
+        for one in row
+    ):
+        return False
+    axes = np.vstack([one.ends for one in row])
+    if whole.motion.kind == "PTP":
+        places = axes
+    else:
+        poses = whole.poses(axes)
+        places = np.hstack((poses[:, :3, 3], 100.0 * poses[:, :3, :3].reshape(-1, 9)))
+        if np.abs(poses[:, :3, :3] - poses[0, :3, :3]).max() > ROUNDING:
+            return False
+    start, along = places[-2], places[-1] - places[-2]
+    shares = (places - start) @ along / float(along @ along)
+    off = np.abs(places - start - shares[:, None] * along).max()
+    return bool(off < NEAR_MM / 10.0 and (np.diff(shares[:-2]) > -ROUNDING).all())
+
+
+def _exact(rows: Sequence[Sequence[EndedMotion]], row: Sequence[EndedMotion]) -> int | None:
+    """The µs of the motions of a row where the same run has them with exact stops."""
+    for place in range(len(rows) - len(row) + 1):
+        same = rows[place : place + len(row)]
+        are_alike = all(
+            len(other) == 1 and _is_alike(one, other[0])
+            for one, other in zip(row, same, strict=True)
+        )
+        if are_alike and np.abs(same[0][0].ends[0] - row[0].ends[0]).max() < NEAR_DEGREES:
+            return sum(one[0].end - one[0].start for one in same)
+    return None

@@ -1,0 +1,185 @@
+"""What holds of every motion, whatever its program is about: it does what was programmed.
+
+It ends at its target, with the Status and Turn of that; a CIRC is the circle that was told; nothing
+is faster than programmed; and the tool is where axes and machine data put it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from conformance.evaluation.motions import (
+    NEAR_DEGREES,
+    NEAR_MM,
+    ROUNDING,
+    EndedMotion,
+    ended,
+    flanges_of,
+)
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.path_geometry import RATE_MARGIN, change_rates, from_circle
+from conformance.evaluation.run_laws import Violation
+from interp.robot.kinematics.chain import Chain
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
+from interp.robot.kinematics.placement import IpoMode
+from interp.robot.kinematics.solver import matrix_of
+from interp.robot.simulation.tracking import PathRecord
+from interp.values.poses import Pose
+
+_POINT: Final = ("X", "Y", "Z")
+_ANGLES: Final = ("A", "B", "C")
+
+
+def misdeeds(seen: Observation) -> Iterator[Violation]:
+    """What motions do that was not programmed; nothing where path or machine data are unknown."""
+    path, machine = seen.path, seen.machine
+    if path is None or machine is None:
+        return
+    yield from _displaced(path, machine)
+    for one in ended(seen):
+        for law in (_arrives, _has_posture, _keeps_speed, _passes_auxiliary):
+            yield from law(one)
+
+
+def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
+    """Set-points whose tool is not where machine data and axes put it [POS-11]."""
+    flanges = flanges_of(machine.chain, path.axes[:, :ROBOT_AXES])
+    bounds = [int(np.searchsorted(path.times, time)) for time, _ in path.placements]
+    for first, last, (_, placement) in zip(
+        bounds, [*bounds[1:], len(path.times)], path.placements, strict=False
+    ):
+        rows = slice(first, last)
+        if first < last:
+            own = path.axes[rows, ROBOT_AXES:]
+            tools = flanges[rows] @ matrix_of(placement.tool)
+            poses = np.linalg.inv(placement.befores(own)) @ tools
+            off = np.abs(poses[:, :3, 3] - path.points[rows, :3]).max(axis=1)
+            told = np.array([matrix_of(Pose.of(*row)) for row in path.points[rows]])
+            off = np.maximum(off, np.degrees(np.abs(told - poses)[:, :3, :3].max(axis=(1, 2))))
+            if not off.max() <= ROUNDING:
+                place = first + int(np.argmax(~(off <= ROUNDING)))
+                law = "the tool is where axes and machine data put it"
+                yield Violation(
+                    None, law, f"{off.max():.4f} off at {path.times[place] / 1e6:.3f} s", "POS-11"
+                )
+                return
+
+
+def _arrives(one: EndedMotion) -> Iterator[Violation]:
+    """Not at its target [MOT-20]: what of it was programmed."""
+    motion = one.motion
+    target = dict(motion.target)
+    if not one.stops or motion.is_relative or motion.angle is not None or motion.parts:
+        return
+    names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
+    is_free = one.machine.palletising is None
+    wanted = {name: target[name] for name in names if name in target}
+    for name, value in wanted.items():
+        reached = float(one.ends[1, names.index(name)])
+        if abs(reached - value) > NEAR_DEGREES and (is_free or name not in ("A4", "A5")):
+            yield one.broken("a motion ends at its target", f"{name} at {reached:.4f}", "MOT-20")
+    (pose,) = one.poses(one.ends[1:])
+    for name, value in zip(_POINT, pose[:3, 3].tolist(), strict=True):
+        if abs(target.get(name, value) - value) > NEAR_MM:
+            yield one.broken("a motion ends at its target", f"{name} {value:.4f}", "MOT-20")
+    turns = motion.kind in ("PTP", "SPTP") or motion.settings.orientation in ("#VAR", "#JOINT")
+    if turns and all(name in target for name in _ANGLES) and _has_six(one.machine):
+        other = matrix_of(Pose.of(0.0, 0.0, 0.0, *(target[name] for name in _ANGLES)))
+        off = math.degrees(float(np.abs(other - pose)[:3, :3].max()))
+        if off > NEAR_DEGREES:
+            yield one.broken("a motion ends at its target", f"turned {off:.4f} beside it", "MOT-20")
+
+
+def _has_six(machine: MachineData) -> bool:
+    """Whether an arm can have any orientation."""
+    return machine.palletising is None and len(machine.chain.joints) == ROBOT_AXES
+
+
+def _has_posture(one: EndedMotion) -> Iterator[Violation]:
+    """A PTP to a pose with Status and Turn that has others [POS-03, POS-04, POS-05, POS-07]."""
+    target, machine = one.motion.target, one.machine
+    if not one.stops or one.motion.kind not in ("PTP", "SPTP") or not {"X", "Y", "Z"} & set(target):
+        return
+    axes = one.ends[1].tolist()
+    status = target.get("S")
+    if status is not None and machine.own_chain is None and _has_six(machine):
+        behind = _ahead(machine, axes[:ROBOT_AXES])
+        for bit, rule, value in (
+            (1, "POS-03", -behind),
+            (2, "POS-04", axes[2] - machine.elbow),
+            (4, "POS-05", -axes[4]),
+        ):
+            if abs(value) > NEAR_MM and (value > 0.0) is not bool(int(status) & bit):
+                yield one.broken("a PTP has the Status of its target", f"bit of {bit}", rule)
+    turn = target.get("T")
+    for place, (axis, value) in enumerate(zip(machine.axes, axes, strict=False)):
+        if turn is None or abs(value) < NEAR_DEGREES or machine.palletising is not None:
+            continue
+        other = value - math.copysign(360.0, value)
+        if (value < 0.0) is not bool(int(turn) >> place & 1) and axis.lower <= other <= axis.upper:
+            yield one.broken(
+                "a PTP has the Turn of its target", f"{axis.name} {value:.3f}", "POS-07"
+            )
+
+
+def _ahead(machine: MachineData, axes: Sequence[float]) -> float:
+    """How far in mm the wrist centre lies in front of axis 1, along the X axis turned by it."""
+    chain = machine.chain
+    wrist = Chain(chain.joints[:4], Pose.of())
+    still = np.array([[0.0, *axes[1:]]])
+    centre = np.linalg.inv(matrix_of(chain.joints[0].frame)) @ flanges_of(wrist, still)[0]
+    return float(centre[0, 3])
+
+
+def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
+    """A CIRC whose circle its auxiliary or end point is not on [MOT-20]."""
+    motion = one.motion
+    points = [motion.auxiliary or {}, motion.target]
+    if motion.kind not in ("CIRC", "SCIRC") or motion.is_relative or not one.begins:
+        return
+    if not all(name in point for point in points for name in _POINT):
+        return
+    if motion.settings.placement.mode is not IpoMode.BASE:
+        return
+    wanted = np.array([[point[name] for name in _POINT] for point in points])
+    rows = one.poses(one.path.axes[one.rows])[:, :3, 3]
+    start = one.poses(one.ends[:1])[0, :3, 3]
+    try:
+        off = float(from_circle(rows, start, *wanted).max(initial=0.0))
+    except ValueError:
+        return
+    if off > NEAR_MM:
+        law = "a CIRC is the circle through its start, auxiliary and end point"
+        yield one.broken(law, f"{off:.4f} mm off", "MOT-20")
+
+
+def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
+    """Faster than programmed: the tool on its path [MOT-04], an axis in a PTP [MOT-02]."""
+    motion, settings = one.motion, one.motion.settings
+    if motion.parts or one.rows.stop - one.rows.start < 3:
+        return
+    times, axes = one.path.times[one.rows], one.path.axes[one.rows]
+    if motion.kind in ("PTP", "SPTP"):
+        most = one.axis_rates
+        if most is None:
+            return
+        share = np.abs(change_rates(times, axes)).max(axis=0) / most[0]
+        axis = int(np.argmax(share))
+        if share[axis] > RATE_MARGIN:
+            yield one.broken("axes keep $VEL_AXIS", f"{share[axis]:.1%} of it", "MOT-02")
+        return
+    poses = one.poses(axes)
+    speeds = np.linalg.norm(change_rates(times, poses[:, :3, 3]), axis=1) / 1000.0
+    most_path = min(settings.velocity, one.machine.velocity.path)
+    if settings.is_reduced:
+        most_path = min(most_path, one.machine.t1_speed)
+    if speeds.max() > most_path * RATE_MARGIN:
+        yield one.broken("the tool keeps $VEL.CP", f"{speeds.max():.4f} m/s", "MOT-04")
+    gains = np.abs(np.diff(speeds) / (np.diff(times)[1:] / 1e6))
+    most_gain = min(settings.acceleration, one.machine.acceleration.path)
+    if gains.max() > most_gain * RATE_MARGIN:
+        yield one.broken("the tool keeps $ACC.CP", f"{gains.max():.4f} m/s²", "MOT-04")

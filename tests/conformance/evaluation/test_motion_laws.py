@@ -1,0 +1,151 @@
+"""Each law of motions and of how long they take is broken by a run that breaks it, by no other."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from conformance.evaluation.duration_laws import delays, seconds_of
+from conformance.evaluation.execution import Setup, observe
+from conformance.evaluation.motion_laws import misdeeds
+from conformance.evaluation.motions import flanges_of
+from conformance.evaluation.observation import Observation
+from conformance.suite.case import Case
+from grammar.syntax.source import Source
+from interp.robot.models import default_machine
+from interp.robot.simulation.tracking import PathRecord
+
+_PROGRAM = """DEF a()
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  $VEL.CP = 0.05
+  $ACC.CP = 0.2
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  PTP {X 445, Y 50, Z 890, A 30, B 180, C 0}
+  LIN {X 445, Y 150, Z 890}
+  CIRC {X 465, Y 170, Z 890}, {X 485, Y 150, Z 890}
+  PTP {A1 10, A6 20} C_PTP
+  PTP {A1 30, A6 -20}
+END
+"""
+
+
+@cache
+def seen() -> Observation:
+    """A run of every kind of motion."""
+    source = Source(_PROGRAM, "a.src")
+    path: object = None
+    case = Case("s/a", path, "t", ("CTL-01",), "run", "kss8", (source,), ())  # type: ignore[arg-type]
+    return observe(case, Setup("tree", "kinematic"))
+
+
+def with_path(change: Callable[[PathRecord], PathRecord]) -> Observation:
+    """The run with another path."""
+    path = seen().path
+    assert path is not None
+    return replace(seen(), path=change(path))
+
+
+def with_motion(line: int, **changed: object) -> Observation:
+    """The run as if something else had been programmed in a line."""
+
+    def change(path: PathRecord) -> PathRecord:
+        motions = (
+            (time, replace(motion, **changed) if motion.at.line == line else motion)  # type: ignore[arg-type]
+            for time, motion in path.motions
+        )
+        return replace(path, motions=tuple(motions))
+
+    return with_path(change)
+
+
+def settings_of(line: int, **changed: object) -> Observation:
+    """The run as if other values had been in force in a line."""
+    path = seen().path
+    assert path is not None
+    settings = next(motion.settings for _, motion in path.motions if motion.at.line == line)
+    return with_motion(line, settings=replace(settings, **changed))  # type: ignore[arg-type]
+
+
+def broken(run: Observation) -> list[tuple[str, int]]:
+    """Rules and lines of what is broken."""
+    found = (*misdeeds(run), *delays(run))
+    return [(one.rule, one.event.line if one.event else 0) for one in found]
+
+
+def test_a_right_run_breaks_none() -> None:
+    """And it has motions of all kinds."""
+    assert "end" == seen().ending
+    assert [] == broken(seen())
+
+
+def _shifted(path: PathRecord) -> PathRecord:
+    return replace(path, points=path.points + np.eye(6)[0] / 100)
+
+
+def _turned(path: PathRecord) -> PathRecord:
+    return replace(path, points=path.points + np.eye(6)[3] / 100)
+
+
+@pytest.mark.parametrize("change", [_shifted, _turned])
+def test_the_tool_is_where_machine_data_put_it(change: Callable[[PathRecord], PathRecord]) -> None:
+    """Not a hundredth of a millimetre or degree beside it."""
+    assert [("POS-11", 0)] == broken(with_path(change))
+
+
+@pytest.mark.parametrize(
+    ("line", "target", "rule"),
+    [
+        (6, {"A1": 0.2}, "MOT-20"),
+        (8, {"Y": 150.3}, "MOT-20"),
+        (7, {"X": 445, "Y": 50, "Z": 890, "A": 30, "B": 179.8, "C": 0}, "MOT-20"),
+        (7, {"X": 445, "S": 3, "T": 2}, "POS-03"),
+        (7, {"X": 445, "S": 0, "T": 2}, "POS-04"),
+        (7, {"X": 445, "S": 6, "T": 2}, "POS-05"),
+    ],
+)
+def test_a_motion_ends_at_its_target(line: int, target: dict[str, float], rule: str) -> None:
+    """With the Status of it too."""
+    assert (rule, line) in broken(with_motion(line, target=target))
+
+
+def test_a_turn_counts_where_the_axis_has_another() -> None:
+    """Axis 6 reaches a turn further, axis 1 does not."""
+    found = [broken(with_motion(7, target={"X": 445.0, "T": turn})) for turn in (2, 3, 34)]
+    assert [[], [], [("POS-07", 7)]] == found
+
+
+def test_a_circle_passes_its_auxiliary_point() -> None:
+    """It is on the circle through all three points."""
+    found = broken(with_motion(9, auxiliary={"X": 465.0, "Y": 171.0, "Z": 890.0}))
+    assert [("MOT-20", 9)] == found
+
+
+def test_a_path_keeps_speed_and_acceleration() -> None:
+    """It does 0.05 m/s, and 0.2 m/s²; where it is too fast it takes too short a time too."""
+    assert ("MOT-04", 8) in broken(settings_of(8, velocity=0.02))
+    assert ("MOT-04", 8) in broken(settings_of(8, acceleration=0.1))
+    assert [("", 8)] == broken(settings_of(8, velocity=0.055))
+
+
+def test_a_ptp_is_as_quick_as_its_axes() -> None:
+    """No slower, no quicker; the way of an axis counts that is no target."""
+    assert [("MOT-20", 7)] == broken(settings_of(7, axis_acceleration=(100.0,) * 5 + (101.0,) * 7))[
+        :1
+    ]
+    assert ("MOT-02", 7) in broken(settings_of(7, axis_velocity=(10.0,) * 12))
+
+
+def test_seconds_of_a_length() -> None:
+    """With all of speed and acceleration, with acceleration only, with neither."""
+    assert 2 * 1.5 + 1.0 == pytest.approx(seconds_of(5.0, 2.0, 2.0, 4.0))
+    assert 2 * (0.5 + 0.5) == pytest.approx(seconds_of(1.0, 2.0, 2.0, 4.0))
+    assert 4 * (1 / 8) ** (1 / 3) == pytest.approx(seconds_of(0.25, 2.0, 9.0, 1.0))
+
+
+def test_the_flange_of_the_cases_arm() -> None:
+    """Stretched forward at zero: its lengths in a row."""
+    (pose,) = flanges_of(default_machine().chain, np.zeros((1, 6)))
+    assert [980.0, 0.0, 435.0] == pytest.approx(pose[:3, 3].tolist())
