@@ -21,6 +21,7 @@ from conformance.evaluation.verdicts import verdict_of
 from conformance.runner import CaseResult, Result
 from conformance.suite.case import Case
 from conformance.suite.registry import registry
+from interp.controller.trace import KINDS
 from interp.robot.simulation.tracking import PathRecord
 from support.files.untrusted import json_of, read_bytes
 
@@ -61,10 +62,15 @@ class Recording:
         if not isinstance(entries, list):
             raise RecordingError(f"{path}: its cases are no list")
         for number, entry in enumerate(entries, start=1):
+            if not isinstance(entry, dict):
+                raise RecordingError(f"{path}: case {number} is no object")
+            name = entry.get("case", number)
             try:
                 seen[str(entry["case"])] = (str(entry["digest"]), _observation(entry, cycle))
-            except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
-                raise RecordingError(f"{path}: case {number}: {error!r}") from error
+            except KeyError as error:
+                raise RecordingError(f"{path}: case {name} has no {error}") from error
+            except (AttributeError, OverflowError, TypeError, ValueError) as error:
+                raise RecordingError(f"{path}: case {name}: {error}") from error
         name = " ".join(
             str(controller[key]) for key in ("name", "release", "machine") if controller.get(key)
         )
@@ -83,19 +89,31 @@ def _observation(entry: Mapping[str, Any], cycle: int) -> Observation:
             str(one.get("code", "")),
             str(one.get("message", "")),
         )
-        for one in entry.get("findings", ())
+        for one in _list(entry, "findings")
     ]
+    events, watched = tuple(map(Event.of, _list(entry, "events"))), _list(entry, "watched")
+    if unknown := [
+        one for one in (*(event.kind for event in events), *watched) if one not in KINDS
+    ]:
+        raise ValueError(f"there is no kind of event {unknown[0]!r}")
     path = entry.get("path")
     return Observation(
         findings=tuple(findings),
-        events=tuple(Event.of(one) for one in entry.get("events", ())),
+        events=events,
         ending=ending,
         path=None if path is None else _path(path),
         cycle=cycle,
         is_exact=False,
         robot="none" if path is None else "mujoco" if "points_meas" in path else "kinematic",
-        watched=frozenset(map(str, entry.get("watched", ()))),
+        watched=frozenset(watched),
     )
+
+
+def _list(entry: Mapping[str, Any], key: str) -> list[Any]:
+    found = entry.get(key, [])
+    if not isinstance(found, list):
+        raise ValueError(f"its {key} are no list")
+    return found
 
 
 def _path(data: Mapping[str, Any]) -> PathRecord:

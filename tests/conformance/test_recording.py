@@ -127,8 +127,18 @@ def test_changed_and_unknown_cases_are_told(tmp_path: Path, cases: list[Case]) -
         ('{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": [{}]}', "case 1"),
         (
             '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
+            '[{"case": "a", "digest": "", "events": [{"kind": "outs", "at": "a.src:1"}]}]}',
+            "case a: there is no kind of event 'outs'",
+        ),
+        (
+            '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
+            '[{"case": "a", "digest": "", "watched": "out"}]}',
+            "case a: its watched are no list",
+        ),
+        (
+            '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
             '[{"case": "a", "digest": "", "path": {"t": [0, 0], "axes": [], "points": []}}]}',
-            "case 1",
+            "case a",
         ),
     ],
 )
