@@ -1,5 +1,6 @@
 """What is said of two states of programs: the words of `krl diff` and of its page."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -106,8 +107,14 @@ def _figure(label: str, value: int, note: str) -> Mapping[str, Any]:
 def _files(files: Record) -> Iterator[str]:
     yield from (f"{_shown(path)} added" for path in texts(files, "added"))
     yield from (f"{_shown(path)} removed" for path in texts(files, "removed"))
-    for one in records(files, "moved"):
-        yield f"{_shown(text(one, 'new'))} was {_shown(text(one, 'old'))}"
+    moved = [*records(files, "moved")]
+    folders = Counter(tuple(texts(one, "folders")) for one in moved)
+    for (old, new), number in folders.items():
+        if number > 1:
+            yield f"{number:,} files of {_shown(old)} are in {_shown(new)} now"
+    for one in moved:
+        if folders[tuple(texts(one, "folders"))] == 1:
+            yield f"{_shown(text(one, 'new'))} was {_shown(text(one, 'old'))}"
 
 
 def _shown(words: str) -> str:

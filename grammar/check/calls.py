@@ -7,6 +7,8 @@ controller's own functions are known to need them.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from grammar.check.signal_direction import side_of
 from grammar.check.type_checker import TypeChecker
 from grammar.semantics.assignability import passable
@@ -76,7 +78,7 @@ def _check_arguments(
         _check_missing(checker, node, symbol)
     for parameter, argument in zip(wanted, given, strict=False):
         if argument is not None:
-            _check(checker, parameter, scope, argument, is_uncertain=is_uncertain)
+            _check(checker, symbol, parameter, scope, argument, is_uncertain=is_uncertain)
     for argument in given[len(wanted) :]:
         if argument is not None:
             checker.infer(argument)
@@ -101,6 +103,7 @@ def _check_missing(checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol) 
 
 def _check(
     checker: TypeChecker,
+    symbol: RoutineSymbol,
     parameter: ParameterSymbol,
     scope: Scope,
     argument: ast.Expression,
@@ -115,7 +118,11 @@ def _check(
         is_variable = root is None or root.kind is not Kind.CONSTANT
 
     def accepts(to: Type, value: Type) -> Verdict:
-        return passable(to, value, is_out=is_out, is_variable=is_variable)
+        verdict = passable(to, value, is_out=is_out, is_variable=is_variable)
+        of = f"for {parameter.name} of {symbol.name}"
+        return replace(
+            verdict, reason=verdict.reason.replace("is expected here", f"is expected {of}")
+        )
 
     checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
     if is_out and not is_variable and checker.context.types[argument] != UNKNOWN:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Any
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText, content_of
@@ -49,7 +50,7 @@ def compare(old: Sequence[Source], new: Sequence[Source]) -> Record:
             "added": [one.path for one in added],
             "removed": [one.path for one in removed],
             "moved": [
-                {"old": one.path, "new": other.path}
+                {"old": one.path, "new": other.path, "folders": _folders(one.path, other.path)}
                 for one, other in pairs
                 if _address(one.path) != _address(other.path) and len(before) + len(after) > 2
             ],
@@ -66,6 +67,14 @@ def _contents(sources: Sequence[Source]) -> list[Content]:
 
 
 # ------------------------------------------------------------------------------------------- files
+
+
+def _folders(old: str, new: str) -> list[str]:
+    """The folders of which one was moved to the other: what is before the same end of two paths."""
+    parts = old.split("/"), new.split("/")
+    ends = zip(*map(reversed, parts), strict=False)
+    same = sum(1 for _ in takewhile(lambda pair: pair[0].casefold() == pair[1].casefold(), ends))
+    return ["/".join(one[: len(one) - same]) or "." for one in parts]
 
 
 def _address(path: str) -> str:

@@ -1,6 +1,7 @@
 """`krl diff`: two backups compared as a programmer wants it."""
 
 import json
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from pathlib import Path
@@ -124,7 +125,13 @@ def _text(record: Record) -> Iterator[str]:
     files = record["files"]
     for kind in ("added", "removed"):
         yield from (f"file {kind}: {path}" for path in files[kind])
-    yield from (f"file moved: {one['old']} -> {one['new']}" for one in files["moved"])
+    folders = Counter(tuple(one["folders"]) for one in files["moved"])
+    for (old, new), number in folders.items():
+        if number > 1:
+            yield f"{number:,} files moved: {old} -> {new}"
+    for one in files["moved"]:
+        if folders[tuple(one["folders"])] == 1:
+            yield f"file moved: {one['old']} -> {one['new']}"
     yield from (f"name changed throughout: {one['old']} -> {one['new']}" for one in record["names"])
     for one in record["routines"]:
         yield ""

@@ -52,6 +52,25 @@ def test_file_that_went_is_counted(
     assert capsys.readouterr().out.endswith("2 and 1 files: 1 file removed\n")
 
 
+def test_a_folder_that_moved_is_told_once(
+    states: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Files below another folder than before are one line, a single file one of its own."""
+    below = tmp_path / "below"
+    for folder, name in (("R1/Deep", "a.src"), ("R1/Deep", "a.dat"), ("R1", "c.src")):
+        (below / folder).mkdir(parents=True, exist_ok=True)
+        text = (
+            OLD.replace("DEF A", "DEF C") if name[0] == "c" else Path(states[0], name).read_text()
+        )
+        (below / folder / name).write_text(text, encoding="utf-8")
+    Path(states[0], "c.src").write_text(OLD.replace("DEF A", "DEF C"), encoding="utf-8")
+    assert 1 == main(["diff", states[0], str(below), "--html", str(tmp_path)])
+    told = "2 files moved: . -> R1/Deep\nfile moved: c.src -> R1/c.src\n"
+    assert capsys.readouterr().out.startswith(told)
+    (page,) = tmp_path.glob("*.html")
+    assert "2 files of . are in R1/Deep now" in page.read_text(encoding="utf-8")
+
+
 def test_archives_files_and_nothing_are_compared(
     states: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

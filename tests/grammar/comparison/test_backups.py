@@ -111,8 +111,13 @@ def test_a_file_that_moved_keeps_its_routines() -> None:
     old = [Source(MAIN, "KRC/R1/Program/a.src"), Source(DATA, "KRC/R1/Program/a.dat")]
     new = [Source(MAIN, "backup/R1/Program/Old/a.src"), Source(DATA, "backup/R1/Program/a.dat")]
     found = compare(old, new)
-    moved = {"old": "KRC/R1/Program/a.src", "new": "backup/R1/Program/Old/a.src"}
-    assert [moved] == found["files"]["moved"]
+    assert [
+        {
+            "old": "KRC/R1/Program/a.src",
+            "new": "backup/R1/Program/Old/a.src",
+            "folders": ["KRC/R1/Program", "backup/R1/Program/Old"],
+        }
+    ] == found["files"]["moved"]
     assert [] == found["routines"]
 
 
