@@ -19,12 +19,15 @@ _SUMMED = frozenset("X Y Z A B C A1 A2 A3 A4 A5 A6".split())
 
 @dataclass(frozen=True, slots=True)
 class RoutineRow:
-    """A routine: what became of it, and its statements, removed ones marked "-", new ones "+"."""
+    """A routine: what became of it, and its statements, removed ones marked "-", new ones "+".
+
+    Each hunk begins with where it stands.
+    """
 
     place: str
     name: str
     said: str
-    hunks: Sequence[Sequence[tuple[str, str]]]
+    hunks: Sequence[tuple[str, Sequence[tuple[str, str]]]]
     statements: int
 
 
@@ -151,12 +154,13 @@ def routine_words(one: Record) -> str:
 
 
 def _routine(one: Record) -> RoutineRow:
-    hunks = [
-        [(mark, _shown(line)) for key, mark in (("old", "-"), ("new", "+"))
-         for line in texts(hunk, key)]
-        for hunk in records(one, "hunks")
-    ]  # fmt: skip
-    size = sum(map(len, hunks))
+    hunks = []
+    for hunk in records(one, "hunks"):
+        sides = [(mark, texts(hunk, key)) for key, mark in (("old", "-"), ("new", "+"))]
+        lines = [(mark, _shown(line)) for mark, side in sides for line in side]
+        was, now = count(hunk, "old_line"), count(hunk, "new_line")
+        hunks.append((f"line {was}" if was == now else f"line {was}, now {now}", lines))
+    size = sum(len(lines) for _, lines in hunks)
     return RoutineRow(
         _place(one), _shown(routine_name(one)), _shown(routine_words(one)), hunks, size
     )

@@ -6,7 +6,6 @@ measurement helps the next; importing modules is not counted. MB are 1,000,000 b
 
 from __future__ import annotations
 
-import platform
 import shutil
 import tempfile
 import time
@@ -31,10 +30,8 @@ from support.files.decode import decode
 from support.files.discovery import Found, IngestError, discover, read
 from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
-from support.measure.peak_memory import peak_memory
+from support.measure.speed import MB, ROUNDS, machine, peak_mb, scaling, shares
 
-MB = 1_000_000
-ROUNDS = 3
 PHASES = (
     "loading",
     "decoding",
@@ -82,26 +79,15 @@ def measure_check(
     on_step()
     one_changed = _one_changed(roots)
     on_step()
-    scaling = []
-    for size in sizes:
-        scaling.append(_scaled(size, seed))
-        on_step()
-    total = sum(phases.values())
     return {
         "rounds": rounds,
-        "python": platform.python_version(),
-        "system": f"{platform.system()} {platform.machine()}",
+        **machine(),
         **best,
         "s_per_mb": best["seconds"] * MB / best["bytes"],
         "unchanged_s_per_mb": unchanged * MB / best["bytes"],
         "one_changed_seconds": one_changed,
-        "phases": [
-            {"name": name, "seconds": phases[name], "share": phases[name] / total}
-            for name in PHASES
-        ],
-        "scaling": scaling,
-        "linear": scaling[-1]["s_per_mb"] / scaling[0]["s_per_mb"] if scaling else None,
-        "memory_growth_mb": _growth(scaling),
+        "phases": shares(phases),
+        **scaling(sizes, lambda size: _scaled(size, seed), "s_per_mb", on_step),
     }
 
 
@@ -118,14 +104,13 @@ def _timed(roots: Sequence[Path], cache: Path | None = None) -> dict[str, Any]:
     began = time.perf_counter()
     found = check_paths(roots, CheckOptions(), jobs=1, cache=cache)
     seconds = time.perf_counter() - began
-    peak = peak_memory()
     return {
         "files": found.files,
         "bytes": found.bytes,
         "projects": found.projects,
         "findings": dict(Counter(one.severity for one in found.diagnostics)),
         "seconds": seconds,
-        "peak_mb": None if peak is None else peak / MB,
+        "peak_mb": peak_mb(),
     }
 
 
@@ -160,15 +145,7 @@ def _scaled(size: float, seed: int) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         write_cells(Path(folder), round(size * MB), seed)
         timed = call_isolated(_timed, [Path(folder)])
-    return {"mb": size, **timed, "s_per_mb": timed["seconds"] * MB / timed["bytes"]}
-
-
-def _growth(scaling: Sequence[dict[str, Any]]) -> float | None:
-    """How much more memory the last took than the first."""
-    peaks = [entry["peak_mb"] for entry in scaling]
-    if not peaks or None in peaks:
-        return None
-    return float(peaks[-1] - peaks[0])
+    return {**timed, "s_per_mb": timed["seconds"] * MB / timed["bytes"]}
 
 
 class _Clock:

@@ -11,11 +11,11 @@ from typing import Any
 from grammar.notation import g4
 from grammar.notation.model import Grammar
 from recovery.analysis import analyse
-from recovery.bench.survey_speed import MB, synthesise
+from recovery.bench.survey_speed import synthesise
 from recovery.negatives.negatives import Negative
 from recovery.survey.survey import survey
 from support.measure.isolated import call_isolated
-from support.measure.peak_memory import peak_memory
+from support.measure.speed import MB, peak_mb
 
 
 def measure_damaged(
@@ -50,7 +50,6 @@ def _surveyed(folder: Path, grammar_text: str, negatives: Sequence[Negative]) ->
     found = survey([folder], grammar, jobs=1)
     read = clock()
     record = analyse(found, negatives, grammar_name="")
-    peak = peak_memory()
     return {
         "files": record["files"],
         "parsed": record["parsed"],
@@ -60,5 +59,5 @@ def _surveyed(folder: Path, grammar_text: str, negatives: Sequence[Negative]) ->
         "clusters": len(record["clusters"]),
         "read_seconds": read - began,
         "cause_seconds": clock() - read,
-        "peak_mb": None if peak is None else peak / MB,
+        "peak_mb": peak_mb(),
     }

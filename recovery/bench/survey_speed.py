@@ -8,7 +8,6 @@ a survey is timed, finding, reading and decoding the files are. MB are 1,000,000
 from __future__ import annotations
 
 import gc
-import platform
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -27,10 +26,8 @@ from recovery.survey.survey import Survey, survey
 from support.files.decode import decode, digest
 from support.files.discovery import Found, IngestError, Skipped, discover, read
 from support.measure.isolated import call_isolated
-from support.measure.peak_memory import peak_memory
+from support.measure.speed import MB, ROUNDS, machine, peak_mb, scaling, shares
 
-MB = 1_000_000
-ROUNDS = 3
 #: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed
 #: with it beforehand, so that they are the same in every run and on every machine.
 ANTLR_BYTES_PER_S = 60_000
@@ -76,16 +73,11 @@ def measure(
     warm = min(s.warm for s in surveyed)
     phases = min(phased, key=lambda phases: sum(phases.values()))
     phases["recording"] = max(cold - sum(phases.values()), 0.0)
-    total = sum(phases.values())
     recognising = sum(phases[name] for name in ("decoding", "building", "lexing", "recognising"))
     beside = call_isolated(_beside_antlr, roots, grammar.text, antlr_seconds)
     on_step()
     unchanged = _unchanged(roots, grammar, rounds)
     on_step()
-    scaling = []
-    for size in sizes:
-        scaling.append(_scaled_to(size, roots, grammar, seed))
-        on_step()
     return {
         "grammar_sha256": grammar.sha256,
         "files": of.files,
@@ -93,22 +85,18 @@ def measure(
         "bytes": of.bytes,
         "failures": of.failures,
         "rounds": rounds,
-        "python": platform.python_version(),
-        "system": f"{platform.system()} {platform.machine()}",
+        **machine(),
         "seconds": cold,
         "bytes_per_s": of.bytes / cold,
         "warm_bytes_per_s": of.bytes / warm,
         "recognise_bytes_per_s": of.bytes / recognising,
-        "phases": [
-            {"name": name, "seconds": seconds, "share": seconds / total}
-            for name, seconds in phases.items()
-        ],
+        "phases": shares(phases),
         "ratio_vs_antlr_python": beside["valid"]["ratio"],
         "antlr": beside,
         "unchanged_s_per_mb": unchanged * MB / of.bytes,
-        "scaling": scaling,
-        "linear": scaling[-1]["bytes_per_s"] / scaling[0]["bytes_per_s"] if scaling else None,
-        "memory_growth_mb": _growth(scaling),
+        **scaling(
+            sizes, lambda size: _scaled_to(size, roots, grammar, seed), "bytes_per_s", on_step
+        ),
     }
 
 
@@ -312,7 +300,7 @@ def _scaled_to(size: float, roots: Sequence[Path], grammar: Grammar, seed: int) 
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
         call_isolated(synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
-        return {"mb": size, **call_isolated(_scaled, Path(folder), grammar.text)}
+        return call_isolated(_scaled, Path(folder), grammar.text)
 
 
 def synthesise(
@@ -338,7 +326,6 @@ def synthesise(
 def _scaled(folder: Path, grammar_text: str) -> dict[str, Any]:
     grammar = g4.read(grammar_text)
     seconds, found = _timed_survey([folder], grammar)
-    peak = peak_memory()
     size = sum(file.size for file in found.files)
     return {
         "files": len(found.files),
@@ -346,15 +333,7 @@ def _scaled(folder: Path, grammar_text: str) -> dict[str, Any]:
         "failures": sum(len(file.failures) for file in found.files),
         "seconds": seconds,
         "bytes_per_s": size / seconds,
-        "peak_mb": None if peak is None else peak / MB,
+        "peak_mb": peak_mb(),
         # wherever they are: the automaton is internal to the survey
         "cores": sum(isinstance(each, Core) for each in gc.get_objects()),
     }
-
-
-def _growth(scaling: Sequence[dict[str, Any]]) -> float | None:
-    """How much more memory the last took than the first."""
-    peaks = [entry["peak_mb"] for entry in scaling]
-    if not peaks or None in peaks:
-        return None
-    return float(peaks[-1] - peaks[0])

@@ -6,12 +6,13 @@ from typing import Annotated, Any, Literal
 import typer
 from rich.console import Console
 
-from krl.commands.bench.scaling import MB, SizesOption, peak, phases_table, print_growth, sizes_of
+from krl.commands.bench.scaling import SizesOption, peak, phases_table, print_growth, sizes_of
 from krl.errors import FINE, as_input_errors
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
+from support.measure.speed import MB
 
 Damage = Literal["mistakes", "names", "tokens", "lines"]
 _PLANTED_FIGURES = ("planted", "found", "in_place", "median", "p95", "most")

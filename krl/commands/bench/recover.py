@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.commands.bench.scaling import (
-    MB,
     SizesOption,
     damage_kinds,
     peak,
@@ -22,6 +21,7 @@ from krl.options import NEGATIVES, JsonOption, ProgramsArgument, programs_or_our
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
+from support.measure.speed import MB
 
 
 def recover(

@@ -10,8 +10,7 @@ from rich.table import Table
 from krl.errors import InputError
 from krl.text_table import figures
 
-MB: Final = 1_000_000
-_LARGEST = 2_000
+_LARGEST: Final = 2_000
 
 SizesOption = Annotated[
     str,

@@ -1,0 +1,60 @@
+"""What benches of speed record alike: the machine, where the time goes, how cost grows."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
+
+from support.measure.peak_memory import peak_memory
+
+MB: Final = 1_000_000
+ROUNDS: Final = 3
+
+
+def peak_mb() -> float | None:
+    """The most memory that this process took, in MB; ``None`` where the system does not tell."""
+    peak = peak_memory()
+    return None if peak is None else peak / MB
+
+
+def machine() -> dict[str, str]:
+    """What the figures of a record were measured on."""
+    return {
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+    }
+
+
+def shares(phases: Mapping[str, float]) -> list[dict[str, Any]]:
+    """Seconds by phase as a record has them, each with its share of all."""
+    total = sum(phases.values())
+    return [
+        {"name": name, "seconds": seconds, "share": seconds / total}
+        for name, seconds in phases.items()
+    ]
+
+
+def scaling(
+    sizes: Sequence[float],
+    measured: Callable[[float], Mapping[str, Any]],
+    figure: str,
+    on_step: Callable[[], object],
+) -> dict[str, Any]:
+    """The part of a record on corpora of several ``sizes``, in MB.
+
+    ``measured`` gives the entry of one of them, with ``figure`` and ``peak_mb`` in it; ``linear``
+    is that figure of the last over that of the first, ``memory_growth_mb`` how much more memory the
+    last took; ``None`` where not measured. ``on_step`` is called once a size.
+    """
+    entries = []
+    for size in sizes:
+        entries.append({"mb": size, **measured(size)})
+        on_step()
+    peaks = [entry["peak_mb"] for entry in entries]
+    is_known = bool(peaks) and None not in peaks
+    return {
+        "scaling": entries,
+        "linear": entries[-1][figure] / entries[0][figure] if entries else None,
+        "memory_growth_mb": float(peaks[-1] - peaks[0]) if is_known else None,
+    }
