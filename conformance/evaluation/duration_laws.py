@@ -35,7 +35,7 @@ _BACK: Final = 0.05
 #: planned only as far as the advance run has come.
 _SLOWER, _STRAIGHT = 1.001, 1.05
 #: Share of the limits of axes below which none of them slows a path down.
-_IDLE: Final = 0.1
+_IDLE: Final = 0.15
 #: mm/s³ and deg/s³ of spline motions, and seconds over which other paths build up acceleration.
 _SPLINE_JERKS: Final = (500e3, 50e3)
 _RAMP: Final = 0.08

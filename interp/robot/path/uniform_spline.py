@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import cached_property, lru_cache
 
 import numpy as np
+import numpy.typing as npt
 
 from interp.robot.kinematics.solver import Array
 
@@ -32,16 +33,14 @@ class Table:
 
     def at(self, u: Array) -> Array:
         """Values ``(n, columns)``."""
-        (c3, c2, c1, c0), dt = self._local(u)
+        (c3, c2, c1, c0), dt, _ = self._local(u)
         values: Array = c0 + dt * (c1 + dt * (c2 + dt * c3))
         return values
 
     def rates(self, u: Array) -> tuple[Array, Array, Array]:
         """First to third derivatives; the third is a line from point to point."""
-        (c3, c2, c1, _), dt = self._local(u)
-        share = u * self._count
-        place = np.minimum(share.astype(np.intp), self._count - 1)
-        share = (share - place)[:, None]
+        (c3, c2, c1, _), dt, place = self._local(u)
+        share = dt * self._count
         third = self._thirds[place] * (1.0 - share) + self._thirds[place + 1] * share
         return c1 + dt * (2.0 * c2 + dt * 3.0 * c3), 2.0 * c2 + dt * 6.0 * c3, third
 
@@ -58,10 +57,10 @@ class Table:
         thirds[-1] = between[-2] - (between[-3] - between[-2]) / 1.5
         return thirds
 
-    def _local(self, u: Array) -> tuple[Array, Array]:
-        """The coefficients in force at each parameter, and how far it lies behind their point."""
-        place = np.minimum(np.maximum((u * self._count).astype(np.intp), 0), self._count - 1)
-        return self._coefficients[:, place], (u - place / self._count)[:, None]
+    def _local(self, u: Array) -> tuple[Array, Array, npt.NDArray[np.intp]]:
+        """The coefficients in force at each parameter, how far behind their point, and which."""
+        place = np.minimum((u * self._count).astype(np.intp), self._count - 1)
+        return self._coefficients[:, place], (u - place / self._count)[:, None], place
 
 
 @lru_cache(maxsize=8)
