@@ -260,7 +260,9 @@ class _Making:
             for name, datum in library.data.items()
             if name.endswith(_DEFAULT)
         }
-        signatures = Signatures(self._enumerations(), self._type, values, self._places, self._types)
+        signatures = Signatures(
+            self._enumerations(), self._type, values, self._places, self._types, unknown
+        )
         before = dict(self._texts)
         for name in unknown:
             signatures.type(name, uses.types[name])

@@ -73,8 +73,8 @@ class Signatures:
 
     ``values`` are defaults by the names of their types, where zeros will not do; ``places`` are for
     points. ``types`` are the lines of new types, by name in upper case, also of those made before;
-    ``placed`` are the variables that have got places; ``owner`` is the file that alone has what
-    comes next.
+    ``named_types`` are those of them that files name, ``placed`` the variables that have got
+    places; ``owner`` is the file that alone has what comes next.
     """
 
     def __init__(
@@ -84,10 +84,11 @@ class Signatures:
         values: Mapping[str, str],
         places: Places,
         types: dict[str, str] | None = None,
+        named_types: Iterable[str] = (),
     ) -> None:
         self.types = {} if types is None else types
         self.owner = ""
-        self._named_types: set[str] = set()
+        self._named_types = frozenset(named_types)
         self.placed: set[str] = set()
         self._places = places
         self._values = values
@@ -132,7 +133,6 @@ class Signatures:
 
     def type(self, name: str, use: DataUse) -> None:
         """Declare a type that only its name is known of, from how its variables are used."""
-        self._named_types.add(name)
         if (use.constants or use.is_compared) and not use.members:  # no structure is compared
             constants = use.constants.values() or [_NO_CONSTANT]
             self.types[name] = f"GLOBAL ENUM {name} {','.join(constants)}"

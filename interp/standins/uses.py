@@ -14,7 +14,7 @@ from typing import Any
 from grammar.check.framework import Checked
 from grammar.semantics.link import Project
 from grammar.semantics.scopes import Found, Module
-from grammar.semantics.symbols import Kind, RoutineSymbol
+from grammar.semantics.symbols import Kind, RoutineSymbol, TypeReference
 from grammar.semantics.types import (
     BOOL,
     CHAR,
@@ -37,6 +37,9 @@ from support.lazy_dataclass import dataclass
 
 #: The folder that stand-ins seem to lie in; no file of a backup lies there.
 FOLDER = "<stand-in>"
+
+#: Members of members are looked at so far.
+_DEEPEST = 4
 
 _LOGICAL = frozenset({"AND", "OR", "EXOR"})
 _BITWISE = frozenset({"B_AND", "B_OR", "B_EXOR"})
@@ -90,6 +93,42 @@ class RoutineUse:
     arguments: list[list[tuple[Type, bool]]] = field(default_factory=list)
 
 
+class _Classes:
+    """Classes of uses that are of one type: so are then their members of one name."""
+
+    def __init__(self) -> None:
+        self._class: dict[int, list[DataUse]] = {}
+
+    def of(self, use: DataUse) -> list[DataUse]:
+        return self._class.setdefault(id(use), [use])
+
+    def unite(self, one: DataUse, other: DataUse) -> None:
+        todo = [(one, other)]
+        while todo:
+            larger, smaller = sorted(map(self.of, todo.pop()), key=len, reverse=True)
+            if larger is smaller:
+                continue
+            members = {name: use for each in larger for name, use in each.members.items()}
+            for each in smaller:
+                self._class[id(each)] = larger
+                shared = each.members.keys() & members.keys()
+                todo += [(members[name], each.members[name]) for name in sorted(shared)]
+                members = {**each.members, **members}
+            larger += smaller
+
+    def tell(self, use: DataUse, depth: int = 0) -> None:
+        """What is known of its class is known of a use."""
+        for other in self.of(use):
+            use.constants.update(other.constants)
+            use.types += [one for one in other.types if one not in use.types]
+            use.is_compared |= other.is_compared
+            use.is_text |= other.is_text
+            for name, member in other.members.items() if depth < _DEEPEST else ():
+                self.unite(use.members.setdefault(name, DataUse(is_part=True)), member)
+        for member in use.members.values() if depth < _DEEPEST else ():
+            self.tell(member, depth + 1)
+
+
 class Uses:
     """Gathers the uses of names that are wanted: ``data``, ``routines`` and ``types`` by name.
 
@@ -113,6 +152,7 @@ class Uses:
         self.routines: Mapping[str, RoutineUse] = {name: RoutineUse() for name in routines}
         self._checked: Checked | None = None
         self._result: Type = UNKNOWN
+        self._written_result: TypeReference | None = None
         self._statements: set[ast.Call] = set()
         self._numbers: set[tuple[ast.Binary, Type]] = set()
         #: What is of one type because it is assigned or compared.
@@ -131,22 +171,17 @@ class Uses:
         for routine in syntax.content.routines:
             found = checked.resolution.found(routine.name)
             self._result = UNKNOWN if found is None else self._project.types.of(found)
+            self._written_result = None if found is None else found.symbol.type
             self._counted.clear()
             self._look(routine)
 
     def settle(self) -> None:
-        """Types have the constants of all that is of them, once all files have been read."""
-        known = {id(one): dict(one.constants) for pair in self._alike for one in pair}
-        grows = True
-        while grows:
-            grows = False
-            for pair in self._alike:
-                one, other = (known[id(use)] for use in pair)
-                grows |= one.keys() != other.keys()
-                one.update(other)
-                other.update(one)
+        """Types have what is known of all that is of them, once all files have been read."""
+        classes = _Classes()
+        for one, other in self._alike:
+            classes.unite(one, other)
         for use in self.types.values():
-            use.constants.update(known.get(id(use), {}))
+            classes.tell(use)
 
     # ------------------------------------------------------------------------- statements
 
@@ -230,6 +265,7 @@ class Uses:
 
     def _return(self, node: ast.Return) -> None:
         if node.value is not None:
+            self._is_alike(node.value, self._written_result)
             self._expect(node.value, self._result)
 
     def _trigger(self, node: ast.Trigger) -> None:
@@ -322,6 +358,7 @@ class Uses:
         elif found is not None and isinstance(found.symbol, RoutineSymbol):
             for parameter, argument in zip(found.symbol.parameters, node.arguments, strict=False):
                 if argument is not None:
+                    self._is_alike(argument, parameter.type)
                     self._expect(argument, self._project.types.of(Found(parameter, found.scope)))
 
     def _is_undeclared(self, name: ast.Name) -> bool:
@@ -367,7 +404,9 @@ class Uses:
             case ast.Parenthesised(inner=inner):
                 return self._use(inner)
             case ast.Call(name=name):
-                use = self.routines.get(name.key) if self._is_undeclared(name) else None
+                if not self._is_undeclared(name):
+                    return self._use_of(name)
+                use = self.routines.get(name.key)
                 return None if use is None else use.result
             case ast.Member(base=base, name=name):
                 use_of_base = self._use(base)
@@ -405,6 +444,13 @@ class Uses:
             array = self._type(node.base)
             found = array.element if isinstance(array, Array) else UNKNOWN
         return found
+
+    def _is_alike(self, node: ast.Expression, written: TypeReference | None) -> None:
+        """An expression is of a type as it is written, which no file may declare."""
+        use = self._use(node)
+        type_ = self.types.get(written.key) if written is not None else None
+        if use is not None and type_ is not None:
+            self._alike.append((use, type_))
 
     def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
         """Both sides are of one type; no statement has whole arrays on its sides."""

@@ -232,6 +232,28 @@ def test_values_that_uses_tell(body: str, declared: str) -> None:
     assert {} == _run(program).controller.skipped
 
 
+def test_members_of_a_lost_type_have_the_types_of_all_its_variables() -> None:
+    """What is assigned, passed or returned as a type that no file has shares its members."""
+    program = _program(
+        {
+            "main.src": "DEF main ( )\nDECL PART NEW\nDECL KIND K\nNEW.SORT=#DOOR\nNEW.SIZE.W=2.5\n"
+            "ACTUAL=NEW\nK=ACTUAL.SORT\nuse (ACTUAL)\nNEW=made ( )\nEND\n",
+            "use.src": "DEF use (P:IN)\nDECL PART P\nDECL KIND K\nK=#LEAF\nIF P.SORT==K THEN\n"
+            "P.SIZE.H=1.5\nENDIF\nEND\n",
+            "made.src": "DEFFCT PART made ( )\nDECL PART P\nP=ACTUAL\nRETURN P\nENDFCT\n",
+        }
+    )
+    lines = _data_list(program).split("\n")
+    assert {"DOOR", "LEAF"} == set(_of(lines, "GLOBAL ENUM KIND ").split(","))
+    assert "KIND SORT" in _of(lines, "GLOBAL STRUC PART ")
+    assert {} == _run(program).controller.skipped
+
+
+def _of(lines: list[str], start: str) -> str:
+    """The rest of the line that begins so."""
+    return next(line for line in lines if line.startswith(start)).removeprefix(start)
+
+
 def test_same_name_elsewhere() -> None:
     """A name that another routine has for itself is no evidence for the undeclared one."""
     files = {
