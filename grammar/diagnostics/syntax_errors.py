@@ -28,6 +28,8 @@ MOST_TOLD = 1_000
 _LONGEST_TOKEN = 60
 # Nobody writes lines of so many characters, and going through one takes long.
 _FARTHEST = 20_000
+# So many words at the beginning of a line, and none of KRL, are prose.
+_PROSE = 3
 _HEADS = ("DEF", "DEFFCT", "DEFDAT")
 _TYPES = frozenset("INT REAL BOOL CHAR AXIS E6AXIS FRAME POS E6POS".split())
 _BEGINNING = re.compile(r"[$A-Z_]")
@@ -517,8 +519,27 @@ _CLOSING = ")]}.,([{"
 
 
 #: In this order: the first that knows the mistake reports it.
+def _folds(site: ErrorSite) -> _Mistake | None:
+    """A fold without its semicolon."""
+    if site.word(0) not in ("FOLD", "ENDFOLD"):
+        return None
+    word = site.tokens[0][0]
+    return _Mistake(f"; is missing before {word}", site.swap(f";{word}", 0), region=site.region(0))
+
+
+def _prose(site: ErrorSite) -> _Mistake | None:
+    """A line of words, none of which KRL knows."""
+    words = [token[0] for token in site.tokens]
+    begin = words[:_PROSE]
+    if len(begin) < _PROSE or not all(word.isalpha() and not _is_keyword(word) for word in begin):
+        return None
+    fix = site.swap(f"; {words[0]}", 0)
+    return _Mistake("a comment begins with a semicolon", fix, region=site.region(0))
+
+
 _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _blocks,
+    _folds,
     _foreign,
     _edits,
     _motions,
@@ -529,4 +550,5 @@ _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _declarations,
     _gaps,
     _names,
+    _prose,
 )

@@ -200,6 +200,7 @@ def test_arguments_left_out(agrees: Agrees, body: str, mark: str) -> None:
 def test_folds(agrees: Agrees) -> None:
     """Every fold is closed, and nothing is closed that is no fold."""
     agrees("DEF NEG()\n;FOLD A ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
+    agrees("DEF NEG()\n;FOLD A\nHALT\nENDFOLD (A) ;> KRL705? KRL102 KRL101\nEND")
     agrees("DEF NEG()\n;ENDFOLD ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
 
 

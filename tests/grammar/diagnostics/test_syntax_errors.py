@@ -30,6 +30,20 @@ def only(*lines: str, path: str = "A.src") -> Diagnostic:
     return found
 
 
+@pytest.mark.parametrize(
+    ("line", "message", "new"),
+    [
+        ("ENDFOLD (INI)x", "; is missing before ENDFOLD", ";ENDFOLD"),
+        ("FOLD INI;%{PE}", "; is missing before FOLD", ";FOLD"),
+        ("moves slowly home", "a comment begins with a semicolon", "; moves"),
+    ],
+)
+def test_a_comment_that_lost_its_sign(line: str, message: str, new: str) -> None:
+    """Words that cannot be read are told as what they were, not as a statement gone wrong."""
+    found = only(line)
+    assert (message, new) == (found.message, found.fix and found.fix.replacement)
+
+
 def mended(text: str, fix: Fix | None) -> str:
     """A text with a fix applied."""
     assert fix is not None
