@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import statistics
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any
 
 from grammar.notation.addresses import Address
@@ -31,8 +33,10 @@ from recovery.clustering.edit_trial import edited
 from recovery.clustering.negative_score import negative_counter
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.reproducer.reduce import Reducer
+from recovery.survey.result_cache import key_of
 from recovery.survey.survey import survey_texts
 from recovery.survey.unreserved_keywords import unreserved_keywords
+from support.files.result_store import ResultStore
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
 
@@ -264,20 +268,30 @@ def assess_all(
     chosen: Sequence[Mutant],
     *,
     jobs: int = 1,
+    cache: Path | None = None,
     on_done: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Assess mutants in ``jobs`` processes and gather the figures; see `assess`."""
-    assessments: list[Assessment] = []
-    if jobs == 1:
-        assessor = _Assessor(material)
-        for mutant in chosen:
-            assessments.append(assessor(mutant))
+    """Assess mutants in ``jobs`` processes and gather the figures; see `assess`.
+
+    Each assessment is kept in the folder ``cache``, so that a bench goes on where it ended.
+    """
+    found: dict[int, Assessment] = {}
+    with ResultStore(cache, f"mutants {key_of(material.grammar)}") as store:
+        given = _digest(material.shown, material.held_out, [n.text for n in material.negatives])
+        keys = [_digest(given, mutant.edits) for mutant in chosen]
+        for number, (mutant, key) in enumerate(zip(chosen, keys, strict=True)):
+            kept = store.get_record(key)
+            if kept is not None:
+                tokens = tuple(kept.pop("reproducer_tokens"))
+                found[number] = Assessment(mutant, reproducer_tokens=tokens, **kept)
+        on_done(len(found))
+        left = [number for number in range(len(chosen)) if number not in found]
+        for number, assessment in zip(left, _assessed(material, chosen, left, jobs), strict=True):
+            found[number] = assessment
+            record = {f.name: getattr(assessment, f.name) for f in fields(assessment)}
+            store.put([(keys[number], {n: v for n, v in record.items() if n != "mutant"})])
             on_done(1)
-    else:
-        with process_pool(jobs, _prepare, material) as pool:
-            for assessment in pool.map(_assess, chosen, chunksize=4):
-                assessments.append(assessment)
-                on_done(1)
+    assessments = [found[number] for number in range(len(chosen))]
     count = len(NegativeSet(material.negatives))
     return {
         **figures(assessments, count),
@@ -287,6 +301,20 @@ def assess_all(
         },
         "missed": [_missed(v, material.grammar) for v in assessments if v.repair_rank != 1],
     }
+
+
+def _assessed(
+    material: BenchMaterial, chosen: Sequence[Mutant], numbers: Sequence[int], jobs: int
+) -> Iterator[Assessment]:
+    if jobs == 1 and numbers:
+        yield from map(_Assessor(material), map(chosen.__getitem__, numbers))
+    elif numbers:
+        with process_pool(jobs, _prepare, material) as pool:
+            yield from pool.map(_assess, [chosen[number] for number in numbers])
+
+
+def _digest(*given: object) -> str:
+    return hashlib.sha256(repr(given).encode()).hexdigest()
 
 
 class _Assessor:

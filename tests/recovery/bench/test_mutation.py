@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -99,6 +100,24 @@ def test_the_tool_finds_its_way_back(every: list[Mutant]) -> None:
         **assess_all(material, wanted),
         "seconds_per_mutant": record["seconds_per_mutant"],
     } | {"by_kind": record["by_kind"]}
+
+
+def test_a_bench_goes_on_where_it_ended(
+    every: list[Mutant], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was assessed is kept, and not assessed again; another mutant is."""
+    material = BenchMaterial(SMALL, (("program", PROGRAMS[0]),), (), ())
+    first = assess_all(material, every[:2], cache=tmp_path)
+    asked: list[Mutant] = []
+
+    def counted(*given: Any) -> Assessment:
+        asked.append(given[0])
+        return assess(*given)
+
+    monkeypatch.setattr(assessment, "assess", counted)
+    assert first == assess_all(material, every[:2], cache=tmp_path)
+    assess_all(material, every[:3], cache=tmp_path)
+    assert every[2:3] == asked
 
 
 def test_several_parts_are_ranked_by_how_deep_a_person_looks(

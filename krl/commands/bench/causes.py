@@ -1,0 +1,62 @@
+"""`krl bench causes`: whether clusters are causes."""
+
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from krl.construct_ledger import expected_errors
+from krl.errors import FINE
+from krl.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.output_files import check_files, write_json
+from krl.progress import progress_bar
+from krl.text_table import figures
+
+_FIGURES = ("files", "clusters", "constructs", "clusters_per_construct", "purity")
+
+
+def causes(
+    paths: ProgramsArgument = None,
+    json_file: JsonOption = None,
+    halves: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Halves of the origins that are measured too.")
+    ] = 4,
+    seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
+) -> int:
+    """Hold the clusters of the restrictive start against the constructs that answer them.
+
+    Aims: 1.3 clusters for each construct, and no cluster for two (purity 1).
+    """
+    from pathlib import Path
+
+    from grammar.notation.g4 import read_file
+    from grammar.notation.generate import GRAMMAR
+    from recovery.bench.cause_agreement import measured
+    from recovery.ledger.ledger import Ledger, replay
+    from recovery.negatives.negatives import load
+    from recovery.survey.survey import survey
+
+    check_files(json_file)
+    roots = programs_or_ours(paths)
+    with expected_errors():
+        start = read_file(GRAMMAR.with_name("preliminary.g4"))
+        steps = replay(start, Ledger.read(GRAMMAR.with_name("constructs")).accepted)
+        negatives = load(Path("corpus", "negatives"))
+        found = survey(roots, start, jobs=1)
+    with progress_bar("measuring", halves + 2) as bar:
+        grammars = [start, *(grammar for _, grammar in steps)]
+        names = [f"{construct.id} {construct.title}" for construct, _ in steps]
+        rows = list(measured(found, grammars, names, negatives, halves, seed, bar))
+    write_json({"bench": "causes", "seed": seed, "parts": rows}, json_file, indent=1)
+    console = Console(highlight=False)
+    console.print(
+        figures(
+            ("failures of", *(name.replace("_", " ") for name in _FIGURES)),
+            [(row["part"], *(_plain(row[name]) for name in _FIGURES)) for row in rows],
+        )
+    )
+    return FINE
+
+
+def _plain(value: float | None) -> str:
+    return "–" if value is None else f"{value:g}"
