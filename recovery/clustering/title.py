@@ -35,17 +35,21 @@ class TitleWriter:
         bracket: str,
         others: Sequence[LinePattern] = (),
         best: Proposal | None = None,
+        missing: str = "",
     ) -> str:
         """A sentence without a full stop: ``INT without DECL`` or ``FOR with STEP``.
 
         ``bracket`` is the one open before the failing token, ``others`` all lines of the cause, and
-        ``best`` the proposal that mends the line, where there is one.
+        ``best`` the proposal that mends the line, where there is one; ``missing`` is a keyword that
+        is known to be left out.
         """
         kinds, index = line.form.kinds, line.form.index
         meant = dict(line.keywords)
         lead = self._keyword(line, 0)
         came = meant.get(index) or self._phrase(kinds[index])
-        missing = self._left_out(best) or self._omitted_keyword(line, context)
+        missing = missing or self._omitted_keyword(line, context)
+        if not missing and 0 not in meant:
+            missing = self._left_out(best)
         at_end = kinds[index] in self._ends
         if missing:
             subject = context.rule if index or at_end else came
@@ -54,6 +58,8 @@ class TitleWriter:
             followers = {self._keyword(other, 1) for other in others or (line,)}
             follower = followers.pop() if len(followers) == 1 else ""
             said = f"unknown keyword {lead}" + (f" before {follower}" if follower else "")
+        elif at_end and index == 1 and not lead:
+            said = f"{self._phrase(kinds[0])} alone on a line"
         elif at_end:
             what = f"{lead} line" if lead else came.removeprefix("the end of ")
             said = f"{what} ends{self._instead(context) or f' within {_spoken(context.rule)}'}"
@@ -131,7 +137,7 @@ class TitleWriter:
             return f"{lead} with {came}"
         if self._line_end in context.expected:
             return f"line goes on with {came}"
-        return f"{came} in {_spoken(context.rule)}"
+        return f"{self._phrase(before)} followed by {came}"
 
     def _instead(self, context: FailureContext) -> str:
         """What was wanted, where that is short enough to say."""

@@ -37,6 +37,8 @@ def cluster_of(*lines: str, closer: str = "END\n") -> Cluster:
         ("A=F(1,X[2,3])", "',' in '[]'"),
         ("PTP {A1 0}", "PTP with an integer in '{}' where ':' is expected"),
         ("?", "An unknown character begins a line"),
+        ("FOO", "A name alone on a line"),
+        ("A=B*+C", "'*' followed by '+'"),
     ],
 )
 def test_a_title_says_what_came_and_where(line: str, title: str) -> None:
