@@ -73,6 +73,21 @@ def test_growth_names_shapes_with_their_slopes(
     assert ["format", "blank lines", 3] == [row["entry"], row["shape"], len(row["costs"])]
 
 
+def test_growth_goes_on_from_its_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With a time to end at, what the record has is not measured again; no other file is one."""
+    target = tmp_path / "growth.json"
+    words = "bench growth --entry format --largest 32 --jobs 1 --shape".split()
+    row = {"entry": "format", "shape": "blank lines", "costs": []}
+    target.write_text(json.dumps({"rows": [row]}), encoding="utf-8")
+    again = [*words, "blank lines", "--json", str(target), "--minutes", "1"]
+    assert 2 == main(again)  # it says that the shape cannot be made
+    assert "nothing to measure" in capsys.readouterr().err
+    for text in ("[", "[1]", '{"rows": [1]}'):
+        target.write_text(text, encoding="utf-8")
+        assert 2 == main(again)
+        assert capsys.readouterr().err.endswith("no record of krl bench growth to go on from\n")
+
+
 def test_growth_leaves_out_what_cannot_be_made(capsys: pytest.CaptureFixture[str]) -> None:
     """No refusal is measured where a program does not compile whose code was to be read."""
     words = "bench growth --entry asm --largest 32 --jobs 1 --shape".split()

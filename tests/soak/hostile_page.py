@@ -133,7 +133,8 @@ def growth_section(rows: Sequence[Mapping[str, Any]]) -> str:
         "| command | shapes | median slope | steepest | its shape | memory above 1.15 |",
         "| --- | ---: | ---: | ---: | --- | ---: |",
     ]
-    for entry, of_entry in groupby(rows, key=itemgetter("entry")):
+    measured = [row for row in rows if row["costs"]]
+    for entry, of_entry in groupby(measured, key=itemgetter("entry")):
         several = list(of_entry)
         slopes = [_slope(row) for row in several]
         steepest = max(several, key=_slope)

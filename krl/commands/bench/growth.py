@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import sys
 import tempfile
+import time
 import zipfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from itertools import count
 from pathlib import Path
@@ -24,6 +27,7 @@ from krl.options import JobsOption, JsonOption, all_cores
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
+from support.files.untrusted import json_of, read_text
 
 if TYPE_CHECKING:
     from support.measure.growth import Growth
@@ -209,14 +213,23 @@ def growth(
     ] = 512,
     json_file: JsonOption = None,
     jobs: JobsOption = None,
+    minutes: Annotated[
+        float | None,
+        typer.Option(
+            min=0, metavar="N", help="Begin nothing after so long; --json FILE goes on next time."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="Draws the order.")] = 1,
 ) -> int:
     """Measure how CPU time and memory of each command grow with its input.
 
     Inputs of each shape have the sizes n, 2n and 4n, where n is what takes a fifth of a second. A
     slope is the exponent: 1 is linear, 2 quadratic, 0 nothing. Each is measured in a process of its
-    own. All of them take long: --entry and --shape choose some.
+    own. All of them take hours: --entry and --shape choose some, and with --minutes what FILE has
+    is not measured again.
     """
     check_files(json_file)
+    begun = time.monotonic()
     tasks = [
         (name, title)
         for name in _chosen("--entry", entry, _ENTRIES)
@@ -225,22 +238,43 @@ def growth(
     ]
     if not tasks:
         raise InputError(f"--shape {shape[0] if shape else ''}: no such shape")
-    rows: list[dict[str, Any]] = []
+    rows = _kept(json_file) if minutes is not None else []
+    known = {(row["entry"], row["shape"]) for row in rows}
+    tasks = [task for task in tasks if task not in known]
+    random.Random(seed).shuffle(tasks)
+
+    def one(task: tuple[str, str]) -> Growth | None:
+        if minutes is not None and time.monotonic() - begun > minutes * 60:
+            raise TimeoutError
+        return _isolated(*task, largest)
+
     with (
         progress_bar("measuring", len(tasks)) as advance,
         ThreadPoolExecutor(all_cores(jobs)) as threads,
+        suppress(TimeoutError),
     ):
-        waiting = [threads.submit(_isolated, *task, largest) for task in tasks]
-        for (name, title), one in zip(tasks, waiting, strict=True):
-            found = one.result()
-            if found is not None:
-                rows.append(_row(name, title, found))
+        for task, found in zip(tasks, threads.map(one, tasks), strict=True):
+            rows.append(_row(*task, found))
+            rows.sort(key=lambda row: (list(_ENTRIES).index(row["entry"]), row["shape"]))
+            write_json({"bench": "growth", "aim": _AIM, "rows": rows}, json_file, indent=1)
             advance()
-    if not rows:
+    measured = [row for row in rows if row["costs"]]
+    if not measured:
         raise InputError("nothing to measure: no such shape can be made for the command")
-    write_json({"bench": "growth", "aim": _AIM, "rows": rows}, json_file, indent=1)
-    _print(rows)
+    _print(measured)
     return FINE
+
+
+def _kept(record: Path | None) -> list[dict[str, Any]]:
+    """The rows of an earlier record."""
+    if record is None or not record.is_file():
+        return []
+    try:
+        known: Any = json_of(read_text(record))
+        rows = known["rows"]
+        return [row for row in rows if row["entry"] in _ENTRIES and row["shape"] and "costs" in row]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(f"{record}: no record of krl bench growth to go on from") from None
 
 
 def _chosen(option: str, wanted: list[str] | None, known: Mapping[str, object]) -> list[str]:
@@ -318,7 +352,10 @@ def _measure(entry: str, shape: str, largest: int) -> Growth | None:
             return None
 
 
-def _row(entry: str, shape: str, found: Growth) -> dict[str, Any]:
+def _row(entry: str, shape: str, found: Growth | None) -> dict[str, Any]:
+    """A row of the record; without costs where the shape cannot be made for the command."""
+    if found is None:
+        return {"entry": entry, "shape": shape, "costs": []}
     return {
         "entry": entry,
         "shape": shape,
