@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
-from itertools import takewhile
 
 from grammar.notation.model import (
     CharSet,
@@ -46,6 +45,8 @@ EOF = 0
 # memory starts afresh when point tables have filled it with numbers.
 _LONGEST_REMEMBERED = 48
 _MOST_REMEMBERED = 400_000
+# Python needs some 100 bytes for each comment of a row, to be able to go back: a row is cut here.
+_LONGEST_ROW = 50_000
 
 
 #: Place among the rules and kind: of two rules that match the same text the first one wins.
@@ -152,7 +153,10 @@ class Lexer:
                     self._leaves_out_skipped = True
                     # what follows matches anywhere, so nothing is tried again; possessive, a group
                     # that fails half-way loses its place in Python 3.11.2
-                    return re.compile(f"(?:{skip_pattern})*({token_pattern}|[\\s\\S]|\\Z)")
+                    return re.compile(
+                        f"(?:{skip_pattern}){{0,{_LONGEST_ROW}}}"
+                        f"({token_pattern}|(?={skip_pattern})|[\\s\\S]|\\Z)"
+                    )
         automaton = automaton_of(grammar, rules)
         everything = pattern_of(automaton)
         return re.compile(f"({everything}|[\\s\\S])") if everything else automaton
@@ -217,14 +221,16 @@ class Lexer:
         found: list[str] = self._pattern.findall(text)
         while found and not found[-1]:  # what is skipped at the end leads to no token
             found.pop()
+        if len(text) > _LONGEST_ROW and "" in found:  # a row that was cut
+            return list(filter(None, found))
         return found
 
     def offsets(self, text: str, start: int = 0) -> Iterator[int]:
         """Where each of the `lexemes` from ``start`` on begins in ``text``."""
         if isinstance(self._pattern, CharAutomaton):
             return (begin for begin, _ in _spans(self._pattern, text, start))
-        begins = (found.start(1) for found in self._pattern.finditer(text, start))
-        return takewhile(len(text).__gt__, begins)
+        matches = self._pattern.finditer(text, start)
+        return (found.start(1) for found in matches if found[1])
 
     def offsets_of_tokens(self, text: str) -> list[int]:
         """Where each token begins in ``text``."""

@@ -381,3 +381,15 @@ def test_the_corpus_has_the_tokens_of_antlr(corpus: Mapping[Path, str]) -> None:
 def test_nasty_text_has_the_tokens_of_antlr(text: str) -> None:
     """Both lexers agree where no program would ever go."""
     assert antlr_tokens(text) == until_error(tokens_of(lexer_of(GRAMMARS[0]), text))
+
+
+def test_a_row_of_skipped_texts_of_any_length(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many are skipped in a row, only tokens come, at their places."""
+    monkeypatch.setattr(grammar.parser.lexer, "_LONGEST_ROW", 3)
+    lexer = Lexer(
+        read("grammar G; file : X* EOF ; X : 'x' ; C : '//' -> skip ; S : [ \\t]+ -> skip ;")
+    )
+    for count in range(9):
+        text = f"x{'//' * count}x/{' //' * count}"
+        assert ["x", "x", "/"] == lexer.lexemes(text)
+        assert [0, 1 + 2 * count, 2 + 2 * count] == list(lexer.offsets(text))
