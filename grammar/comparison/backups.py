@@ -8,7 +8,7 @@ from itertools import takewhile
 from typing import Any
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText, content_of
-from grammar.comparison.matching import likest, line_matcher
+from grammar.comparison.matching import likest, line_operations
 from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change
 from grammar.comparison.renaming import names_in, renamed, renamings
 from grammar.syntax.source import Source
@@ -211,8 +211,7 @@ def _changed(old: _Placed, new: _Placed, is_same_file: bool) -> Record | None:
 def _hunks(old: RoutineText, new: RoutineText) -> Iterator[Record]:
     if old.signature != new.signature:
         yield _hunk([old.head], [new.head], old.head.number, new.head.number)
-    matcher = line_matcher(old.keys, new.keys)
-    for tag, first, last, start, end in matcher.get_opcodes():
+    for tag, first, last, start, end in line_operations(old.keys, new.keys):
         if tag != "equal":
             lines = old.body[first:last], new.body[start:end]
             yield _hunk(*lines, _line(old, first), _line(new, start))

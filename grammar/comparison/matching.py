@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
+from itertools import groupby
 from typing import TypeVar
 
 _K = TypeVar("_K", bound=Hashable)
@@ -18,12 +20,66 @@ _LONG = 5_000
 _MOST_PAIRS = 200_000
 
 
-def line_matcher(old: Sequence[str], new: Sequence[str]) -> SequenceMatcher[str]:
-    """Compares two lists of lines; in long ones lines that come up often are left aside."""
+#: ``equal``, ``replace``, ``delete`` or ``insert``; where that begins and ends in both lists.
+_Operation = tuple[str, int, int, int, int]
+
+
+def line_operations(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
+    """What makes one list of lines the other, as `SequenceMatcher.get_opcodes` says it.
+
+    In long lists lines that each has once are taken for the same, as many as are in order (patience
+    diff): comparison costs as much as there is between them. What comes up often is left aside.
+    """
+    anchors = _anchors(old, new) if len(old) + len(new) > _LONG else []
+    found: list[_Operation] = []
+    at = start = 0
+    for before, after in (*anchors, (len(old), len(new))):
+        for tag, first, last, begin, end in _exact(old[at:before], new[start:after]):
+            found.append((tag, at + first, at + last, start + begin, start + end))
+        at, start = before + 1, after + 1
+        found.append(("equal", before, at, after, start))
+    found.pop()  # what is no line, behind the last
+    return [_joined(list(ones)) for ones in _runs(found)]
+
+
+def _exact(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
+    if not old and not new:
+        return []
     one, other = Counter(old), Counter(new)
     pairs = sum(count * other[line] for line, count in one.items())
     is_long = len(old) + len(new) > _LONG or pairs > _MOST_PAIRS
-    return SequenceMatcher(None, old, new, autojunk=is_long)
+    return list(SequenceMatcher(None, old, new, autojunk=is_long).get_opcodes())
+
+
+def _anchors(old: Sequence[str], new: Sequence[str]) -> list[tuple[int, int]]:
+    """The places of lines that are once in each list, as many as come in the same order."""
+    one, other = Counter(old), Counter(new)
+    place = {line: number for number, line in enumerate(new) if other[line] == 1}
+    ends: list[int] = []  # the least place in the new list that so long a row can end at
+    last: list[int] = []  # that place in the old list
+    way: dict[int, int | None] = {}
+    for number, line in enumerate(old):
+        if one[line] == 1 and line in place:
+            length = bisect_left(ends, place[line])
+            ends[length : length + 1] = [place[line]]
+            last[length : length + 1] = [number]
+            way[number] = last[length - 1] if length else None
+    row = []
+    here = last[-1] if last else None
+    while here is not None:
+        row.append((here, place[old[here]]))
+        here = way[here]
+    return row[::-1]
+
+
+def _runs(found: Iterable[_Operation]) -> Iterator[Iterator[_Operation]]:
+    """Equal lines in one run, and each change by itself."""
+    return (run for _, run in groupby(found, key=lambda one: one[0] == "equal" or one))
+
+
+def _joined(ones: Sequence[_Operation]) -> _Operation:
+    tag, first, _, begin, _ = ones[0]
+    return tag, first, ones[-1][2], begin, ones[-1][4]
 
 
 def likest(

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText
-from grammar.comparison.matching import line_matcher
+from grammar.comparison.matching import line_operations
 
 _NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
 
@@ -56,7 +56,7 @@ def _votes(
     old: Sequence[str], new: Sequence[str], gone: set[str], come: set[str]
 ) -> Iterator[tuple[str, str]]:
     """Old and new name for each line that differs in names alone that are not in both states."""
-    for tag, first, last, start, end in line_matcher(old, new).get_opcodes():
+    for tag, first, last, start, end in line_operations(old, new):
         if tag != "replace" or last - first != end - start:
             continue
         for before, after in zip(old[first:last], new[start:end], strict=True):

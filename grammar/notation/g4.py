@@ -87,7 +87,7 @@ def read_file(path: Path) -> Grammar:
     return read(text, source=str(path))
 
 
-@lru_cache(maxsize=1 << 14)
+@lru_cache(maxsize=1 << 12)
 def read_rule(text: str) -> Rule:
     """Read one rule, without the checks that need the whole grammar; raises `GrammarError`."""
     return _rule(_parse(text, "rule", "rule"), text, 0, "rule")

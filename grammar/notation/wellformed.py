@@ -24,6 +24,9 @@ _RESERVED = frozenset(
     "private protected public returns throws tokens".split()
 )
 
+#: Patterns of Python are compiled by recursion, some frames for each level.
+_MOST_NESTED = 100
+
 
 def problem(grammar: Grammar) -> str | None:
     """What is wrong with a grammar, as its line and one line of text, or ``None``."""
@@ -45,12 +48,42 @@ def problem(grammar: Grammar) -> str | None:
         what = "recursive tokens" if cycle[0][0].isupper() else "left recursion"
         line = _line(grammar, names.index(cycle[0]))
         return f"{line}: {what} through {' → '.join(cycle)}"
+    deep = _too_deep(grammar)
+    if deep:
+        line = _line(grammar, names.index(deep))
+        return f"{line}: tokens within {deep} are nested more than {_MOST_NESTED} deep"
     finite = _rules_that_match(grammar, leaf=True)
     endless = next((name for name in names if name not in finite), None)
     if endless is None:
         return None
     line = _line(grammar, names.index(endless))
     return f"{line}: rule {endless} has no end: every alternative needs it again"
+
+
+def _too_deep(grammar: Grammar) -> str | None:
+    """A lexer rule whose fragments and brackets are nested too deeply, or ``None``."""
+    left = {rule.name: rule for rule in grammar.rules if rule.is_lexer}
+    refers = {n: {r for a in rule.alternatives for r in _referred(a)} for n, rule in left.items()}
+    depths: dict[str, int] = {}
+    while left:
+        for name in [name for name in left if not refers[name] & left.keys()]:
+            brackets = max(map(_brackets, left.pop(name).alternatives))
+            depths[name] = 1 + brackets + max(map(depths.__getitem__, refers[name]), default=0)
+            if depths[name] > _MOST_NESTED:
+                return name
+    return None
+
+
+def _brackets(alternative: Alternative) -> int:
+    """How deep brackets and repetitions lie within one another."""
+    inner = (
+        max(map(_brackets, element.alternatives))
+        if isinstance(element, Group)
+        else _brackets(Alternative((element.item,), None, element.span))
+        for element in alternative.elements
+        if isinstance(element, Group | Repeat)
+    )
+    return max((1 + depth for depth in inner), default=0)
 
 
 def _line(grammar: Grammar, index: int, offset: int = 0) -> int:

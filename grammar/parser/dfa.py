@@ -215,16 +215,20 @@ def overlap(left: Sequence[CharRange], right: Sequence[CharRange]) -> bool:
     return any(a <= d and c <= b for a, b in left for c, d in right)
 
 
+#: States in a row; each is a group in the one before, and Python compiles groups by recursion.
+_LONGEST_WAY = 150
+
+
 def pattern_of(automaton: CharAutomaton) -> str | None:
     """A pattern for ``re`` that matches the longest accepted text, never the empty one.
 
     ``None`` where the automaton has a cycle through more than one state: its longest match has no
-    such plain pattern.
+    such plain pattern; and where a way through it is longer than ``re`` can nest groups.
     """
     on_path: set[int] = set()
 
     def of(state: int, *, may_stop: bool) -> str | None:
-        if state in on_path:
+        if state in on_path or len(on_path) >= _LONGEST_WAY:
             return None
         on_path.add(state)
         loop, ways = "", []

@@ -217,7 +217,7 @@ def rule_automaton(grammar: Grammar, rule: Rule) -> RuleAutomaton:
     key = (rule.text, tuple(sorted(names.items())))
     found = _automata.get(key)
     if found is None:
-        if len(_automata) >= 20_000:
+        if len(_automata) >= 4_000:
             _automata.clear()
         found = _automata[key] = _build(rule, names)
     return found

@@ -149,10 +149,10 @@ class EditTrial:
     def wider(self, edits: Sequence[Edit]) -> Recognizer | None:
         """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
         key = tuple(edits)
-        if key not in self._wider:
-            self._forget_some()
-            self._wider[key] = edited(self.recognizer, edits)
-        return self._wider[key]
+        found = self._wider.pop(key) if key in self._wider else edited(self.recognizer, edits)
+        self._forget_some()
+        self._wider[key] = found  # the last used
+        return found
 
     def _forget_some(self) -> None:
         """Keep so many recognisers, and fewer where they are large: one may be as all others."""

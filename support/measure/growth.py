@@ -42,10 +42,12 @@ class Growth:
 
     @property
     def time_slope(self) -> float | None:
-        """The exponent of CPU time over size, from the first size to the last."""
+        """The exponent of CPU time over size, from the first size to the last; 0 for hardly any."""
         first, last = (
             max(cost.seconds - self.base.seconds, 1e-3) for cost in (self.costs[0], self.costs[-1])
         )
+        if last < _NOTICEABLE_S:
+            return 0.0
         return self._slope(last / first)
 
     @property

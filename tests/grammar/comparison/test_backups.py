@@ -2,14 +2,17 @@
 
 import math
 import re
+from itertools import pairwise
+from random import Random
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grammar.comparison import matching
 from grammar.comparison.backups import compare
-from grammar.comparison.matching import line_matcher
+from grammar.comparison.matching import line_operations
 from grammar.syntax.source import Source
 
 MAIN = """&ACCESS RVP
@@ -188,5 +191,28 @@ def test_damaged_files_are_compared_all_the_same(text: str) -> None:
 def test_lines_that_come_up_again_and_again_are_left_aside() -> None:
     """What recurs hundreds of times is not looked for behind a changed line; what is rarer is."""
     like = ["IF B THEN", "ENDIF"]
-    found = [line_matcher(["A", *like * n], ["B", *like * n]).get_opcodes() for n in (200, 400)]
+    found = [line_operations(["A", *like * n], ["B", *like * n]) for n in (200, 400)]
     assert [["replace", "equal"], ["replace"]] == [[one[0] for one in codes] for codes in found]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_long_lists_are_compared_between_lines_that_are_there_once(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The operations cover both lists in order, make one the other, and no two equal ones touch."""
+    monkeypatch.setattr(matching, "_LONG", 10)
+    chance = Random(seed)
+    old = [f"L{chance.randrange(90)}" for _ in range(60)]
+    new = [line for line in old if chance.random() < 0.8]
+    for _ in range(5):
+        new.insert(chance.randrange(len(new)), f"L{chance.randrange(90)}")
+    new[5:5] = [new.pop() for _ in range(4)]
+    found = line_operations(old, new)
+    assert [0, *(one[2] for one in found)] == [*(one[1] for one in found), len(old)]
+    assert [0, *(one[4] for one in found)] == [*(one[3] for one in found), len(new)]
+    tags = [one[0] for one in found]
+    assert ("equal", "equal") not in pairwise(tags)
+    for tag, first, last, start, end in found:
+        assert (tag == "equal") == (old[first:last] == new[start:end])
+    kept = sum(last - first for tag, first, last, _, _ in found if tag == "equal")
+    assert kept >= len(old) // 2

@@ -293,6 +293,13 @@ def test_exchanging_a_rule() -> None:
             2,
             "rule s: brackets or ~ are nested more than 100 deep",
         ),
+        (
+            "s : A0 ;\n"
+            + "\n".join(f"A{n} : 'a' A{n + 1}? ;" for n in range(60))
+            + "\nA60 : 'b' ;",
+            13,
+            "tokens within A10 are nested more than 100 deep",
+        ),
     ],
 )
 def test_what_is_not_of_our_style_is_refused(rules: str, line: int, message: str) -> None:
