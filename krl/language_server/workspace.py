@@ -229,6 +229,8 @@ class OpenProject:
         """
         linked = self._projects()
         for project in dict.fromkeys(project for project, _ in linked.values()):
+            if self._linked is not linked:
+                return
             files = [self._files[module.path] for module in project.modules]
             needed = needs_of(project, [one.given for one in files])
             for known, module, needs in zip(files, project.modules, needed, strict=True):
