@@ -174,10 +174,12 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
 
     by_name: dict[str, list[Found]] = {}
     todo = [asked]
+    folder = PurePosixPath(asked.path).parent
     for one in found:
-        name = PurePosixPath(one.path).name.upper()
-        by_name.setdefault(name.rpartition(".")[0], []).append(one)
-        todo += [one] if name.startswith("$") or name.endswith(".SUB") else []
+        path = PurePosixPath(one.path)
+        by_name.setdefault(path.stem.upper(), []).append(one)
+        if path.name.startswith("$") or path.suffix.lower() == ".sub":
+            todo += [one] if path.parent == folder or _is_in_drive(one.path) else []
     todo += by_name[PurePosixPath(asked.path).stem.upper()]
     named: dict[Found, None] = {}
     while todo:

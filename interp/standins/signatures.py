@@ -5,7 +5,8 @@ they have none, and returns a default. The defaults are those with which a progr
 a function that tells whether something has worked, but what ends a loop where one asks for it, as
 for a truth value that nothing assigns; 0 for a function's numbers; for a number that nothing
 assigns the first that a SWITCH asks for, else 1; for a point a place of its own that the arm
-reaches. What is only waited for, and never assigned, is an input.
+reaches. What is only waited for, and never assigned, is an input; what
+PULSE sets is an output.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ _ELEMENTS: Final = {1: 32, 2: 8, 3: 4}
 _MOST_ELEMENTS: Final = 4096
 #: More elements than these get no value.
 _MOST_VALUES: Final = 256
-_FIRST_INPUT: Final = 1024
+_FIRST_SIGNAL: Final = 1024
 _LONGEST: Final = 20
 #: Of a structure of arrays, whose elements nothing sets: it cannot be written.
 _NOTHING: Final = "{}"
@@ -94,7 +95,7 @@ class Signatures:
         self._values = values
         self._enumerations = list(enumerations)
         self._find_type = find_type
-        self._input = _FIRST_INPUT
+        self._signal = _FIRST_SIGNAL
 
     # ------------------------------------------------------------------------- data
 
@@ -107,9 +108,11 @@ class Signatures:
         if kind is None and not is_last:
             return []
         kind = kind or self._number(use)
-        if kind.name == "BOOL" and use.is_waited_for and not use.is_assigned and not use.indices:
-            self._input -= 1
-            return [f"{access}SIGNAL {name} $IN[{self._input + 1}]"]
+        is_input = use.is_waited_for and not use.is_assigned
+        if kind.name == "BOOL" and (use.is_pulsed or is_input) and not use.indices:
+            self._signal -= 1
+            place = "OUT" if use.is_pulsed else "IN"
+            return [f"{access}SIGNAL {name} ${place}[{self._signal + 1}]"]
         if kind.is_text and use.indices <= 1:
             return [f"DECL {access}CHAR {name}[{_TEXT_LENGTH}]", f'{name}[]=" "']
         if not use.indices:

@@ -54,9 +54,10 @@ class DataUse:
     indices at once, 0 where there is none, and ``largest`` the largest number in each place, also
     that of a loop's counter.
     ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
-    kinds of motions that go to it. ``is_index``: an array has it as an index; ``is_part``: it is a
-    member; ``is_compared``: it is asked whether it is another value. ``asked_for`` is the first
-    number that a SWITCH or a comparison asks for, ``left_by`` the truth value that ends a loop.
+    kinds of motions that go to it. ``is_pulsed``: PULSE sets it; ``is_index``: an array has it as
+    an index; ``is_part``: it is a member; ``is_compared``: it is asked whether it is another value.
+    ``asked_for`` is the first number that a SWITCH or a comparison asks for, ``left_by`` the truth
+    value that ends a loop.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -68,6 +69,7 @@ class DataUse:
     is_text: bool = False
     is_assigned: bool = False
     is_waited_for: bool = False
+    is_pulsed: bool = False
     left_by: bool | None = None
     is_index: bool = False
     is_part: bool = False
@@ -356,6 +358,10 @@ class Uses:
                         self._expect(argument, type_)
                     use.arguments[place].append((type_, self._is_variable(argument)))
         elif found is not None and isinstance(found.symbol, RoutineSymbol):
+            for output in node.arguments[:1] if node.name.key == "PULSE" else ():
+                pulsed = None if output is None else self._use(output)
+                if pulsed is not None:
+                    pulsed.is_pulsed = True
             for parameter, argument in zip(found.symbol.parameters, node.arguments, strict=False):
                 if argument is not None:
                     self._is_alike(argument, parameter.type)

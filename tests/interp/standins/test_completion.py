@@ -219,6 +219,7 @@ def test_input_that_is_waited_for() -> None:
         ("REPEAT\nGO ( )\nUNTIL (READY) OR NOT LATE ( )\n", "BOOL READY=TRUE"),
         ("WHILE NOT READY\nGO ( )\nENDWHILE\n", "BOOL READY=TRUE"),
         ("WHILE BUSY==TRUE\nGO ( )\nENDWHILE\n", "BOOL BUSY=FALSE"),
+        ("LAMP=FALSE\nPULSE(LAMP,TRUE,0.2)\n", "SIGNAL LAMP $OUT[1024]"),
         ("B=BASE_DATA[3]\n", "FRAME B={X 0.0"),
         ("WHERE=TARGET\nIF WHERE==#LEFT THEN\nENDIF\n", "ENUM KIND LEFT"),
         ("IF TARGET<>TARGET THEN\nENDIF\n", "ENUM KIND NOT_KNOWN"),
@@ -226,7 +227,7 @@ def test_input_that_is_waited_for() -> None:
     ],
 )
 def test_values_that_uses_tell(body: str, declared: str) -> None:
-    """Loops end, states have one type with all their constants, structures their written parts."""
+    """Loops end, PULSE has an output, states have one type, structures their written parts."""
     program = _main(body, declared="DECL KIND TARGET\n")
     assert f"GLOBAL {declared}" in _data_list(program)
     assert {} == _run(program).controller.skipped
