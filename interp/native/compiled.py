@@ -129,11 +129,11 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
     deferred = set[int]().union(*(routine.deferred for routine in routines.values()))
     yield '#include "compiled.h"'
     yield "static const struct krl_array arrays[] = {"
-    for base, width, dimensions, *sizes in arrays or [(0, 0, 0, 1, 1, 1)]:
-        yield f"{{{base}, {width}, {dimensions}, {{{', '.join(map(str, sizes))}}}}},"
+    for base, width, dimensions, *sizes, third in arrays or [(0, 0, 0, 1, 1, 1, 0)]:
+        yield f"{{{base}, {width}, {dimensions}, {{{', '.join(map(str, sizes))}}}, {third}}},"
     yield "};"
     yield "static const struct krl_step steps[] = {"
-    for place, (name, a, b, c, d, tag, line) in enumerate(steps):
+    for place, (name, a, b, c, d, tag, line, _) in enumerate(steps):
         words = ", ".join(map(_int, (a, b, c, d, line)))
         yield f"{{0, {words}, KRL_STEP_{name}, {int(place in deferred) or tag}}},"
     yield "};"

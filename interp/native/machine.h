@@ -25,6 +25,7 @@ struct krl_array {
     int32_t width;
     int32_t dimensions;
     int32_t sizes[KRL_MOST_DIMENSIONS];
+    int32_t third; /* the register of the third index */
 };
 
 /* A code object made ready. */

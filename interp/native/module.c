@@ -338,8 +338,9 @@ static PyObject *core_steps(PyObject *self, PyObject *Py_UNUSED(ignored))
     for (int32_t i = 0; found != NULL && i < machine->step_count; i++) {
         const struct krl_step *step = &machine->steps[i];
         int32_t d = KRL_IS_JUMP(step->op) ? i + step->d / (int32_t)sizeof *step : step->d;
-        PyObject *one = Py_BuildValue("siiiiii", step_names[step->op], (int)step->a, (int)step->b, (int)step->c,
-                                      (int)d, (int)step->tag, (int)step->statement);
+        int32_t e = KRL_IS_THREE(step->op) ? machine->arrays[step->c].third : step->c + 1;
+        PyObject *one = Py_BuildValue("siiiiiii", step_names[step->op], (int)step->a, (int)step->b, (int)step->c,
+                                      (int)d, (int)step->tag, (int)step->statement, (int)e);
         if (one == NULL || PyList_SetItem(found, i, one) < 0)
             Py_CLEAR(found);
     }
@@ -353,8 +354,9 @@ static PyObject *core_arrays(PyObject *self, PyObject *Py_UNUSED(ignored))
     PyObject *found = PyList_New(machine->array_count);
     for (int32_t i = 0; found != NULL && i < machine->array_count; i++) {
         const struct krl_array *array = &machine->arrays[i];
-        PyObject *one = Py_BuildValue("iiiiii", (int)array->base, (int)array->width, (int)array->dimensions,
-                                      (int)array->sizes[0], (int)array->sizes[1], (int)array->sizes[2]);
+        PyObject *one = Py_BuildValue("iiiiiii", (int)array->base, (int)array->width, (int)array->dimensions,
+                                      (int)array->sizes[0], (int)array->sizes[1], (int)array->sizes[2],
+                                      (int)array->third);
         if (one == NULL || PyList_SetItem(found, i, one) < 0)
             Py_CLEAR(found);
     }
@@ -401,8 +403,8 @@ static PyMethodDef core_methods[] = {
     {"close_frame", core_close, METH_NOARGS, "close_frame(): back to the frame before."},
     {"call", core_call, METH_VARARGS, "call(number): code, first cell, statement, serial of an open call."},
     {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): its first cell, or None."},
-    {"steps", core_steps, METH_NOARGS, "steps(): name, a, b, c, d, tag and LINE of each step."},
-    {"arrays", core_arrays, METH_NOARGS, "arrays(): base, width, dimensions, three sizes of each."},
+    {"steps", core_steps, METH_NOARGS, "steps(): name, a, b, c, d, tag, LINE and e of each step."},
+    {"arrays", core_arrays, METH_NOARGS, "arrays(): base, width, dimensions, three sizes, register of the third index of each."},
     {"load", core_load, METH_VARARGS, "load(library): run what was compiled from these steps."},
     {NULL, NULL, 0, NULL},
 };

@@ -51,9 +51,13 @@
     X(INDEX_TWO_LOCAL) X(INDEX_TWO_DATA) /* the same with two indices, b and d, array c */         \
     X(GET_TWO_LOCAL) X(GET_TWO_DATA)                                                               \
     X(PUT_TWO_LOCAL) X(PUT_TWO_DATA)                                                               \
-    X(INDEX_THREE_LOCAL) X(INDEX_THREE_DATA) /* a the address of an element, three indices from b on, array c */ \
+    X(INDEX_THREE_LOCAL) X(INDEX_THREE_DATA) /* the same with three, the third in a register that array c names */ \
+    X(GET_THREE_LOCAL) X(GET_THREE_DATA)                                                           \
+    X(PUT_THREE_LOCAL) X(PUT_THREE_DATA)                                                           \
     X(INDEX_ANY)      /* the address a of array c, then its indices; a the address of the element */ \
     X(INDEX_VIEW)     /* a the address of element b of view c, d cells each */                     \
+    X(INDEX_VIEW_TWO) /* the same with two indices, b and d, tag cells each */                     \
+    X(GET_VIEW) X(GET_VIEW_TWO) /* a from the element */                                           \
     X(INDEX_VIEW_ANY) /* a and its indices, view c, d cells each, tag dimensions */                \
     X(ROW)            /* the address a, then b indices, array c */                                 \
     X(ROW_VIEW)       /* a and its b indices, view c, d cells each, tag dimensions */              \
@@ -91,6 +95,7 @@ enum krl_step_op {
     KRL_STEP_COUNT
 };
 
+#define KRL_IS_THREE(op) ((op) >= KRL_STEP_INDEX_THREE_LOCAL && (op) <= KRL_STEP_PUT_THREE_DATA)
 #define KRL_IS_JUMP(op) ((op) <= KRL_STEP_TEXT)
 #define KRL_IS_RELATION(op) ((op) >= KRL_STEP_EQ_INT && (op) <= KRL_STEP_GE_REAL_K)
 

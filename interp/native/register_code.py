@@ -13,8 +13,8 @@ CALLS: Final = ("CALL", "CALL_COPY")
 #: Behind these the next step does not follow.
 ENDS: Final = ("JUMP", "RETURN", "RETURN_VALUE", "END_ACTION", "FAIL")
 #: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
-#: one behind ``c``, ``f`` and ``g`` are those behind ``b``. What is not listed works on cells that
-#: lie one behind the other.
+#: third index, or the one behind ``c``, ``f`` the next behind ``c``. What is not listed works on
+#: cells that lie one behind the other.
 _ROLES: Final = {
     ("", ""): "JUMP NOP FAIL PUT_DATA_K REMEMBER_LOCAL REMEMBER_DATA CHECK_CALL",
     ("", "a"): "SET_K GET_DATA REFER",
@@ -29,13 +29,15 @@ _ROLES: Final = {
     "NOT_BOOL INT_TO_REAL REAL_TO_INT INT_TO_CHAR",
     ("bc", "a"): "FUNCTION",
     ("bd", "a"): "INDEX_TWO_LOCAL INDEX_TWO_DATA GET_TWO_LOCAL GET_TWO_DATA",
-    ("bce", "a"): "INDEX_VIEW",
+    ("bce", "a"): "INDEX_VIEW GET_VIEW",
+    ("bcdef", "a"): "INDEX_VIEW_TWO GET_VIEW_TWO",
     (
         "ab",
         "",
     ): "STORE COPY FILL_POSE INVERT PUT_LOCAL PUT_ELEMENT_DATA PUT_WIDE_LOCAL PUT_WIDE_DATA",
     ("ab", "a"): "FOR_UP FOR_DOWN",
-    ("bfg", "a"): "INDEX_THREE_LOCAL INDEX_THREE_DATA",
+    ("bde", "a"): "INDEX_THREE_LOCAL INDEX_THREE_DATA GET_THREE_LOCAL GET_THREE_DATA",
+    ("abde", ""): "PUT_THREE_LOCAL PUT_THREE_DATA",
     ("abc", ""): "COMPOSE",
     ("abd", ""): "PUT_TWO_LOCAL PUT_TWO_DATA",
 }
@@ -55,7 +57,10 @@ def roles_of(name: str) -> tuple[str, str] | None:
 
 
 class Step(NamedTuple):
-    """A step as `Core.steps` gives it; ``line`` is the place of the LINE that it begins, or -1."""
+    """A step as `Core.steps` gives it; ``line`` is the place of the LINE that it begins, or -1.
+
+    ``e`` is the register of a third index, else the one behind ``c``.
+    """
 
     name: str
     a: int
@@ -64,6 +69,7 @@ class Step(NamedTuple):
     d: int
     tag: int
     line: int
+    e: int
 
     @property
     def is_jump(self) -> bool:
@@ -71,12 +77,8 @@ class Step(NamedTuple):
         return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_", "TEXT"))
 
     def named(self, operands: str) -> set[int]:
-        """The numbers of registers by their letters.
-
-        ``e`` is the one behind ``c``; ``f`` and ``g`` are the two behind ``b``.
-        """
-        values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d}
-        values |= {"e": self.c + 1, "f": self.b + 1, "g": self.b + 2}
+        """The numbers of registers by their letters; ``f`` is the second one behind ``c``."""
+        values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d, "e": self.e, "f": self.c + 2}
         return {values[one] for one in operands}
 
     def registers(self) -> set[int]:

@@ -207,6 +207,20 @@ static inline int rounds(float number, int32_t *result)
         (base)[place] = CELL_OF(value);                                                            \
         NEXT();                                                                                    \
     }
+#define VIEW_STEPS(suffix, find)                                                                   \
+    STEP(INDEX_##suffix)                                                                           \
+    {                                                                                              \
+        find;                                                                                      \
+        A = OF_INT(place);                                                                         \
+        NEXT();                                                                                    \
+    }                                                                                              \
+    STEP(GET_##suffix)                                                                             \
+    {                                                                                              \
+        find;                                                                                      \
+        READ_CELL(found, cells[(uint32_t)place]);                                                  \
+        A = found;                                                                                 \
+        NEXT();                                                                                    \
+    }
 /* Indices count from 1; as numbers without sign, 0 and negative ones are too large. */
 #define FIND_ONE                                                                                   \
     READ(index, B);                                                                                \
@@ -231,14 +245,30 @@ static inline int rounds(float number, int32_t *result)
 #define FIND_THREE                                                                                 \
     const struct krl_array *array = KRL_ARRAY(pc->c);                                              \
     READ(first, B);                                                                                \
-    READ(second, REGISTER(pc->b + 1));                                                             \
-    READ(third, REGISTER(pc->b + 2));                                                              \
+    READ(second, D);                                                                               \
+    READ(third, REGISTER(array->third));                                                           \
     uint32_t number = (uint32_t)INT(first) - 1, behind = (uint32_t)INT(second) - 1, last = (uint32_t)INT(third) - 1; \
     FAULT_IF(number >= (uint32_t)array->sizes[0] || behind >= (uint32_t)array->sizes[1] ||         \
                  last >= (uint32_t)array->sizes[2],                                                \
              INDEX);                                                                               \
     uint32_t row = number * (uint32_t)array->sizes[1] + behind;                                    \
     uint32_t place = (uint32_t)array->base + (row * (uint32_t)array->sizes[2] + last) * (uint32_t)array->width
+
+/* An element of a view: its address. */
+#define FIND_IN_VIEW                                                                               \
+    READ(index, B);                                                                                \
+    READ(base, C);                                                                                 \
+    uint32_t number = (uint32_t)INT(index) - 1;                                                    \
+    FAULT_IF(number >= (uint32_t)INT(REGISTER(pc->c + 1)), INDEX);                                 \
+    int32_t place = INT(base) + (int32_t)number * pc->d
+#define FIND_TWO_IN_VIEW                                                                           \
+    READ(index, B);                                                                                \
+    READ(other, D);                                                                                \
+    READ(base, C);                                                                                 \
+    uint32_t number = (uint32_t)INT(index) - 1, behind = (uint32_t)INT(other) - 1;                 \
+    uint32_t columns = (uint32_t)INT(REGISTER(pc->c + 2));                                         \
+    FAULT_IF(number >= (uint32_t)INT(REGISTER(pc->c + 1)) || behind >= columns, INDEX);            \
+    int32_t place = INT(base) + (int32_t)(number * columns + behind) * pc->tag
 
 /* ---- where to go on */
 STEP(JUMP)
@@ -375,6 +405,8 @@ ELEMENT_STEPS(GET_WIDE_LOCAL, PUT_WIDE_LOCAL, fp, FIND_WIDE)
 ELEMENT_STEPS(GET_WIDE_DATA, PUT_WIDE_DATA, cells, FIND_WIDE)
 ELEMENT_STEPS(GET_TWO_LOCAL, PUT_TWO_LOCAL, fp, FIND_TWO)
 ELEMENT_STEPS(GET_TWO_DATA, PUT_TWO_DATA, cells, FIND_TWO)
+ELEMENT_STEPS(GET_THREE_LOCAL, PUT_THREE_LOCAL, fp, FIND_THREE)
+ELEMENT_STEPS(GET_THREE_DATA, PUT_THREE_DATA, cells, FIND_THREE)
 STEP(PUT_LOCAL_K)
 {
     FIND_ONE;
@@ -398,15 +430,8 @@ STEP(INDEX_ANY)
     NEXT();
 }
 
-STEP(INDEX_VIEW)
-{
-    READ(index, B);
-    READ(base, C);
-    uint32_t number = (uint32_t)INT(index) - 1;
-    FAULT_IF(number >= (uint32_t)INT(REGISTER(pc->c + 1)), INDEX);
-    A = OF_INT(INT(base) + (int32_t)number * pc->d);
-    NEXT();
-}
+VIEW_STEPS(VIEW, FIND_IN_VIEW)
+VIEW_STEPS(VIEW_TWO, FIND_TWO_IN_VIEW)
 
 STEP(INDEX_VIEW_ANY)
 {

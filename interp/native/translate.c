@@ -199,6 +199,19 @@ static void instruction(struct translator *at, int32_t place)
 
 /* ---------------------------------------------------------------------------- code objects */
 
+/* A jump to what comes next is no step. */
+static void drop_jump(struct translator *at, int32_t target)
+{
+    int32_t *steps = at->routine->steps;
+    const struct krl_step *last = &at->steps[at->count - 1];
+    if (at->is_wrong || at->count <= steps[0] || last->op != KRL_STEP_JUMP || last->d != target || last->statement >= 0)
+        return;
+    at->count--;
+    for (int32_t place = target - 1; place >= 0 && (steps[place] < 0 || steps[place] > at->count); place--)
+        if (steps[place] > at->count)
+            steps[place] = at->count;
+}
+
 static void code(struct translator *at)
 {
     const struct krl_code *code = at->code;
@@ -216,6 +229,7 @@ static void code(struct translator *at)
                 if (at->line >= 0)
                     krl_emit(at, KRL_STEP_NOP);
             }
+            drop_jump(at, place);
             at->height = 0;
             krl_push_places(at, code->depths[place]);
             at->line = at->result = -1;

@@ -21,7 +21,12 @@ void krl_load(struct translator *at)
         break;
     }
     default:
-        krl_unary(at, KRL_STEP_LOAD);
+        if (krl_is_fresh(at, at->height - 1) && at->steps[at->result].op == KRL_STEP_INDEX_VIEW)
+            at->steps[at->result].op = KRL_STEP_GET_VIEW;
+        else if (krl_is_fresh(at, at->height - 1) && at->steps[at->result].op == KRL_STEP_INDEX_VIEW_TWO)
+            at->steps[at->result].op = KRL_STEP_GET_VIEW_TWO;
+        else
+            krl_unary(at, KRL_STEP_LOAD);
         return;
     }
     krl_push_result(at);
@@ -144,25 +149,17 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
             krl_push_constant(at, KRL_TAG_INT, base + known);
         return;
     }
-    int32_t number = krl_add_array(at, array);
-    if (array.dimensions > 2) {
-        krl_secure(at, first);
-        for (int32_t i = first; i < at->height; i++)
-            krl_settle(at, i);
-        struct krl_step *step = krl_emit(at, is_local ? KRL_STEP_INDEX_THREE_LOCAL : KRL_STEP_INDEX_THREE_DATA);
-        step->b = krl_place_of(at, first);
-        step->c = number;
-        at->height = first;
-        krl_push_result(at);
-        return;
-    }
-    struct virtual_value item = {ELEMENT, krl_operand(at, first), 0, number, 0, (uint16_t)(is_local != 0)};
-    if (array.dimensions == 2)
+    struct virtual_value item = {ELEMENT, krl_operand(at, first), 0, 0, 0, (uint16_t)(is_local != 0)};
+    if (array.dimensions > 1)
         item.b = krl_operand(at, first + 1);
+    if (array.dimensions > 2)
+        array.third = krl_operand(at, first + 2);
+    item.array = krl_add_array(at, array);
     at->height = first;
     krl_push(at, item);
     /* An index in a place that is no longer the stack's would not stay; the trace needs addresses. */
-    if ((array.dimensions == 2 && item.b >= at->code->frame) || at->machine->told & KRL_TOLD_ASSIGN) {
+    int is_above = item.b >= at->code->frame || array.third >= at->code->frame;
+    if ((array.dimensions > 1 && is_above) || at->machine->told & KRL_TOLD_ASSIGN) {
         krl_secure(at, first);
         krl_settle(at, first);
     }
@@ -172,14 +169,17 @@ void krl_view_index(struct translator *at, int32_t place)
 {
     const struct krl_slot *slot = krl_slot_at(at->code, place);
     int32_t width = at->program->types[slot->handed.type].size, dimensions = slot->handed.dimensions;
+    int32_t first = at->height - dimensions;
     struct krl_step *step;
-    if (dimensions == 1) {
-        krl_secure(at, at->height - 1);
-        int32_t b = krl_operand(at, --at->height);
-        step = krl_emit(at, KRL_STEP_INDEX_VIEW);
+    if (dimensions == 1 || (dimensions == 2 && width <= UINT16_MAX)) {
+        krl_secure(at, first);
+        int32_t b = krl_operand(at, first), d = dimensions == 2 ? krl_operand(at, first + 1) : width;
+        step = krl_emit(at, dimensions == 2 ? KRL_STEP_INDEX_VIEW_TWO : KRL_STEP_INDEX_VIEW);
         step->b = b;
         step->c = place;
-        step->d = width;
+        step->d = d;
+        step->tag = (uint16_t)width;
+        at->height = first;
         krl_push_result(at);
         return;
     }

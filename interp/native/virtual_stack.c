@@ -54,7 +54,7 @@ int32_t krl_add_array(struct translator *at, struct krl_array array)
 struct krl_array krl_array_of(const struct translator *at, int32_t base, int32_t number)
 {
     const struct krl_type *type = &at->program->types[number];
-    struct krl_array array = {base, at->program->types[type->element].size, type->count, {1, 1, 1}};
+    struct krl_array array = {base, at->program->types[type->element].size, type->count, {1, 1, 1}, 0};
     for (int32_t i = 0; i < type->count; i++)
         array.sizes[i] = type->sizes[i];
     return array;
@@ -65,19 +65,22 @@ struct krl_array krl_array_of(const struct translator *at, int32_t base, int32_t
 struct krl_step *krl_reach(struct translator *at, enum access access, const struct virtual_value *element,
                            int32_t a)
 {
-    static const uint16_t steps[3][3][2] = {
+    static const uint16_t steps[3][4][2] = {
         {{KRL_STEP_INDEX_DATA, KRL_STEP_INDEX_LOCAL},
          {KRL_STEP_INDEX_WIDE_DATA, KRL_STEP_INDEX_WIDE_LOCAL},
-         {KRL_STEP_INDEX_TWO_DATA, KRL_STEP_INDEX_TWO_LOCAL}},
+         {KRL_STEP_INDEX_TWO_DATA, KRL_STEP_INDEX_TWO_LOCAL},
+         {KRL_STEP_INDEX_THREE_DATA, KRL_STEP_INDEX_THREE_LOCAL}},
         {{KRL_STEP_GET_ELEMENT_DATA, KRL_STEP_GET_LOCAL},
          {KRL_STEP_GET_WIDE_DATA, KRL_STEP_GET_WIDE_LOCAL},
-         {KRL_STEP_GET_TWO_DATA, KRL_STEP_GET_TWO_LOCAL}},
+         {KRL_STEP_GET_TWO_DATA, KRL_STEP_GET_TWO_LOCAL},
+         {KRL_STEP_GET_THREE_DATA, KRL_STEP_GET_THREE_LOCAL}},
         {{KRL_STEP_PUT_ELEMENT_DATA, KRL_STEP_PUT_LOCAL},
          {KRL_STEP_PUT_WIDE_DATA, KRL_STEP_PUT_WIDE_LOCAL},
-         {KRL_STEP_PUT_TWO_DATA, KRL_STEP_PUT_TWO_LOCAL}},
+         {KRL_STEP_PUT_TWO_DATA, KRL_STEP_PUT_TWO_LOCAL},
+         {KRL_STEP_PUT_THREE_DATA, KRL_STEP_PUT_THREE_LOCAL}},
     };
     const struct krl_array *array = &at->arrays[element->array];
-    int form = array->dimensions == 2 ? 2 : array->width > 1;
+    int form = array->dimensions > 1 ? array->dimensions : array->width > 1;
     struct krl_step *step = krl_emit(at, (enum krl_step_op)steps[access][form][element->is_local]);
     step->a = a;
     step->b = element->a;

@@ -59,6 +59,35 @@ ENDFCT
 FORMATS = 'K = 0\nSWRITE(S[], T, K, "%d", K)\n' * 6 + "K = 1\n" * 4
 
 
+INDEXED = """DEF RUN()
+   DECL INT I, J, K, L[2,3], S, M[2,3,2]
+   FOR I = 1 TO 2
+      FOR J = 1 TO 3
+         L[I,J] = 10 * I + J
+         FOR K = 1 TO 2
+            M[I,J,K] = 5 * K
+            M[I,J,K] = M[I,J,K] + L[1,J] - M[I,J,1+K/2]
+         ENDFOR
+      ENDFOR
+   ENDFOR
+   $OV_PRO = TOTAL(L[,], M[,,], 2, 3)
+   L[1,2] = M[2,3,2] + M[1,1,1]
+   $OV_PRO = TOTAL(L[,], M[,,], {rows}, {columns})
+END
+DEFFCT INT TOTAL(L[,]:OUT, M[,,]:OUT, ROWS:IN, COLUMNS:IN)
+   DECL INT L[,], M[,,], ROWS, COLUMNS, R, C, S
+   S = 0
+   FOR R = 1 TO ROWS
+      FOR C = 1 TO COLUMNS
+         L[R,C] = L[R,C] + R
+         S = S + L[R,C] * R + M[R,C,2] - L[ROWS,C+1-1]
+      ENDFOR
+   ENDFOR
+   RETURN S
+ENDFCT
+"""
+
+
 NEGATED = """DEF RUN()
    DECL INT I
    FOR I = 1 TO 3
@@ -128,6 +157,17 @@ def test_stops_that_pass(executor: str) -> None:
     kinds = [(type(one).__name__, getattr(one, "count", 0)) for one in found]
     stop, passed, time = ("StopAdvance", 1), ("StopAdvance", 2), ("Slice", 1)
     assert [stop, passed, stop, passed, time, ("Write", 0), ("End", 0)] == kinds
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(2, 3), (3, 1), (1, 4), (0, 0)])
+def test_indices(rows: int, columns: int) -> None:
+    """Elements of arrays and views by two and three indices are the same and fault the same."""
+    text = INDEXED.format(rows=rows, columns=columns)
+    program = Prepared(load([Source(text, "run.src")], "run.src"))
+    expected = repr(_requests(program, "vm", Limits()))
+    assert ("Fail" in expected) == (rows * columns > 2 and (rows, columns) != (2, 3))
+    for executor in ("native", "compiled"):
+        assert expected == repr(_requests(program, executor, Limits()))
 
 
 def test_calls_deeper_than_those_in_c() -> None:
