@@ -21,6 +21,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
@@ -30,6 +31,7 @@ from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_availa
 from interp.native import AVAILABLE
 from interp.port.requests import Crash, End, Fail, StopAdvance, Write
 from interp.program.load import Limits, load
+from interp.session import RunSetup, run_program
 from interp.values.faults import LinkError
 
 ROUNDS = 3
@@ -62,7 +64,8 @@ def measure_executors(
     ``start_ms`` are what it takes to check the source, to make verified bytecode of it, and to make
     each executor. ``vm_vs_tree`` and so on are geometric means of how many times as fast the first
     is; ``request_us`` is what a request costs that writes or reads, from the instruction to behind
-    the reply, in microseconds, with the statement and the loop around it.
+    the reply, in microseconds, with the statement and the loop around it; ``controlled_vs_bare`` is
+    how many times as long the machine in C and native code compute under the controller.
 
     Raises `MeasurementError` where executors disagree or a kernel fails.
     """
@@ -90,6 +93,9 @@ def measure_executors(
         "compiled_vs_native": _mean(rows, "native", COMPILED),
         "c_vs_compiled": _mean(rows, COMPILED, "c"),
         "request_us": requests,
+        "controlled_vs_bare": {
+            name: _controlled(name, rounds) for name in ("native", COMPILED) if is_available(name)
+        },
     }
 
 
@@ -298,6 +304,43 @@ def _version(name: str) -> str | None:
     return " ".join(_output([command, "-v"]).split()[:2]) if command else None
 
 
+# ------------------------------------------------------------------------------- controller
+
+#: A request each 400,000 statements, or the controller would take it for a program without an end.
+_COMPUTING = f"""
+DEF RUN()
+   DECL INT I, K, SUM
+   FOR I = 1 TO {{}}
+      SUM = 0
+      FOR K = 1 TO 200000
+         SUM = SUM + K / 70
+      ENDFOR
+      {_RESULT} = 1
+   ENDFOR
+END
+"""
+
+
+def _controlled(executor: str, rounds: int) -> float:
+    """How many times as long computing takes in a run as without a controller."""
+    programs = [_program(_COMPUTING.format(count)) for count in (20, 120)]
+    limits = Limits(statements=_LIMITS.statements)
+    setup = RunSetup(executor=executor, is_told=False, limits=limits)
+    best = dict.fromkeys(product((0, 1), (False, True)), math.inf)
+    for _ in range(rounds):
+        for one, is_run in best:
+            began = time.process_time()
+            if is_run:
+                ending = run_program(programs[one], setup).outcome.ending
+                if ending != "end":
+                    raise MeasurementError(f"{executor}: a run ends by {ending}")
+            else:
+                _run(programs[one], executor, 1)
+            seconds = time.process_time() - began
+            best[one, is_run] = min(seconds, best[one, is_run])
+    return (best[1, True] - best[0, True]) / (best[1, False] - best[0, False])
+
+
 # ------------------------------------------------------------------------------- requests
 
 _WRITING = f"""
@@ -318,13 +361,17 @@ END
 """
 
 
+def _program(text: str) -> Prepared:
+    return Prepared(load([Source(text.lstrip(), "run.src")], "run.src"))
+
+
 def _request_cost(executor: str, rounds: int) -> dict[str, float]:
     """Microseconds for a request that writes and one that reads, with their replies."""
     return {"write": _cost(_WRITING, executor, rounds), "read": _cost(_READING, executor, rounds)}
 
 
 def _cost(text: str, executor: str, rounds: int) -> float:
-    program = Prepared(load([Source(text.lstrip(), "run.src")], "run.src"))
+    program = _program(text)
     best = math.inf
     for _ in range(rounds):
         running = program.executor(executor, _LIMITS)

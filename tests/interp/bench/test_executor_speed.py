@@ -51,6 +51,7 @@ def test_record_of_the_bench(tmp_path: Path) -> None:
     assert set(available()) <= set(row["start_ms"])
     assert math.isclose(row["ns"]["tree"] / row["ns"]["vm"], record["vm_vs_tree"])
     assert set(available()) == set(record["request_us"])
+    assert all(times > 0 for times in record["controlled_vs_bare"].values())
 
 
 def test_results_that_differ(tmp_path: Path) -> None:

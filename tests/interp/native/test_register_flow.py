@@ -9,7 +9,7 @@ from interp.native.register_flow import RegisterFlow
 
 
 def _step(name: str, a: int = 0, b: int = 0, c: int = 0, d: int = 0, *, line: int = -1) -> Step:
-    return Step(name, a, b, c, d, 1, line)
+    return Step(name, a, b, c, d, 1, line, c + 1)
 
 
 #: A loop over steps 1 to 4; register 0 is a variable, 8 and 9 are the stack of operands.
