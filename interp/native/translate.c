@@ -203,8 +203,10 @@ static void instruction(struct translator *at, int32_t place)
 static void drop_jump(struct translator *at, int32_t target)
 {
     int32_t *steps = at->routine->steps;
+    if (at->is_wrong || target == 0 || at->count <= steps[0])
+        return;
     const struct krl_step *last = &at->steps[at->count - 1];
-    if (at->is_wrong || at->count <= steps[0] || last->op != KRL_STEP_JUMP || last->d != target || last->statement >= 0)
+    if (last->op != KRL_STEP_JUMP || last->d != target || last->statement >= 0)
         return;
     at->count--;
     for (int32_t place = target - 1; place >= 0 && (steps[place] < 0 || steps[place] > at->count); place--)
