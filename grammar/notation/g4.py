@@ -5,7 +5,7 @@ The dialect is that of ``grammar/KRL.g4``: no actions, predicates, modes, import
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
@@ -27,6 +27,7 @@ from grammar.notation.model import (
     Reference,
     Repeat,
     Rule,
+    characters_of,
     complement,
     normalised,
 )
@@ -51,6 +52,11 @@ def read(text: str, *, source: str = "grammar") -> Grammar:
     Raises `GrammarError` with ``source`` and the line when the text is not of our style, or when a
     rule is defined twice, refers to what does not exist, or is left-recursive.
     """
+    return checked(unchecked(text, source), source)
+
+
+def unchecked(text: str, source: str) -> Grammar:
+    """Read a text whose rules may refer to what does not exist; raises `GrammarError`."""
     tree = _parse(text, "start", source)
     header, *rest = tree.children
     options: tuple[tuple[str, str], ...] = ()
@@ -69,14 +75,18 @@ def read(text: str, *, source: str = "grammar") -> Grammar:
         rules.append(_rule(node, text[start:end], start, source))
     gaps.append(text[end:])
     assert isinstance(header, Tree)
-    grammar = Grammar(str(header.children[0]), options, tuple(rules), tuple(gaps))
+    return Grammar(str(header.children[0]), options, tuple(rules), tuple(gaps))
+
+
+def checked(grammar: Grammar, source: str) -> Grammar:
+    """The grammar itself; raises `GrammarError` where it is not well formed."""
     wrong = problem(grammar)
     if wrong:
         raise GrammarError(f"{source}:{wrong}")
     return grammar
 
 
-def read_file(path: Path) -> Grammar:
+def read_file(path: Path, reader: Callable[..., Grammar] = read) -> Grammar:
     """Read a ``.g4`` file; raises `GrammarError` when it cannot be read."""
     try:
         text = read_bytes(path).decode("utf-8")
@@ -84,7 +94,7 @@ def read_file(path: Path) -> Grammar:
         raise GrammarError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise GrammarError(f"{path}: not a grammar (not UTF-8 text)") from None
-    return read(text, source=str(path))
+    return reader(text, source=str(path))
 
 
 @lru_cache(maxsize=1 << 12)
@@ -221,10 +231,7 @@ def _ranges(body: str) -> tuple[CharRange, ...]:
 
 
 def _complement(element: Element) -> tuple[CharRange, ...]:
-    if isinstance(element, Literal) and len(element.text) == 1:
-        inner: tuple[CharRange, ...] = ((ord(element.text), ord(element.text)),)
-    elif isinstance(element, CharSet):
-        inner = element.ranges
-    else:
+    inner = characters_of(element)
+    if inner is None:
         raise GrammarError("only a set of characters can be negated")
     return complement(inner)

@@ -29,6 +29,7 @@ __all__ = [
     "Repeat",
     "Rule",
     "Span",
+    "characters_of",
     "complement",
     "normalised",
     "reached",
@@ -224,6 +225,20 @@ def reached(calls: Mapping[str, Collection[str]], name: str) -> set[str]:
         seen |= fresh
         todo += fresh
     return seen
+
+
+def characters_of(element: Element) -> tuple[CharRange, ...] | None:
+    """The characters one of which an element reads; ``None`` where it reads something else."""
+    match element:
+        case Literal(text=text) if len(text) == 1:
+            return ((ord(text), ord(text)),)
+        case CharSet(ranges=ranges):
+            return ranges
+        case Group(alternatives=alternatives):
+            found = [characters_of(a.elements[0]) for a in alternatives if len(a.elements) == 1]
+            if len(found) == len(alternatives) and None not in found:
+                return normalised([pair for ranges in found for pair in ranges or ()])
+    return None
 
 
 def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:

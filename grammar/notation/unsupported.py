@@ -51,3 +51,16 @@ def unsupported(text: str) -> Iterator[tuple[int, str]]:
         if what:
             found.setdefault(what, text.count("\n", 0, part.start()) + 1)
     yield from ((line, what) for what, line in found.items())
+
+
+def without_decoration(text: str) -> str:
+    """A grammar with blanks for what changes nothing of what is read: actions, labels, options.
+
+    A loop that ends as soon as it can, up to one character, is one over all others.
+    """
+
+    def blank(part: re.Match[str]) -> str:
+        is_left_out = part.lastgroup in ("named", "action", "label", "element")
+        return re.sub(r"[^\r\n]", " ", part[0]) if is_left_out else part[0]
+
+    return re.sub(r"\.([*+])\?(\s*)('(?:[^'\\]|\\.)')", r"~\3\1\2\3", _PARTS.sub(blank, text))

@@ -103,6 +103,7 @@ def recover(
     ] = None,
 ) -> int:
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
+    from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
@@ -118,7 +119,7 @@ def recover(
             raise InputError("--without starts from the grammar in force: give it alone")
         first = grammar or GRAMMAR.with_name("preliminary.g4")
         with expected_errors():
-            chosen = read_file(first)
+            chosen = read_file(first, read_foreign)
             rejected = load(negatives) if negatives else ()
             accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted if without else ()
         if without > len(accepted):

@@ -51,6 +51,7 @@ def recover_auto(
     Everything is written after each round, so that what was done stays when it is interrupted. At
     the end what has grown is compared with ``target``.
     """
+    from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.parser.lexer import ABSENT, lexer_of
     from recovery.induction.comparison import compared
@@ -64,7 +65,7 @@ def recover_auto(
         raise InputError(f"--hold-out {fraction:g}: not from 0 to less than 1")
     began = time.monotonic()
     with expected_errors():
-        goal = read_file(target) if target else None
+        goal = read_file(target, read_foreign) if target else None
         language = language_of(suffix) if suffix else KRL
         files = language.files(roots)
         growth, struck = _begun(start, out, strike, resume=resume)

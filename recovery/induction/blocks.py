@@ -88,11 +88,18 @@ def blocks_of(
     ]
     vocabulary = Vocabulary(recognizer)
     free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
-    return find_blocks(files, free)
+    origins, least = keywords.least
+    return find_blocks(files, free, (origins, min(BALANCED_FILES, 1 + least)))
 
 
-def find_blocks(files: Sequence[SourceFile], free: Iterable[str]) -> list[BlockLines]:
+def find_blocks(
+    files: Sequence[SourceFile],
+    free: Iterable[str],
+    least: tuple[int, int] = (BALANCED_ORIGINS, BALANCED_FILES),
+) -> list[BlockLines]:
     """The blocks that words open which the grammar has no use for, ``free``; the most found first.
+
+    The ``least`` are the origins and the files that have to have one.
 
     Of two words that might open or close a block the one wins that does in more files, then the
     one with more lines between.
@@ -106,7 +113,7 @@ def find_blocks(files: Sequence[SourceFile], free: Iterable[str]) -> list[BlockL
     pairs = []
     for opener in words:
         for closer in words:
-            if opener == closer or not _is_pair(opener, closer, files, counts, having):
+            if opener == closer or not _is_pair(opener, closer, files, counts, having, least):
                 continue
             places = {*having[opener], *having[closer]}
             inside = sum(_inside(opener, closer, files[n].lines) for n in places)
@@ -128,16 +135,17 @@ def _is_pair(
     files: Sequence[SourceFile],
     counts: Sequence[Counter[str]],
     having: Mapping[str, list[int]],
+    least: tuple[int, int],
 ) -> bool:
     places = sorted({*having[opener], *having[closer]})
     equal = [n for n in places if counts[n][opener] == counts[n][closer]]
     damaged = len(places) >= FILES_WITH_ONE_DAMAGED
-    needed = max(BALANCED_FILES, min(BALANCED_SHARE * len(places), len(places) - damaged))
+    needed = max(least[1], min(BALANCED_SHARE * len(places), len(places) - damaged))
     if len(equal) < needed:
         return False
     good = [n for n in equal if is_balanced(opener, closer, files[n].lines)]
-    origins = frozenset[str]().union(*(files[n].origins for n in good))
-    return len(good) >= needed and len(origins) >= BALANCED_ORIGINS
+    having_it = frozenset[str]().union(*(files[n].origins for n in good))
+    return len(good) >= needed and len(having_it) >= least[0]
 
 
 def _inside(opener: str, closer: str, lines: Sequence[_Line]) -> int:

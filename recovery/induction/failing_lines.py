@@ -45,7 +45,8 @@ class FailingLines:
             for failure in of_file:
                 if failure.follows:
                     continue
-                words = tuple(lexeme.upper() for lexeme in failure.lexemes if lexeme.strip("\r\n"))
+                ends = failure.form.kinds[-1:] == (keywords.lexer.line_kind,)
+                words = tuple(map(str.upper, failure.lexemes[: -1 if ends else None]))
                 pattern = LinePattern(failure.form, keywords.in_line(words) if words else ())
                 line = found.setdefault(pattern, Occurrences())
                 line.texts.add(words)

@@ -99,6 +99,7 @@ class Folding:
         yield from self._leading()
         yield from self._signs()
         yield from self._modifiers()
+        yield from self._undeclared()
         yield from self._variables()
         yield from self._derived_words(families)
 
@@ -118,6 +119,29 @@ class Folding:
                 if len(having) > 1 and edits and word in self.grammar.by_name:
                     title = f"{word} ahead of other lines in {rule.name}"
                     yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+    def _undeclared(self) -> Iterator[Inferred]:
+        """What may stand between a word and a type, ahead of types of a kind without that word."""
+        for rule in self.grammar.rules:
+            found = []
+            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+                line = self._line(rule.name, number)
+                ahead = list(takewhile(lambda e: not self._is_kind(e), line))
+                sets = [self._words(e.item if isinstance(e, Repeat) else e) for e in ahead]
+                rest = line[len(ahead) :]
+                if len(rest) > 1 and self._is_name(rest[1]) and all(len(s) == 1 for s in sets):
+                    found.append((number, ahead, [min(s) for s in sets], rest))
+            for _, (first, *between), (_, *words), _ in [f for f in found if f[1]]:
+                if isinstance(first, Repeat) or not all(map(self._is_ending, between)):
+                    continue
+                for number, before, own, (kind, *_) in found:
+                    is_free = all(map(self._is_ending, before)) and self._words(kind)
+                    if is_free and set(own) < set(words):
+                        text = self._source(rule.name, [*between, kind])
+                        edits = (Replace(rule.name, (number, 1), text, 1 + len(before)),)
+                        title = f"{', '.join(words)} without {min(self._words(first))}"
+                        breadth = FOLDING_SYMBOLS + len(between)
+                        yield Inferred(f"{title} in {rule.name}", edits, (), breadth=breadth)
 
     def _declares(self, elements: Sequence[Element]) -> bool:
         """Whether elements are one reserved word, a name, and no bracket behind it."""
@@ -299,8 +323,12 @@ class Folding:
                     yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
 
     def _trailing(self) -> Iterator[Inferred]:
-        """One choice for words that may end lines, where two such choices have a word in common."""
+        """One choice for words that may end lines, of all such choices with a word in common.
+
+        Where one rule writes the same operand ahead of two of them they are alike too.
+        """
         found: list[tuple[str, int, Sequence[Element], frozenset[str], float]] = []
+        behind: dict[tuple[str, str], frozenset[str]] = defaultdict(frozenset)
         for rule, number, elements in self._lines():
             run = list(takewhile(self._is_ending, reversed(elements)))
             words = Counter(w for e in run for w in self._ending_words(e))
@@ -308,8 +336,13 @@ class Folding:
                 is_any = any(isinstance(e, Repeat) and e.operator == "*" for e in run)
                 often = math.inf if is_any else max(*words.values(), min(len(run), 2))
                 found.append((rule.name, number, run[::-1], frozenset(words), often))
+                if len(run) < len(elements) and isinstance(elements[-len(run) - 1], Reference):
+                    behind[rule.name, self._source(rule.name, elements[-len(run) - 1 :][:1])] |= (
+                        frozenset(words)
+                    )
+        sets = [*(f[3] for f in found), *behind.values()]
         done: set[frozenset[str]] = set()
-        for _, _, _, known, _ in found:
+        for known in sets:
             alike = [f for f in found if f[3] & known]
             every = frozenset[str]().union(*(f[3] for f in alike))
             often = max(f[4] for f in alike)

@@ -49,18 +49,22 @@ class LineEdits:
     def _line_rules(self) -> Iterator[Inferred]:
         """A kind of line where another one is expected."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
-        kinds_of = sorted(self.at.profile.of_lines)
+        written_out = self.hosts.written_out
+        kinds_of = sorted(self.at.profile.of_lines | written_out)
         for number, line in enumerate(self.at.lines):
             if line.is_enormous or line.keywords:
                 continue
             read = self.at.rules.matcher.rules_for(line.form.kinds)
+            if line.form.kinds[-1] == self.at.lexer.line_kind:
+                read |= self.at.rules.matcher.rules_for(line.form.kinds[:-1]) & written_out
             # what ends with the line stands for what ends with it too: a second end is a blank line
             for host in filter(self.at.profile.closing, self.hosts.of(number)):
                 for other in kinds_of:
                     if other in read and other != host:
                         found[host, other].append(number)
         for (host, other), members in found.items():
-            edits = (AddAlternative(host, other),)
+            ending = self.hosts.ending(host) if other in written_out else ""
+            edits = (AddAlternative(host, f"{other}{ending}"),)
             fresh = {other, *self.at.rules.reaches[other]} - {host, *self.at.rules.reaches[host]}
             known = self.at.grammar.by_name
             breadth = sum(len(known[name].alternatives) for name in fresh if name in known)

@@ -122,6 +122,18 @@ class LineHosts:
                 )
         return frozenset(filter(self.at.profile.is_hub, found & self.at.rules.reaches.keys()))
 
+    @cached_property
+    def written_out(self) -> frozenset[str]:
+        """Rules that are all of a line but its end in a choice that no rule of its own gathers."""
+        found = set()
+        for rule in self.at.grammar.rules:
+            for address, sequence in () if rule.is_lexer else sequences(rule):
+                first, *others = sequence.elements or (None,)
+                ends = [rule.source_of(e) for e in others]
+                if len(address) > 1 and ends == [self.at.profile.line_end]:
+                    found.update([first.name] if isinstance(first, Reference) else [])
+        return frozenset(found & self.at.rules.reaches.keys())
+
     def words_of(self, element: Element) -> frozenset[str]:
         """The words that an element is: one, or a choice of them, no name among them."""
         match element:

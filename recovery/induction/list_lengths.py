@@ -16,7 +16,7 @@ from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
 from recovery.induction.steps import Inferred
-from recovery.tuning import ITEMS_BEHIND_THE_FIRST, SHORT_LIST_EXAMPLES
+from recovery.tuning import ITEMS_BEHIND_THE_FIRST, PAIR_EXAMPLES, SHORT_LIST_EXAMPLES
 
 
 def bounded_lists(
@@ -42,7 +42,10 @@ def bounded_lists(
                     or max(rounds, default=0) > ITEMS_BEHIND_THE_FIRST
                 ):
                     continue
-                if rounds.total() - rounds[0] >= SHORT_LIST_EXAMPLES:
+                is_pair = max(rounds, default=0) < ITEMS_BEHIND_THE_FIRST
+                if rounds.total() - rounds[0] >= (
+                    PAIR_EXAMPLES if is_pair else SHORT_LIST_EXAMPLES
+                ):
                     text = ""
                     for _ in range(ITEMS_BEHIND_THE_FIRST):
                         text = f"({source[1:-2]}{text and f' {text}'})?"

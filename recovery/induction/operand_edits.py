@@ -129,6 +129,7 @@ class OperandEdits:
             is_led = index + 1 < len(tokens) and (
                 self.at.begins_operand(tokens, index + 1)
                 or tokens[index + 1][0] in self.at.rules.type_kinds
+                or tokens[index + 1][1] is not None
             )
             # between signs, as a name is: an operand beside it would make it a word
             if not is_led and not self.at.ends_operand(tokens, index):

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from grammar.notation.edits import apply
 from grammar.notation.model import Grammar, GrammarError
+from grammar.notation.wellformed import problem
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.names_rule import names_kept
@@ -57,6 +58,9 @@ class ShownFiles:
                     wider = apply(grammar, joined([*kept, version]))
                 except GrammarError as error:
                     reason = str(error)
+                    break
+                if wrong := problem(wider):
+                    reason = f"needs a step that is not taken: line {wrong}"
                     break
                 finder = FailureFinder(Recognizer(wider))
                 read = {p: finder.find(self.files[p].text) for p in worse}

@@ -116,6 +116,7 @@ class WouldBeKeywords:
         uses: Counter[str] = Counter()
         operators: Counter[str] = Counter()
         beside: set[_Surroundings] = set()
+        followed: Counter[str] = Counter()
         for number, line in enumerate(corpus.lines):
             for use in self._uses(line):
                 fillers[use.surroundings][use.word] |= corpus.origins[number]
@@ -123,6 +124,8 @@ class WouldBeKeywords:
                     continue
                 files[use.surroundings, use.word] += corpus.counts[number]
                 uses[use.word] += corpus.counts[number]
+                if _is_of_types(use.surroundings) and self._is_beside(line, use.place + 1):
+                    followed[use.word] += corpus.counts[number]
                 if use.surroundings[1:] == (_OPERAND, _OPERAND) and _in_expression(line, use.place):
                     operators[use.word] += corpus.counts[number]
                 if use.is_beside:
@@ -156,7 +159,8 @@ class WouldBeKeywords:
             for surroundings, words in fillers.items()
             if _is_of_types(surroundings) and surroundings[1] in lexer.kind_of
             for word, origins in words.items()
-            if len(origins) >= WOULD_BE_ORIGINS
+            # what a type declares ends there, or a sign goes on
+            if len(origins) >= WOULD_BE_ORIGINS and 2 * followed[word] <= files[surroundings, word]
         }
         ahead = {w for s in self._closed if s[2] == _TYPE for w in fillers[s]}
         #: Those that are used as names besides.
@@ -175,7 +179,10 @@ class WouldBeKeywords:
         )
 
     def prefixes(self) -> frozenset[str]:
-        """Words that may be missing at the head of a line: most lines go on as others begin."""
+        """Words that may be missing at the head of a line: most lines go on as others begin.
+
+        Other words follow them, of which there are several: a type ahead of names is no such word.
+        """
         lines, kinds = self.corpus.lines, self.lexer.kinds
 
         def begun(line: Sequence[str]) -> tuple[object, ...]:
@@ -187,11 +194,21 @@ class WouldBeKeywords:
         beginnings = {begun(line) for line in lines}
         whole: Counter[str] = Counter()
         rest: Counter[str] = Counter()
+        behind: dict[str, set[str]] = defaultdict(set)
         for line in lines:
-            if line[0] in self.words or self.lexer.is_keyword(kinds[line[0]]):
+            if self._is_word(line[0]):
                 whole[line[0]] += 1
                 rest[line[0]] += len(line) > 2 and begun(line[1:]) in beginnings
-        return frozenset(w for w, count in whole.items() if rest[w] > PREFIX_SHARE * count)
+                behind[line[0]].update(filter(self._is_word, line[1:2]))
+        return frozenset(
+            word
+            for word, count in whole.items()
+            if rest[word] > PREFIX_SHARE * count and len(behind[word]) > 1
+        )
+
+    def _is_word(self, lexeme: str) -> bool:
+        """Whether the grammar reserves a word, or the corpus has it as a keyword."""
+        return lexeme in self.words or self.lexer.is_keyword(self.lexer.kinds[lexeme])
 
     def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
         """The places of a line where a keyword is meant, with the words."""
@@ -252,6 +269,11 @@ class WouldBeKeywords:
         """Whether two operands are side by side, so that a word of the line is a keyword."""
         values = [kind in self._values for kind in kinds[1:]]
         return "{" not in line and any(a and b for a, b in pairwise(values))
+
+    def _is_beside(self, line: Sequence[str], place: int) -> bool:
+        """Whether the operand at a place has another one or a type right behind it."""
+        found = [self.lexer.kinds[lexeme] for lexeme in line[place : place + 2]]
+        return len(found) > 1 and (found[1] in self._values or line[place + 1] in self._types)
 
     def _class(
         self, line: Sequence[str], kinds: Sequence[int], place: int, signs: Sequence[str]

@@ -67,10 +67,19 @@ class GrammarProfile:
         found: set[str] = set()
         for _ in range(2):  # that a rule is another rule goes no deeper
             for rule in self.grammar.rules:
-                ends = [] if rule.is_lexer else [self._last(rule, a) for a in rule.alternatives]
+                ends = [
+                    end
+                    for a in (() if rule.is_lexer else rule.alternatives)
+                    # how a block ends says nothing of lines
+                    if (end := self._last(rule, a)) or not self._is_block(rule, a)
+                ]
                 if self.line_end in ends and all(e == self.line_end or e in found for e in ends):
                     found.add(rule.name)
         return frozenset(found)
+
+    def _is_block(self, rule: Rule, alternative: Alternative) -> bool:
+        """Whether a line ends within an alternative."""
+        return self.line_end in map(rule.source_of, alternative.elements[:-1])
 
     def _last(self, rule: Rule, alternative: Alternative) -> str:
         """What an alternative ends with: a line end, or the one rule that it is."""

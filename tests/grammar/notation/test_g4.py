@@ -261,7 +261,7 @@ def test_exchanging_a_rule() -> None:
         ("s : A ;\nC : '\\u{1F916}' ;", 3, "unexpected"),
         ("s : A ;\nC : [\\p{Lu}] ;", 3, "unexpected"),
         ("s : A ;\n\nC : 'x' .*? 'y' ;", 4, "rule C: non-greedy '*?' is not of our style"),
-        ("s : A ;\nC : ~('x' | 'y') ;", 3, "rule C: only a set of characters can be negated"),
+        ("s : A ;\nC : ~('x' | 'yz') ;", 3, "rule C: only a set of characters can be negated"),
         ("s : A ;\nC : 'ab'..'c' ;", 3, "rule C: 'ab'..'c' is no range of characters"),
         ("s : A ;\nC : 'z'..'a' ;", 3, "rule C: 'z'..'a' is no range of characters"),
         ("s : A ;\nC : [z-a] ;", 3, "rule C: [z-a] has a range that runs backwards"),

@@ -1,5 +1,7 @@
 """Blocks found by counting the words that lead lines."""
 
+import pytest
+
 from recovery.induction.blocks import SourceFile, find_blocks
 
 
@@ -31,3 +33,10 @@ def test_words_out_of_balance_are_no_block() -> None:
     """A word with more lines than the other closes nothing."""
     files = [_file("O x C C", o) for o in "abc"]
     assert [] == find_blocks(files, ["O", "C"])
+
+
+@pytest.mark.parametrize(("origins", "found"), [(1, 1), (2, 0)])
+def test_a_block_of_one_origin(origins: int, found: int) -> None:
+    """One origin shows a block only where nothing asks for a second one."""
+    files = [_file("O x C", "a")] * 3
+    assert found == len(find_blocks(files, ["O", "C"], (origins, 3)))

@@ -226,3 +226,36 @@ def test_a_fold_is_offered_once(grammar: Grammar, folds: dict[str, Inferred]) ->
         if after.edits == fold.edits
     ]
     assert [] == again
+
+
+_DECLARED = """grammar Toy;
+program : (line NEWLINE)* EOF ;
+line
+    : DIM OPEN? FIX? kind NAME
+    | OPEN FIX? kind NAME ('=' NUMBER)?
+    | base NAME
+    | MOVE NAME SLOW?
+    | TURN NAME FAST?
+    ;
+kind : INT | REAL | NAME ;
+base : INT | REAL ;
+"""
+
+
+@pytest.mark.parametrize(
+    ("title", "accepted", "rejected"),
+    [
+        ("OPEN, FIX without DIM in line", "FIX INT A", "FIX A B"),
+        ("FAST, SLOW at the end of lines", "MOVE A FAST", "MOVE A NAME"),
+    ],
+)
+def test_what_holds_beside_alike(title: str, accepted: str, rejected: str) -> None:
+    """Words behind a first one stand without it too; what ends a line behind a name others do."""
+    words = "".join(f"{w} : '{w}' ;\n" for w in "INT REAL DIM OPEN FIX MOVE TURN FAST SLOW".split())
+    tokens = (
+        "ASSIGN : '=' ;\nNAME : [A-Z]+ ;\nNUMBER : [0-9]+ ;\nNEWLINE : '\\n' ;\nWS : ' ' -> skip ;"
+    )
+    grammar = read(f"{_DECLARED}{words}{tokens}\n")
+    (fold,) = (f for f in Folding(Recognizer(grammar), ()).candidates() if f.title == title)
+    after = Recognizer(apply(grammar, fold.edits))
+    assert [True, False] == [after.accepts(f"{line}\n") for line in (accepted, rejected)]

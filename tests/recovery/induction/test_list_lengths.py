@@ -32,6 +32,15 @@ def test_short_lists(start: str, lists: list[str], found: list[str]) -> None:
     assert found == [getattr(edit, "text", "") for bounded in edits for edit in bounded.edits]
 
 
+@pytest.mark.parametrize(("items", "count"), [("A,B", 1), ("A,B,C", 0)])
+def test_pairs(items: str, count: int) -> None:
+    """Where none has three items fewer lists show that none is long."""
+    edits = bounded_lists(
+        Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), [f"F({items})\n"] * 30
+    )
+    assert count == len(list(edits))
+
+
 def test_few_lists() -> None:
     """Few lists tell nothing of how long lists may be."""
     edits = bounded_lists(Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), ["F(A,B)\n"])

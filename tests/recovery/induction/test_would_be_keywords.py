@@ -46,3 +46,19 @@ def test_a_sign_behind_a_keyword(toy: Grammar) -> None:
     """A word with a sign behind it is one where two operands of the line are side by side."""
     files = {o: f"LINK * {o} 1\nLABEL * {o}\n" for o in "abc"}
     assert {"LINK"} == _keywords(toy, files).words & {"LINK", "LABEL"}
+
+
+@pytest.mark.parametrize(("second", "found"), [("HALT", {"LINK"}), ("X", set())])
+def test_a_word_that_may_be_missing(toy: Grammar, second: str, found: set[str]) -> None:
+    """Several words follow what may be missing; a word ahead of names alone is a type of them."""
+    lines = f"LINK MOVE {{0}}\nMOVE {{0}}\nLINK {second} := 1\n{second} := 1\nLINK B := 1\n"
+    files = {o: lines.format(f"A{o}") for o in "abc"}
+    assert found == {"LINK"} & _keywords(toy, files).prefixes()
+
+
+@pytest.mark.parametrize(("behind", "soft"), [("", True), (" 1", False)])
+def test_a_word_between_a_keyword_and_an_operand(toy: Grammar, behind: str, soft: bool) -> None:
+    """It is a name as types are, unless what it stands ahead of goes on with another operand."""
+    files = {o: f"HALT KIND {o}{behind}\nHALT KIND B{o}{behind}\n" for o in "abc"}
+    keywords = _keywords(toy, files)
+    assert ("KIND" in keywords.words, soft) == (True, "KIND" in keywords.soft)

@@ -1,0 +1,92 @@
+"""Grammars in another style are written anew in ours and read the same."""
+
+import pytest
+
+from grammar.notation.foreign import read_foreign
+from grammar.notation.g4 import read
+from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import GrammarError
+from grammar.parser.recognizer import Recognizer
+
+_TOKENS = "NAME : [a-z]+ ;\nNL : '\\n' ;\nWS : ' '+ -> skip ;\n"
+
+
+def _accepts(rules: str, *texts: str) -> list[bool]:
+    recognizer = Recognizer(read_foreign(f"grammar x;\n{rules}\n{_TOKENS}"))
+    return [recognizer.accepts(text) for text in texts]
+
+
+@pytest.mark.parametrize("name", ["KRL.g4", "preliminary.g4"])
+def test_our_style(name: str) -> None:
+    """A grammar in our style stays as it is, to the byte."""
+    text = GRAMMAR.with_name(name).read_text()
+    assert text == read_foreign(text).text
+
+
+def test_quoted_texts_get_tokens() -> None:
+    """What parser rules quote is a token though no rule names it, ahead of those that are named."""
+    assert [True, False] == _accepts("s : 'go' NAME '..' NAME EOF ;", "go a..b", "a b..c")
+
+
+def test_words_spelt_by_fragments() -> None:
+    """They are keywords of a grammar that ignores case."""
+    letters = "".join(f"fragment {c} : ('{c.lower()}' | '{c}') ;\n" for c in "GO")
+    grammar = read_foreign(f"grammar x;\ns : GO NAME EOF ;\nGO : G O ;\n{letters}{_TOKENS}")
+    assert ("GO", True) == (grammar.literal_tokens.get("GO"), grammar.case_insensitive)
+    assert Recognizer(grammar).accepts("gO A")
+
+
+def test_left_recursion() -> None:
+    """It becomes levels: operators between, ahead of and behind operands, each as often as may."""
+    rules = """
+        s : e EOF ;
+        e : e ('*' | '/') e | e '+' e # Sum | '-' e | e '?' e ':' e | e '[' e ']' | NAME ;
+    """
+    texts = ("a+b*-c[d+e]", "--a", "a ? b : c + d", "a[b][c]", "a+", "a b", "[a]")
+    assert [True, True, True, True, False, False, False] == _accepts(rules, *texts)
+
+
+def test_the_first_operator_binds_tightest() -> None:
+    """Of several alternatives the last one is the level that all others are below."""
+    grammar = read_foreign(f"grammar x;\ns : e EOF ;\ne : e '*' e | e '+' e | NAME ;\n{_TOKENS}")
+    assert "e2 ('+' e2)*" in grammar.by_name["e"].text
+    assert "e3 ('*' e3)*" in grammar.by_name["e2"].text
+
+
+def test_a_set_in_brackets_is_negated() -> None:
+    """Single characters in brackets are a set; a token may end with the file."""
+    rules = "s : NAME* EOF ;\nNOTE : '#' ~('\\n' | '\\r')* ('\\n' | EOF) -> skip ;"
+    assert [True, True, False] == _accepts(rules, "a #b\nc", "a #b", "a\nb")
+
+
+def test_what_reads_nothing_is_left_out() -> None:
+    """Actions, labels and options of elements."""
+    rules = "@header { int x; }\ns : (names+=NAME {add($x);})* <assoc=right> last='!' EOF ;"
+    assert [True, False] == _accepts(rules, "a b !", "a b")
+
+
+def test_a_loop_that_ends_early() -> None:
+    """Up to one character it is one over all others."""
+    rules = "s : TEXT NAME EOF ;\nTEXT : '\"' .*? '\"' ;"
+    assert [True, False] == _accepts(rules, '"a b" c', '"a" "b" c')
+
+
+@pytest.mark.parametrize(
+    ("rules", "why"),
+    [
+        ("s : { ok() }? NAME ;", "a semantic predicate"),
+        ("s : t NAME ;\nt : s ;", "left recursion"),
+        ("s : missing ;", "missing is not defined"),
+        ("s : NAME ;\nA : ~'ab' ;", "only a set of characters can be negated"),
+    ],
+)
+def test_what_is_not_understood(rules: str, why: str) -> None:
+    """It is named, as in a grammar of our style."""
+    with pytest.raises(GrammarError, match=why):
+        read_foreign(f"grammar x;\n{rules}\n{_TOKENS}")
+
+
+def test_what_comes_out_is_in_our_style() -> None:
+    """It can be read again as any other of ours."""
+    text = read_foreign(f"grammar x;\ns : s ',' NAME | 'x' ;\n{_TOKENS}").text
+    assert text == read(text).text

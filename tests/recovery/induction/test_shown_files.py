@@ -1,0 +1,34 @@
+"""Steps tried on the files shown, and the failing lines of these."""
+
+from grammar.notation.edits import AddRule, Replace
+from grammar.notation.model import Grammar
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.corpus_lines import CorpusLines
+from recovery.induction.failing_lines import FailingLines
+from recovery.induction.shown_files import ShownFiles
+from recovery.induction.steps import Evidence, Taken
+from recovery.induction.would_be_keywords import WouldBeKeywords
+from recovery.language import CorpusFile
+
+
+def test_a_step_that_needs_one_not_taken(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> None:
+    """It goes too, with the reason."""
+    evidence = Evidence(0, 0, 0, ())
+    shrunk = Taken(
+        "a", (AddRule("halt", "word : HALT ;"), Replace("halt", (1, 1), "NUMBER")), evidence
+    )
+    resting = Taken("b", (Replace("factor", (1, 1), "word"),), evidence)
+    halting = (*toy_files, CorpusFile("four/a.toy", "HALT\n", frozenset({"four"})))
+    taken, lost = ShownFiles(halting).kept(toy, [shrunk, resting], None)
+    assert ([], ["a", "b"]) == (taken, [step.title for step in lost])
+
+
+def test_a_stray_sign_moves_no_word(toy: Grammar) -> None:
+    """A sign that the lexer does not know stands where it stands in the line."""
+    files = tuple(CorpusFile(o, f"\r MOVE (A{o})\nMOVE 1\nMOVE 2\n", frozenset({o})) for o in "ABC")
+    lexer = Recognizer(toy).lexer
+    keywords = WouldBeKeywords(CorpusLines(files, lexer), lexer, {}, ())
+    failures = ShownFiles(files).failures(toy)[1]
+    patterns = FailingLines(files, failures, keywords).patterns
+    shown = {lexer.names[p.form.kinds[place]] for p in patterns for place, _ in p.keywords}
+    assert {"NAME"} == shown
