@@ -123,17 +123,18 @@ def told(counts: Mapping[str, Any]) -> str:
 
 def growth_section(rows: Sequence[Mapping[str, Any]]) -> str:
     """How the cost of each command grows, by the shape of its input."""
+    measured = [row for row in rows if row["costs"]]
     lines = [
         "## Growth",
         "",
         "`krl bench growth` gives each command inputs of one shape and sizes n, 2n, 4n, where n",
         "takes a fifth of a second. A slope is the exponent of CPU time over size: 1 is linear, 2",
         "quadratic. Above 1.15 memory grows faster than its input, by the same measure.",
+        f"{len(measured)} pairs of a command and a shape were measured last, drawn by a seed.",
         "",
         "| command | shapes | median slope | steepest | its shape | memory above 1.15 |",
         "| --- | ---: | ---: | ---: | --- | ---: |",
     ]
-    measured = [row for row in rows if row["costs"]]
     for entry, of_entry in groupby(measured, key=itemgetter("entry")):
         several = list(of_entry)
         slopes = [_slope(row) for row in several]

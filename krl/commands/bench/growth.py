@@ -374,7 +374,9 @@ def _print(rows: list[dict[str, Any]]) -> None:
         if any(slope is None or slope > _AIM for slope in (row["time_slope"], row["memory_slope"]))
     ]
     table = figures(("command: shape", "time", "memory", "largest", "seconds", "peak"))
-    for row in sorted(rows, key=lambda row: -(row["time_slope"] or 9.0))[: max(10, len(steep))]:
+    for row in sorted(
+        rows, key=lambda row: -(9.0 if row["time_slope"] is None else row["time_slope"])
+    )[: max(10, len(steep))]:
         last = row["costs"][-1]
         table.add_row(
             escape(f"{row['entry']}: {row['shape']}"),
