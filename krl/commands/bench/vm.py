@@ -101,7 +101,7 @@ def _print(record: Mapping[str, Any]) -> None:
         told = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
         summary.add_row(f"a request: {_HEADINGS[name]}", told, "")
     for name, times in record["controlled_vs_bare"].items():
-        label = f"in `krl run` against without a controller: {_HEADINGS[name]}"
+        label = f"time in `krl run`: {_HEADINGS[name]}"
         summary.add_row(label, f"{times:.2f} times", "≤ 1.3 times")
     console.print(summary)
     before = (f"{label} {ms:.1f} ms" for label, ms in _before_running(record["kernels"]))
