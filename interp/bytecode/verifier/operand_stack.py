@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from interp.bytecode.program import Code, Program
-from interp.bytecode.verifier.stack_effects import StackEffects, at_target
+from interp.bytecode.verifier.stack_effects import StackEffects
 from interp.bytecode.verifier.stack_types import Refused, Stack
 from interp.bytecode.verifier.successors import ENDS, targets
 from interp.bytecode.verifier.wellformed import VerificationError
@@ -30,7 +30,7 @@ class Flow:
         """
         instructions = self._code.instructions
         found: list[Stack | None] = [None] * len(instructions)
-        found[0] = ()
+        found[0] = self._effects.empty
         todo = [0]
         while todo:
             place = todo.pop()
@@ -42,7 +42,7 @@ class Flow:
                 if found[after] is None:
                     found[after] = stack
                     todo.append(after)
-                elif found[after] != stack:
+                elif found[after] is not stack:
                     raise self._error(
                         place, f"the stack differs from that of another way to {after}"
                     )
@@ -50,9 +50,7 @@ class Flow:
 
     def largest(self, stacks: Sequence[Stack | None]) -> int:
         """The most cells that the stack ever has."""
-        return max(
-            (sum(item.cells for item in stack) for stack in stacks if stack is not None), default=0
-        )
+        return max((stack.cells for stack in stacks if stack is not None), default=0)
 
     def _after(self, place: int, before: Stack) -> Iterator[tuple[int, Stack]]:
         """Where an instruction can go on, and the stack there."""
@@ -62,7 +60,7 @@ class Flow:
         except Refused as refused:
             raise self._error(place, str(refused)) from None
         for target in targets(instruction):
-            yield target, at_target(instruction.op, stack)
+            yield target, self._effects.at_target(instruction.op, stack)
         if instruction.op not in ENDS:
             yield place + 1, stack
 

@@ -56,16 +56,22 @@ class StackEffects:
         self._code = code
         self._types = program.types
         self._cells = CellTypes(program, code)
-        self._stack: list[StackItem] = []
+        self.empty = self._stack = Stack()
         #: What ``t`` and ``ENUM`` stand for in the effect at hand.
         self._same = NOTHING
 
     def after(self, instruction: Instruction, before: Stack) -> Stack:
         """The stack behind an instruction; raises `Refused`."""
-        self._stack = list(before)
+        self._stack = before
         for step in instructions()[instruction.op].steps:
             self._carry_out(step, instruction.operands)
-        return tuple(self._stack)
+        return self._stack
+
+    def at_target(self, op: Op, after: Stack) -> Stack:
+        """The stack where an instruction goes on elsewhere, by that behind it."""
+        if op is Op.AT or after.below is None:  # a statement is left: its operands are forgotten
+            return self.empty
+        return after.below if op is Op.CASE else after
 
     def _carry_out(self, step: EffectStep, operands: Sequence[int]) -> None:
         given = [SCALARS.index(a) if isinstance(a, str) else operands[a] for a in step.arguments]
@@ -74,16 +80,21 @@ class StackEffects:
         elif step.verb == "take":
             self._take(getattr(self, step.name)(*given))
         else:
-            self._stack.append(getattr(self, step.name)(*given))
+            self._push(getattr(self, step.name)(*given))
 
     def _take(self, wanted: StackItem) -> None:
-        if not self._stack or self._stack.pop() != wanted:
+        if self._stack.below is None or self._pop() != wanted:
             raise Refused("the stack does not hold what it takes")
 
     def _pop(self) -> StackItem:
-        if not self._stack:
+        stack = self._stack
+        if stack.below is None:
             raise Refused("the stack is empty")
-        return self._stack.pop()
+        self._stack = stack.below
+        return stack.top
+
+    def _push(self, item: StackItem) -> None:
+        self._stack = self._stack.with_item(item)
 
     # ----------------------------------------------------------------------- items
 
@@ -246,7 +257,7 @@ class StackEffects:
         """The result of a routine, if it has one."""
         result = self._program.codes[number].result
         if result is not None:
-            self._stack.append(self.value(result))
+            self._push(self.value(result))
 
     def take_request(self, number: int) -> None:
         """The inputs of a request."""
@@ -281,21 +292,21 @@ class StackEffects:
 
     def _push_entry(self, entry: Ask | Builtin) -> None:
         if entry.result is not None and isinstance(self._types[entry.result], Plain):
-            self._stack.append(self.value(entry.result))
+            self._push(self.value(entry.result))
 
     def take_own_result(self) -> None:
         """What this code object gives, and nothing is left."""
         if self._code.result is None:
             raise Refused("there is no result")
         self._take(self.value(self._code.result))
-        if self._stack:
+        if self._stack is not self.empty:
             raise Refused("more than the result is on the stack")
 
     # ----------------------------------------------------------------------- checks
 
     def check_empty(self) -> None:
         """Nothing is on the stack."""
-        if self._stack:
+        if self._stack is not self.empty:
             raise Refused("a statement begins with an empty stack")
 
     def check_no_result(self) -> None:
@@ -383,13 +394,6 @@ class StackEffects:
 def _check_indices(count: int, dimensions: int) -> None:
     if not 1 <= count < dimensions:
         raise Refused("a row has one index at least and not all of them")
-
-
-def at_target(op: Op, after: Stack) -> Stack:
-    """The stack where an instruction goes on elsewhere, by that behind it."""
-    if op is Op.AT:  # where a statement is left its operands are forgotten
-        return ()
-    return after[:-1] if op is Op.CASE else after
 
 
 def _handles_of(parts: Sequence[Argument]) -> Iterator[Handle]:

@@ -25,9 +25,31 @@ class StackItem:
     is_missing: bool = False
 
 
-Stack = tuple[StackItem, ...]
-
 NOTHING = StackItem(Mode.IN, -1)
+
+
+class Stack:
+    """Items on what lies ``below``, ``None`` for the empty stack; ``cells`` is the size of all.
+
+    Stacks that began as one and hold the same are one object: a long stack at each of many
+    instructions costs an object each, and whether two are the same takes no look at their items.
+    """
+
+    __slots__ = ("_above", "below", "cells", "top")
+
+    def __init__(self, top: StackItem = NOTHING, below: Stack | None = None) -> None:
+        self.top = top
+        self.below = below
+        self.cells: int = 0 if below is None else below.cells + top.cells
+        self._above: dict[tuple[str, int, int, bool], Stack] = {}
+
+    def with_item(self, item: StackItem) -> Stack:
+        """The stack with one item more."""
+        key = item.mode.value, item.type, item.cells, item.is_missing
+        found = self._above.get(key)
+        if found is None:
+            found = self._above[key] = Stack(item, self)
+        return found
 
 
 def reference(type_: int) -> StackItem:

@@ -66,7 +66,7 @@ def verify(program: Program) -> Verified:
     depths = []
     for code in program.codes:
         stacks = _checked_body(program, code)
-        depths.append(tuple(-1 if one is None else sum(h.cells for h in one) for one in stacks))
+        depths.append(tuple(-1 if one is None else one.cells for one in stacks))
     return Verified(program, tuple(depths))
 
 

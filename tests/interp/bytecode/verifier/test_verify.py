@@ -7,10 +7,14 @@ from dataclasses import replace
 import pytest
 
 from grammar.semantics.types import Array, Structure
+from grammar.syntax.source import Source
 from interp.bytecode.assembly.assembler import assemble
+from interp.bytecode.compiler.project import compile_program
 from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import Program
+from interp.bytecode.verifier.operand_stack import Flow
 from interp.bytecode.verifier.verify import VerificationError, verify
+from interp.program.load import load
 
 HEAD = """\
 bytecode 3
@@ -305,3 +309,12 @@ def test_huge_arrays_are_refused() -> None:
     text = HEAD + REST.format(body="", action="", condition="  PUSH_BOOL TRUE\n  RETURN_VALUE")
     large = text.replace("local A INT[4]", "local A INT[1048570]")
     refused(assemble(large), "data lists and a frame")
+
+
+def test_stacks_that_hold_the_same_are_one() -> None:
+    """What lies on the stack in a chain of a hundred operators is an object for each operand."""
+    text = "DEF MAIN()\nDECL FRAME X\nX=X" + ":X" * 100 + "\nX=X" + ":X" * 100 + "\nEND\n"
+    program = compile_program(load([Source(text, "main.src")], "main.src")).program
+    stacks = Flow(program, program.codes[0]).stacks()
+    assert 101 < max(one.cells for one in stacks if one is not None)
+    assert len({id(one) for one in stacks}) < 120
