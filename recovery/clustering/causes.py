@@ -1,17 +1,18 @@
 """Causes: failing lines grouped by the edit that mends them.
 
-Lines that fail for the same reason (`recovery.clustering.reason`) have one cause. Heaviest first,
-the best edit is sought for its lines (`recovery.clustering.search`); lines that it does not mend
-are searched again, and the edits of all are tried together. Lines that only fail because of a
-cause belong to it, whatever their reason.
+Two failures have one cause when the same edit mends both. Signatures give a first grouping; then,
+heaviest group first, the best edit is sought for its lines (`recovery.clustering.search`). It takes
+every line it mends, whatever its signature; lines of the group that it does not mend are searched
+again.
 
 At the end causes are merged that one edit answers: one that is searched anew for causes whose lines
-begin with the same word, or made of the edits of two (`recovery.clustering.edit_merging`).
+begin with the same word, or made of the edits of two (`recovery.clustering.edit_merging`); and
+those whose lines fail for the same reason (`recovery.clustering.reason`).
 """
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from functools import partial
 
@@ -26,6 +27,7 @@ from recovery.clustering.edit_merging import (
 )
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.file_trial import FileTrial
+from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.candidates import Candidate
@@ -52,12 +54,12 @@ def find_causes(
     on_done: Progress = no_progress,
     file_trial: FileTrial | None = None,
     parsed_files: ParsedFiles = no_parsed_files,
+    reasons: Sequence[Reason] = (),
 ) -> list[Cause]:
     """Group ``lines`` by cause.
 
-    ``weights[i]`` is what line ``i`` holds back; ``groups`` partition the indices of the lines by
-    the reason why they fail (`recovery.clustering.reason`), the heaviest first. ``on_done`` gets
-    each group dealt with.
+    ``weights[i]`` is what line ``i`` holds back, ``reasons[i]`` why it fails; ``groups`` partition
+    the indices of the lines, the heaviest first. ``on_done`` gets each group dealt with.
     ``file_trial`` has the files in which the lines fail, ``parsed_files`` those that can be read.
     """
     search = CauseSearch(recognizer, lines, weights, count_negatives, file_trial, parsed_files)
@@ -67,26 +69,25 @@ def find_causes(
             search.is_thorough = place < HEAVY_GROUPS
             causes += _of_group(search, group)
             on_done(1)
-        return merged_by_edits(search, merged_by_first_word(search, causes))
+        causes = merged_by_first_word(search, causes)
+    return merged_by_reason(search, merged_by_edits(search, causes), reasons)
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:
-    """The cause of a group, where lines of it are left, with the edits that mend them together."""
+    """The causes of a group, one after the other; lines without any are one of their own."""
     left = [n for n in group if n in search.open]
-    found: list[Cause] = []
     for _ in range(CAUSES_PER_GROUP):
-        part = search.best_for(left) if left else None
-        if part is None:
+        cause = search.best_for(left) if left else None
+        if cause is None:
             break
-        part = search.with_entailed(part)
-        found.append(part)
-        search.open.difference_update(part.lines)
+        cause = search.with_entailed(cause)
+        yield cause
+        search.open.difference_update(cause.lines)
         left = [n for n in left if n in search.open]
-    search.open.difference_update(left)
     left += [n for n in group if search.lines[n].is_enormous]
-    if left or found:
-        lines = tuple(sorted({*left, *(n for part in found for n in part.lines)}))
-        yield Cause(lines, _proposals(search, found, frozenset(lines)))
+    if left:
+        search.open.difference_update(left)
+        yield Cause(tuple(left), ())
 
 
 # ------------------------------------------------------------------------------------- merging
@@ -135,39 +136,34 @@ def _found_for_all(
     return Cause(members, (best, *found.proposals[1:])), parts
 
 
-def _proposals(
-    search: CauseSearch, parts: Sequence[Cause], lines: frozenset[int]
-) -> tuple[Proposal, ...]:
-    """The best proposals for the lines of all parts, those of several parts together among them."""
-    if len(parts) < 2:
-        return parts[0].proposals if parts else ()
+def merged_by_reason(
+    search: CauseSearch, causes: Sequence[Cause], reasons: Sequence[Reason]
+) -> list[Cause]:
+    """The causes, those merged most of whose lines fail for the same reason.
+
+    The proposals of one are in the order of what they mend of all of its lines.
+    """
+    alike: dict[Reason | int, list[Cause]] = defaultdict(list)
+    for place, cause in enumerate(causes):
+        count: Counter[Reason] = Counter()
+        for n in cause.lines if reasons else ():
+            count[reasons[n]] += search.weights[n]
+        alike[max(count, key=lambda r: (count[r], r), default=place)].append(cause)
+    return [_united(search, several) for several in alike.values()]
+
+
+def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
+    if len(causes) == 1:
+        return causes[0]
+    lines = frozenset(n for cause in causes for n in cause.lines)
 
     def worth(proposal: Proposal) -> float:
         mended = sum(search.weights[n] for n in proposal.mended & lines)
         return mended * BREADTH_FACTOR**proposal.breadth
 
-    found = dict.fromkeys(p for part in parts for p in part.proposals)
-    found |= dict.fromkeys(_together(search, parts))
+    found = dict.fromkeys(p for cause in causes for p in cause.proposals)
     best = sorted(found, key=lambda p: (p.accepts_negatives, -worth(p)))
-    return tuple(best[:MOST_PROPOSALS])
-
-
-def _together(search: CauseSearch, causes: Sequence[Cause]) -> Iterator[Proposal]:
-    """What mends the lines of all causes: the best edits of each that the others do not mend."""
-    chosen: Proposal | None = None
-    for cause in causes:
-        best = cause.proposals[0] if cause.proposals else None
-        if best is None or (chosen and chosen.mended.issuperset(best.mended)):
-            continue
-        if chosen is None:
-            chosen = best
-            continue
-        edits = combined_edits(chosen.edits, best.edits)
-        both = search.proposal(edits, chosen.breadth + best.breadth)
-        negatives = chosen.accepts_negatives + best.accepts_negatives
-        if both.mended >= chosen.mended | best.mended and both.accepts_negatives <= negatives:
-            chosen = both
-            yield both
+    return Cause(tuple(sorted(lines)), tuple(best[:MOST_PROPOSALS]))
 
 
 def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:
@@ -187,10 +183,11 @@ def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]
 def _as_one(search: CauseSearch, first: Cause, second: Cause) -> Cause | None:
     """The two as one cause, where one edit mends what the best edits of both mend."""
     one, other = first.proposals[0], second.proposals[0]
+    negatives = one.accepts_negatives + other.accepts_negatives
     lines = tuple(sorted({*first.lines, *second.lines}))
     for edits, breadth in _for_both(search.finder.profile, one, other):
         both = search.proposal(edits, breadth)
-        if both.mended >= one.mended | other.mended and not both.accepts_negatives:
+        if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
             others = (p for p in first.proposals if p.edits != both.edits)
             return Cause(lines, (both, *others)[:MOST_PROPOSALS])
     return None

@@ -13,7 +13,7 @@ from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
 from recovery.clustering.causes import find_causes
 from recovery.clustering.file_trial import FailingFile, FileTrial
-from recovery.clustering.reason import AS_NAME, LEFT_OUT, Reason, ReasonFinder
+from recovery.clustering.reason import AS_NAME, ReasonFinder
 from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.title import TitleWriter
 from recovery.proposals.edit_site import LinePattern
@@ -96,12 +96,12 @@ def cluster(
     groups = _FailingLines(found)
     causes: Sequence[Cause] = ()
     if groups.lines:
-        on_found(len(groups.by_reason))
+        on_found(len(groups.by_signature))
         causes = find_causes(
             groups.recognizer,
             groups.lines,
             groups.weights,
-            groups.by_reason,
+            groups.by_signature,
             count_negatives,
             on_done,
             FileTrial(groups.recognizer, groups.failing(found, text_of)),
@@ -109,6 +109,7 @@ def cluster(
                 ((f.size, partial(text_of, f)) for f in found.files if not f.failures),
                 {word for line in groups.lines for _, word in line.keywords},
             ),
+            groups.reasons,
         )
     cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
     return _assembled(found, groups, causes, cause_of)
@@ -150,17 +151,17 @@ class _FailingLines:
             files[number][file.digest] = len(file.places)
         self.lines = tuple(numbers)
         self.signatures = signatures
-        reasons = ReasonFinder(self.recognizer, ((x, found.forms[x.form]) for _, _, x in direct))
+        reasons = ReasonFinder(self.recognizer)
         self.reasons = [
             reasons.reason(line, signature, self.contexts[found_in.failed.form])
             for line, signature, found_in in zip(numbers, signatures, self.specimens, strict=True)
         ]
         self.weights = [sum(files[n].values()) for n in range(len(signatures))]
-        alike: dict[Reason, list[int]] = defaultdict(list)
-        for number, reason in enumerate(self.reasons):
-            alike[reason].append(number)
-        self.by_reason = sorted(
-            alike.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
+        by_signature: dict[Signature, list[int]] = defaultdict(list)
+        for number, signature in enumerate(signatures):
+            by_signature[signature].append(number)
+        self.by_signature = sorted(
+            by_signature.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
         )
 
     def failing(
@@ -254,14 +255,12 @@ def _title(cause: Cause, number: int, groups: _FailingLines, writer: TitleWriter
             [groups.lines[n] for n in cause.lines if groups.reasons[n] == AS_NAME]
         )
     best = cause.proposals[0] if cause.proposals else None
-    kind, *words = groups.reasons[number]
     return writer.title(
         groups.lines[number],
         groups.contexts[groups.specimens[number].failed.form],
         groups.signatures[number].bracket,
         [groups.lines[n] for n in cause.lines],
         best if best and number in best.mended else None,
-        words[0] if kind == LEFT_OUT else "",
     )
 
 

@@ -85,7 +85,7 @@ class CauseSearch:
         proposals = self._proposals(group)
         for place, best in enumerate(proposals):
             # a line that is read further has its first cause here, and others behind it
-            taken = (best.mended | best.advanced) & members & self.open
+            taken = (best.mended & self.open) | (best.advanced & members)
             if taken:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None

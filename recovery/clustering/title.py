@@ -35,19 +35,17 @@ class TitleWriter:
         bracket: str,
         others: Sequence[LinePattern] = (),
         best: Proposal | None = None,
-        missing: str = "",
     ) -> str:
         """A sentence without a full stop: ``INT without DECL`` or ``FOR with STEP``.
 
         ``bracket`` is the one open before the failing token, ``others`` all lines of the cause, and
-        ``best`` the proposal that mends the line, where there is one; ``missing`` is a keyword that
-        is known to be left out.
+        ``best`` the proposal that mends the line, where there is one.
         """
         kinds, index = line.form.kinds, line.form.index
         meant = dict(line.keywords)
         lead = self._keyword(line, 0)
         came = meant.get(index) or self._phrase(kinds[index])
-        missing = missing or self._omitted_keyword(line, context)
+        missing = self._omitted_keyword(line, context)
         if not missing and 0 not in meant:
             missing = self._left_out(best)
         at_end = kinds[index] in self._ends

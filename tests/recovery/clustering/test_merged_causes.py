@@ -6,7 +6,7 @@ from grammar.notation.edits import Edit, Widen
 from grammar.notation.g4 import read
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
-from recovery.clustering.causes import merged_by_edits, merged_by_first_word
+from recovery.clustering.causes import merged_by_edits, merged_by_first_word, merged_by_reason
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
@@ -82,3 +82,12 @@ def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
     first, _ = apart(searched)
     assert [first, hopeless] == merged_by_edits(searched, [first, hopeless])
     assert [first, hopeless] == merged_by_first_word(searched, [first, hopeless])
+
+
+def test_causes_of_one_reason_are_one() -> None:
+    """Lines that fail for one reason stay together, with the proposals of all that mends any."""
+    searched = search()
+    causes = apart(searched)
+    [one] = merged_by_reason(searched, causes, [("sign",)] * 4)
+    assert ((0, 1, 2, 3), {LESS, MORE}) == (one.lines, {p.edits[0] for p in one.proposals})
+    assert causes == merged_by_reason(searched, causes, [("<",), ("<",), (">",), (">",)])
