@@ -51,6 +51,7 @@ FILES_WANTED = [
     ("bench real-code ?", ".zip"),
     ("bench mutation --singles 1 --multiple 0 --repeated 0 --jobs 1 --grammar ? !", ".g4"),
     ("bench mutation --singles 1 --multiple 0 --repeated 0 --jobs 1 --negatives ? !", ".src"),
+    ("bench causes --halves 0 ?", ".src"),
     ("bench check --sizes= ?", ".src"),
 ]
 
