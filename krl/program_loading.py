@@ -180,7 +180,7 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
         by_name.setdefault(path.stem.upper(), []).append(one)
         if path.name.startswith("$") or path.suffix.lower() == ".sub":
             todo += [one] if path.parent == folder or _is_in_drive(one.path) else []
-    todo += by_name[PurePosixPath(asked.path).stem.upper()]
+    todo += by_name.pop(PurePosixPath(asked.path).stem.upper())
     named: dict[Found, None] = {}
     while todo:
         one = todo.pop()
@@ -189,7 +189,7 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
             data = read(one)
             text = data.reason if isinstance(data, Skipped) else decode(data)
             words = frozenset[str]() if isinstance(text, str) else words_of(text.text)
-            todo += [other for name in words & by_name.keys() for other in by_name[name]]
+            todo += [other for name in words & by_name.keys() for other in by_name.pop(name)]
     return [one for one in found if one in named]
 
 

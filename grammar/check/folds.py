@@ -10,7 +10,7 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.syntax.source import Source
 
 #: A line that lost its semicolon. In one that can be read by chance, ``ENDFOLD (INI)`` is a call.
-_BARE = re.compile(r"^([ \t]*)((?:END)?FOLD(?=[ \t(]|$))", re.IGNORECASE | re.ASCII | re.MULTILINE)
+_BARE = re.compile(r"(?<![^\r\n])([ \t]*)((?:END)?FOLD)(?![^ \t(\r\n])", re.IGNORECASE)
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -19,8 +19,9 @@ def check(context: Context) -> Iterator[Diagnostic]:
     found = dict(_unbalanced(source))
     bare = {source.place(one.start(2))[0]: one[2] for one in _BARE.finditer(source.text)}
     if found and bare:
-        found = dict(_unbalanced(Source(_BARE.sub(r"\1;\2", source.text), source.path)))
-        found |= {line: f"; is missing before {word}" for line, word in bare.items()}
+        mended = dict(_unbalanced(Source(_BARE.sub(r"\1;\2", source.text), source.path)))
+        if len(mended) < len(found):  # else these are variables of such names
+            found = mended | {line: f"; is missing before {word}" for line, word in bare.items()}
     for line, message in found.items():
         if context.module.is_cut and message == _UNCLOSED:
             continue

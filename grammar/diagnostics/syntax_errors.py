@@ -518,7 +518,6 @@ def _written(site: ErrorSite, edit: LineEdit) -> _Mistake:
 _CLOSING = ")]}.,([{"
 
 
-#: In this order: the first that knows the mistake reports it.
 def _folds(site: ErrorSite) -> _Mistake | None:
     """A fold without its semicolon."""
     if site.word(0) not in ("FOLD", "ENDFOLD"):
@@ -537,6 +536,7 @@ def _prose(site: ErrorSite) -> _Mistake | None:
     return _Mistake("a comment begins with a semicolon", fix, region=site.region(0))
 
 
+#: In this order: the first that knows the mistake reports it.
 _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _blocks,
     _folds,

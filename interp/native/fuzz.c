@@ -182,6 +182,7 @@ static void run(struct krl_machine *machine, int32_t step, int depth, int *state
                 if (--*statements <= 0)
                     return;
             }
+            machine->stops = (int32_t)draw(4);
             if (draw(4) == 0)
                 interrupt(machine, depth, statements);
             if (instruction->op == KRL_ASK)
@@ -255,7 +256,7 @@ static int try_image(const uint8_t *data, size_t length)
         if (!krl_ready(&machine))
             abort();
         krl_begin(&machine, code);
-        machine.left = PER_SLICE;
+        machine.left = machine.whole = PER_SLICE;
         runs++;
         run(&machine, (int32_t)(machine.routines[code].entry - machine.steps), 0, &statements);
     }

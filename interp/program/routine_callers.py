@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import islice, product
+from itertools import count, islice, product
 from typing import Final
 
 from grammar.semantics.types import (
@@ -123,8 +123,10 @@ def _added(
     """The first file with callers of some of its routines; ``known`` are values of parameters."""
     unit = program.main
     parts, called = [unit.source.text], {}
-    for number, routine in enumerate(program.routines_of(unit)):
-        name = f"{_PREFIX}{number}"
+    routines = program.routines_of(unit)
+    taken = {routine.node.name.key for routine in routines}
+    names = (name for number in count() if (name := f"{_PREFIX}{number}") not in taken)
+    for name, routine in zip(names, routines, strict=False):
         lines = _lines(program, routine, name, known or {}, point) if is_called(routine) else None
         if lines is not None:
             parts += lines

@@ -124,8 +124,10 @@ class OpenProject:
             return
         for one in found[:MOST_FILES]:
             path = one.file.absolute().as_posix()
+            if one.member is not None:
+                continue
             self._origins.setdefault(one.file.absolute().parent, one.origin)
-            if one.member is None and path not in self._files:
+            if path not in self._files:
                 self.reload(path)
                 yield path
 

@@ -44,6 +44,13 @@ def test_a_program_begins_with_arguments_that_stand_in() -> None:
     ]
 
 
+def test_a_caller_has_a_name_of_its_own() -> None:
+    """A routine of the file may have the name that a caller would get."""
+    text = "DEF KRL_CALLS_0(N:IN)\nINT N\nEND\n"
+    program = with_caller(load([Source(text, "main.src")], "main.src", strict=False))
+    assert "KRL_CALLS_1" == program.start().name
+
+
 def test_what_cannot_be_called_is_told() -> None:
     """A parameter of no known type is no parameter that can be given a value."""
     text = "DEF main()\nEND\nDEF f(S:OUT)\nDECL Strange S\nEND\n"

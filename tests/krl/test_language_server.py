@@ -1,8 +1,10 @@
 """Names, findings and settings in an editor, asked of the open project without a server."""
 
+import io
 import json
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -175,6 +177,24 @@ def test_names_have_the_grade_of_the_project(tmp_path: Path) -> None:
     assert f"{tmp_path.as_posix()}/ALONE.src" not in [*project.catch_up()]
     assert {"warning"} == graded(project, tmp_path, "CALLS")
     assert [] == [*project.catch_up()]
+
+
+def test_archives_beside_files(tmp_path: Path) -> None:
+    """Files that lie around an archive of several cells are one project all the same."""
+    inner = io.BytesIO()
+    with zipfile.ZipFile(inner, "w") as archive:
+        archive.writestr("KRC/R1/cell.src", "DEF CELL()\nEND\n")
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr("one.zip", inner.getvalue())
+        archive.writestr("two.zip", inner.getvalue())
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "grip.src").write_text("DEF GRIP()\nEND\n", encoding="utf-8")
+    (tmp_path / "sub/main.src").write_text("DEF MAIN()\nGRIP()\nEND\n", encoding="utf-8")
+    project = OpenProject()
+    assert 2 == len([*project.add_folder(tmp_path)])
+    looked = project.look((tmp_path / "sub/main.src").as_posix())
+    assert looked is not None
+    assert "KRL701" not in {one.code for one in looked.diagnostics}
 
 
 def test_an_editor_finds_what_a_check_finds(tmp_path: Path) -> None:

@@ -1,9 +1,11 @@
 """What becomes of data: values, counters, waits, and what other files rely on."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from grammar.check.batch import CheckOptions, check_paths
 from grammar.diagnostics.diagnostic import Diagnostic
 
 Agrees = Callable[..., None]
@@ -202,6 +204,16 @@ def test_folds(agrees: Agrees) -> None:
     agrees("DEF NEG()\n;FOLD A ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
     agrees("DEF NEG()\n;FOLD A\nHALT\nENDFOLD (A) ;> KRL705? KRL102 KRL101\nEND")
     agrees("DEF NEG()\n;ENDFOLD ;> KRL705?\nHALT\n;FOLD B\n;ENDFOLD\nEND")
+    agrees("DEF NEG()\nINT FOLD\n;FOLD A ;> KRL705?\nFOLD = 5\n$ANOUT[1] = FOLD\nEND")
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_a_fold_without_its_semicolon(tmp_path: Path, ending: str) -> None:
+    """What cannot be read for a semicolon that is missing is one finding."""
+    lines = ("DEF NEG()", ";FOLD A", "HALT", "ENDFOLD", "END", "")
+    (tmp_path / "neg.src").write_bytes(ending.join(lines).encode())
+    found = check_paths([tmp_path], CheckOptions(), jobs=1).diagnostics
+    assert [("KRL001", 4)] == [(one.code, one.region.line) for one in found]
 
 
 @pytest.mark.parametrize(
