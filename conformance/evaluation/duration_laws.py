@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import permutations
+from itertools import compress
 from typing import Final
 
 import numpy as np
@@ -28,11 +28,14 @@ from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
 
 #: Share of a time that rounding may add to it, and seconds for its two ends.
-_SHARE, _ENDS = 2e-4, 1e-4
+_SHARE, _ENDS = 5e-4, 3e-4
+#: Seconds below which nothing is said of a motion: its ends lie between too few samples.
+_SHORTEST: Final = 0.2
 #: Share of a time by which a way back may take longer: its samples are others.
 _BACK: Final = 0.05
-#: How many times as long a row of blends may take as what it is compared with; a straight way is
-#: planned only as far as the advance run has come.
+#: Degrees an axis has to go for two ways to be alike whose ends are `NEAR_DEGREES` apart.
+_FAR_DEGREES: Final = 5.0
+#: How many times as long a row of blends may take as what it is compared with.
 _SLOWER, _STRAIGHT = 1.001, 1.05
 #: Share of the limits of axes below which none of them slows a path down.
 _IDLE: Final = 0.15
@@ -88,6 +91,8 @@ def _is_quick(one: EndedMotion) -> Iterator[Violation]:
         wanted, law, rule = _of_path(one), "a path takes what its speed and acceleration allow", ""
         is_free = took > wanted and _most_used(one) < _IDLE
     rounding = wanted * _SHARE + _ENDS
+    if max(took, wanted) < _SHORTEST:
+        return
     if wanted and (took < wanted - rounding or (is_free and took > wanted + rounding)):
         yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
 
@@ -162,29 +167,41 @@ def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Rows that take another time than others of the same run allow them.
 
     A way back takes the time of the way there. Blended motions are no slower than the same to exact
-    stops, nor than one motion straight on.
+    stops, nor than one motion straight on where all were planned before the first began.
     """
     rows = [row for row in _rows(motions) if not any(one.motion.parts for one in row)]
-    for one, other in permutations(rows, 2):
-        took, known = (row[-1].end - row[0].start for row in (one, other))
-        ends, others = (np.stack((row[0].ends[0], row[-1].ends[1])) for row in (one, other))
-        if len(one) == len(other) == 1 and _is_alike(one[0], other[0], is_back=True):
-            is_back = np.abs(ends[::-1] - others).max() < NEAR_DEGREES
-            if is_back and took > known * (1.0 + _BACK):
-                law = "a way back takes the time of the way there"
-                yield one[0].broken(law, f"{took} us, not {known} us")
-        if len(one) < 2 or np.abs(ends - others).max() > NEAR_DEGREES or took <= known * _STRAIGHT:
-            continue
-        if len(other) == 1 and _is_straight((*one, *other)):
-            yield one[0].broken(
-                "points on a straight way cost no time", f"{took} us, not {known} us"
-            )
-    for row in rows:
-        stops = _exact(rows, row)
-        took = row[-1].end - row[0].start
-        if len(row) > 1 and stops is not None and took > stops * _SLOWER:
+    if not rows:
+        return
+    ends = np.array([(row[0].ends[0], row[-1].ends[1]) for row in rows])  # (rows, 2, axes)
+    times = [row[-1].end - row[0].start for row in rows]
+    is_far = np.abs(ends[:, 1] - ends[:, 0]).max(axis=1) > _FAR_DEGREES
+    for row, way, took in compress(zip(rows, ends, times, strict=True), is_far):
+        one = row[0]
+        if len(row) == 1:
+            for other, known in _between(way[::-1], rows, ends, times):
+                if _is_alike(one, other, is_back=True) and took > known * (1.0 + _BACK):
+                    law = "a way back takes the time of the way there"
+                    yield one.broken(law, f"{took} us, not {known} us")
+        elif row[-1].planned < one.start:
+            for other, known in _between(way, rows, ends, times):
+                if took > known * _STRAIGHT and _is_straight((*row, other)):
+                    law = "points on a straight way cost no time"
+                    yield one.broken(law, f"{took} us, not {known} us")
+    for row, took in zip(rows, times, strict=True):
+        stops = _exact(rows, row) if len(row) > 1 else None
+        if stops is not None and took > stops * _SLOWER:
             law = "blended motions are no slower than exact ones"
             yield row[0].broken(law, f"{took} us, not {stops} us")
+
+
+def _between(
+    way: Array, rows: Sequence[Sequence[EndedMotion]], ends: Array, times: Sequence[int]
+) -> Iterator[tuple[EndedMotion, int]]:
+    """Single motions between two places (2, axes), and the µs they took."""
+    near = np.abs(ends - way).max(axis=(1, 2)) < NEAR_DEGREES
+    for row, took in compress(zip(rows, times, strict=True), near):
+        if len(row) == 1:
+            yield row[0], took
 
 
 def _is_alike(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) -> bool:

@@ -37,11 +37,12 @@ NEAR_DEGREES: Final = 0.05
 class EndedMotion:
     """A motion that came to its end, times in µs; where it is blended, the blend is left out.
 
-    ``begins`` and ``stops``: it starts from rest, and comes to it.
+    ``begins`` and ``stops``: it starts from rest, and comes to it. ``planned``: when it was
     """
 
     motion: Motion
     event: Event
+    planned: int
     start: int
     end: int
     begins: bool
@@ -109,18 +110,20 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
         (one.time or 0 for one in seen.of_kind("brake", "resume", "halt")), default=math.inf
     )
     found: dict[tuple[str, object], Event] = {}
-    for one in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end"):
+    kinds = ("motion_planned", "motion_start", "motion_end", "blend_start", "blend_end")
+    for one in seen.of_kind(*kinds):
         found.setdefault((one.kind, one.fields.get("motion")), one)
     for begun, motion in path.motions:
         event, end = (found.get((kind, motion.number)) for kind in ("motion_start", "motion_end"))
         entered, left = (found.get((kind, motion.number)) for kind in ("blend_end", "blend_start"))
         if event is None or end is None or end.time is None or end.time > stopped:
             continue
+        planned = found.get(("motion_planned", motion.number), event).time or 0
         start = begun if entered is None else entered.time
         last = end.time if left is None else left.time
         if start is not None and last is not None and start <= last <= path.times[-1]:
             yield EndedMotion(
-                motion, event, start, last, entered is None, left is None, path, machine
+                motion, event, planned, start, last, entered is None, left is None, path, machine
             )
 
 

@@ -60,6 +60,27 @@ def _while_to_loop(node: ast.Node) -> ast.Node:
     return ast.Loop(MADE, (_if(negated(node.condition), _EXIT), *node.body))
 
 
+def _for_to_while(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
+    """Where its last value and its step are numbers, which no pass can change."""
+    if not isinstance(node, ast.For) or _is_down(node.last) is None:
+        return node
+    step = node.step or integer(1)
+    is_down, counter = _is_down(step), ast.Variable(MADE, node.counter)
+    if is_down is None:
+        return node
+    test = ast.Binary(MADE, ">=" if is_down else "<=", counter, node.last)
+    following = ast.Binary(MADE, "+", counter, parenthesised(step))
+    body = (*node.body, ast.Assignment(MADE, counter, following))
+    return ast.Assignment(MADE, counter, node.first), ast.While(MADE, test, body)
+
+
+def _is_down(number: ast.Expression) -> bool | None:
+    """Whether a number is negative; ``None`` where it is none that is written out."""
+    is_down = isinstance(number, ast.Unary) and number.operator == "-"
+    digits = number.operand if isinstance(number, ast.Unary) else number
+    return is_down if isinstance(digits, ast.IntegerLiteral) else None
+
+
 def _repeat_to_loop(node: ast.Node) -> ast.Node:
     if not isinstance(node, ast.Repeat) or _has_labels(node.body):
         return node
@@ -332,6 +353,13 @@ LAWS: Final[Sequence[Law]] = (
         ("CTL-01", "CTL-02"),
         same_effects,
         _simply(_while_to_loop),
+    ),
+    Law(
+        "FOR as WHILE",
+        "FOR counts by its step, with a test before each pass",
+        ("CTL-01", "CTL-05"),
+        same_effects,
+        _simply(_for_to_while),
     ),
     Law(
         "REPEAT as LOOP and EXIT",

@@ -79,6 +79,10 @@ def _has_exact_stops(program: Program) -> bool:
     return _is_timeless(program) and not any(one.criteria for one in _motions(program))
 
 
+def _has_no_blend_by_speed(program: Program) -> bool:
+    return _is_timeless(program) and not any("C_VEL" in one.criteria for one in _motions(program))
+
+
 def _with_prelude(program: Program, *statements: ast.Statement) -> Program | None:
     """The program with statements before its first one."""
     modules = dict(program.modules or {})
@@ -310,12 +314,12 @@ LAWS: Final[Sequence[Law]] = (
     ),
     Law(
         "override",
-        "the override changes times, not where the arm goes: exact stops and spline blocks",
+        "the override changes times, not where the arm goes, but for blends by speed",
         ("SPL-03", "MOT-09"),
         same_geometry,
         _slower,
         _KINEMATIC,
-        needs=_has_exact_stops,
+        needs=_has_no_blend_by_speed,
     ),
     Law(
         "half the override",

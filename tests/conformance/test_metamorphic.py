@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from random import Random
+from typing import Any
 
 import pytest
 
@@ -20,6 +21,8 @@ from conformance.metamorphic.subject import Program, Run
 from conformance.metamorphic.tree_rewriting import integer, rewritten
 from grammar.generation.closed.programs import Sample
 from grammar.syntax import ast
+from interp.tree import statements
+from interp.values.operators import apply
 
 COMPUTES = """\
 DEF PROG()
@@ -42,6 +45,12 @@ DEF PROG()
     M = N * 2 + 1
     N = N - 2
   UNTIL N <= 0
+  FOR N = 5 TO -3 STEP -2
+    M = M + N
+  ENDFOR
+  FOR N = 1 TO 3
+    M = M + N
+  ENDFOR
   SWITCH M
     CASE 1, 3
       R = 0.5 + 1.25
@@ -190,6 +199,31 @@ def test_times_beyond_their_bounds_are_caught(percent: int, compare: Compare) ->
     attempt = run_law(law, _program(slow))
     assert attempt is not None
     assert "motions end after" in attempt.difference
+
+
+@pytest.mark.parametrize("law", ["FOR as WHILE", "machine in Python"])
+def test_a_loop_one_pass_short_is_caught(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tree interpreter whose FOR leaves its last pass out breaks two laws."""
+
+    def wrong(operator: str, left: Any, other: Any) -> Any:
+        return apply({">": ">=", "<": "<="}.get(operator, operator), left, other)
+
+    monkeypatch.setattr(statements, "apply", wrong)
+    attempt = run_law(next(one for one in laws() if one.name == law), _program(COMPUTES))
+    assert attempt is not None
+    assert attempt.difference
+
+
+def test_a_blend_that_depends_on_the_override_is_caught() -> None:
+    """The law about the override applies to blends by distance, not to those by speed."""
+    law = next(one for one in laws() if one.name == "override")
+    blends, speed = (MOVES.replace("700.0}", f"700.0}} {by}") for by in ("C_DIS", "C_VEL"))
+    wrong = replace(law, change=lambda *_: _program(blends.replace("$VEL", "$APO.CDIS=30\n  $VEL")))
+    assert run_law(law, _program(speed)) is None
+    for one, is_broken in ((law, False), (wrong, True)):
+        attempt = run_law(one, _program(blends.replace("$OUT[3] = TRUE", "")))
+        assert attempt is not None
+        assert is_broken is bool(attempt.difference)
 
 
 def test_a_law_that_does_not_apply_says_so() -> None:

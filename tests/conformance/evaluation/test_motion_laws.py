@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import Final
 
 import numpy as np
 import pytest
@@ -32,10 +33,35 @@ END
 """
 
 
+#: Motions as short as a few samples, and a straight way of which only a part is known in time.
+_SHORT: Final = """DEF a()
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  $ADVANCE = 1
+  $VEL.CP = 2
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  PTP {A1 0.0307, A3 90.3937}
+  LIN_REL {X 0.13}
+  PTP {A1 -0.2, A3 89.8}
+  LIN_REL {X -0.13}
+  LIN_REL {X 0.16}
+  PTP $POS_ACT
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  LIN {X 465} C_DIS
+  LIN {X 485} C_DIS
+  LIN {X 505} C_DIS
+  LIN {X 525} C_DIS
+  LIN {X 545}
+  LIN {X 445}
+  LIN {X 545}
+END
+"""
+
+
 @cache
-def seen() -> Observation:
+def seen(program: str = _PROGRAM) -> Observation:
     """A run of every kind of motion."""
-    source = Source(_PROGRAM, "a.src")
+    source = Source(program, "a.src")
     path: object = None
     case = Case("s/a", path, "t", ("CTL-01",), "run", "kss8", (source,), ())  # type: ignore[arg-type]
     return observe(case, Setup("tree", "kinematic"))
@@ -75,10 +101,11 @@ def broken(run: Observation) -> list[tuple[str, int]]:
     return [(one.rule, one.event.line if one.event else 0) for one in found]
 
 
-def test_a_right_run_breaks_none() -> None:
-    """And it has motions of all kinds."""
-    assert "end" == seen().ending
-    assert [] == broken(seen())
+@pytest.mark.parametrize("program", [_PROGRAM, _SHORT])
+def test_a_right_run_breaks_none(program: str) -> None:
+    """And it has motions of all kinds, or some that are too short to be judged."""
+    assert "end" == seen(program).ending
+    assert [] == broken(seen(program))
 
 
 def _shifted(path: PathRecord) -> PathRecord:
