@@ -20,7 +20,9 @@ from grammar.notation.model import (
     Grammar,
     Literal,
     Reference,
+    Repeat,
     Rule,
+    Span,
     characters_of,
     walk,
 )
@@ -54,7 +56,7 @@ def _with_keywords(grammar: Grammar) -> str:
     if not changed or grammar.case_insensitive:
         return _spliced(grammar, changed)
     head = re.sub(
-        r"(\bgrammar\s+\w+\s*;)(\s*options\s*\{)?",
+        r"(?m)((?:^|\*/)\s*grammar\s+\w+\s*;)(\s*options\s*\{)?",
         lambda found: (
             f"{found[1]}{found[2] or ' options {'} caseInsensitive = true; "
             + ("" if found[2] else "}")
@@ -94,13 +96,25 @@ def _without_ends(grammar: Grammar) -> str:
             rule.name: [
                 (*e.span, "")
                 for a in rule.alternatives
+                for repeated in [_repeated(a)]
                 for e in walk(a)
-                if isinstance(e, Reference) and e.name == "EOF"
+                if e.span not in repeated and _is_end(e)
             ]
             for rule in grammar.rules
             if rule.is_lexer
         },
     )
+
+
+def _is_end(element: Element) -> bool:
+    """Whether an element is the end of the file, as often as may be."""
+    item = element.item if isinstance(element, Repeat) else element
+    return isinstance(item, Reference) and item.name == "EOF"
+
+
+def _repeated(alternative: Alternative) -> set[Span]:
+    """Where elements stand that are left out with their repetition."""
+    return {e.item.span for e in walk(alternative) if isinstance(e, Repeat)}
 
 
 def _with_tokens(grammar: Grammar) -> str:
@@ -130,7 +144,10 @@ def _elements(grammar: Grammar) -> Iterator[Element]:
 
 def _names(text: str) -> Iterator[str]:
     """Names for the token of a text, the one to be preferred first."""
-    signs = (c if c.isalnum() or c == "_" else f"_{unicodedata.name(c, 'SIGN')}_" for c in text)
+    signs = (
+        c if c.isascii() and (c.isalnum() or c == "_") else f"_{unicodedata.name(c, 'SIGN')}_"
+        for c in text
+    )
     name = re.sub(r"\W|_{2,}", "_", "".join(signs)).strip("_").upper().removesuffix("_SIGN")
     name = name if name[:1].isalpha() and name.isascii() else f"SIGN_{name}".rstrip("_")
     return (f"{name}{number}" if number else name for number in count())
@@ -163,6 +180,8 @@ def _levels(grammar: Grammar, rule: Rule) -> str:
         some = elements[first : len(elements) - last]
         text = rule.text[some[0].span[0] : some[-1].span[1]] if some else ""
         kinds.get((first, last), others).append(text)
+    if not others:  # nothing that it ends with: told as any other left recursion
+        return rule.text
     fresh = (n for k in count(2) if (n := f"{rule.name}{k}") not in grammar.by_name)
     name, texts = rule.name, []
     for operator in reversed(binary):

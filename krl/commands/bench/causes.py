@@ -7,7 +7,7 @@ from rich.console import Console
 
 from krl.construct_ledger import expected_errors
 from krl.errors import FINE
-from krl.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.options import NEGATIVES, JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
@@ -27,8 +27,6 @@ def causes(
 
     Aims: 1.3 clusters for each construct, and no cluster for two (purity 1).
     """
-    from pathlib import Path
-
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from recovery.bench.cause_agreement import measured
@@ -41,7 +39,7 @@ def causes(
     with expected_errors():
         start = read_file(GRAMMAR.with_name("preliminary.g4"))
         steps = replay(start, Ledger.read(GRAMMAR.with_name("constructs")).accepted)
-        negatives = load(Path("corpus", "negatives"))
+        negatives = load(NEGATIVES) if NEGATIVES.is_dir() else ()
         found = survey(roots, start, jobs=1)
     with progress_bar("measuring", halves + 2) as bar:
         grammars = [start, *(grammar for _, grammar in steps)]

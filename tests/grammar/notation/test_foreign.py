@@ -25,13 +25,15 @@ def test_our_style(name: str) -> None:
 
 def test_quoted_texts_get_tokens() -> None:
     """What parser rules quote is a token though no rule names it, ahead of those that are named."""
-    assert [True, False] == _accepts("s : 'go' NAME '..' NAME EOF ;", "go a..b", "a b..c")
+    assert [True, False] == _accepts("s : 'go' 'é'? NAME '..' NAME EOF ;", "go a..b", "a b..c")
 
 
 def test_words_spelt_by_fragments() -> None:
     """They are keywords of a grammar that ignores case."""
     letters = "".join(f"fragment {c} : ('{c.lower()}' | '{c}') ;\n" for c in "GO")
-    grammar = read_foreign(f"grammar x;\ns : GO NAME EOF ;\nGO : G O ;\n{letters}{_TOKENS}")
+    grammar = read_foreign(
+        f"// a grammar a;\ngrammar x;\ns : GO NAME EOF ;\nGO : G O ;\n{letters}{_TOKENS}"
+    )
     assert ("GO", True) == (grammar.literal_tokens.get("GO"), grammar.case_insensitive)
     assert Recognizer(grammar).accepts("gO A")
 
@@ -55,8 +57,10 @@ def test_the_first_operator_binds_tightest() -> None:
 
 def test_a_set_in_brackets_is_negated() -> None:
     """Single characters in brackets are a set; a token may end with the file."""
-    rules = "s : NAME* EOF ;\nNOTE : '#' ~('\\n' | '\\r')* ('\\n' | EOF) -> skip ;"
-    assert [True, True, False] == _accepts(rules, "a #b\nc", "a #b", "a\nb")
+    end = "SIGN : '!' '-' EOF? -> skip ;"
+    rules = f"s : NAME* EOF ;\nNOTE : '#' ~('\\n' | '\\r')* ('\\n' | EOF) -> skip ;\n{end}"
+    texts = ("a #b\nc", "a #b", "a\nb", "a!-", "a!")
+    assert [True, True, False, True, False] == _accepts(rules, *texts)
 
 
 def test_what_reads_nothing_is_left_out() -> None:
@@ -76,6 +80,7 @@ def test_a_loop_that_ends_early() -> None:
     [
         ("s : { ok() }? NAME ;", "a semantic predicate"),
         ("s : t NAME ;\nt : s ;", "left recursion"),
+        ("s : s '!' s ;", "left recursion"),
         ("s : missing ;", "missing is not defined"),
         ("s : NAME ;\nA : ~'ab' ;", "only a set of characters can be negated"),
     ],
