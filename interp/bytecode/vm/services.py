@@ -179,7 +179,7 @@ class Services:
         state, counter = self._state, self.counter
 
         def completion(reply: object) -> Operation:
-            if isinstance(reply, int):
+            if isinstance(reply, int) and not self.entered:  # the end of an action is told once
                 counter.allow(reply)
             return after
 

@@ -62,6 +62,13 @@ PROGRAMS: Mapping[str, tuple[str, str]] = {
         'CONTINUE\nSWRITE(S[],R,K,"%d",N)\nSWRITE(S[],R,K,"%d",N)\n$OUT[2]=TRUE\nEND\n',
         "t=1.5 IN[1]=TRUE",
     ),
+    "texts_in_interrupt": (  # which ends on one, while the program waits with one of its own
+        "DEF main()\nINT K\nCHAR S[20]\nDECL STATE_T R\nINTERRUPT DECL 9 WHEN $IN[1] DO SEEN()\n"
+        f'INTERRUPT ON 9\n{HOME}PTP {{A1 20}}\nK=0\nSWRITE(S[],R,K,"%d",K)\nPTP {{A1 1}}\nEND\n'
+        'DEF SEEN()\nINT K\nCHAR S[20]\nDECL STATE_T R\nK=0\nSWRITE(S[],R,K,"%d",K)\nK=0\n'
+        'SWRITE(S[],R,K,"%d",K)\nEND\n',
+        "t=0.1 IN[1]=TRUE",
+    ),
     "polling": (
         "DEF main()\nINT I\nI=0\nWHILE NOT $IN[1]\nI=I+1\nENDWHILE\nLOOP\nI=I+1\nEND_HERE:\n"
         "IF I>2500 THEN\nEXIT\nENDIF\nENDLOOP\nEND\n",
