@@ -29,8 +29,8 @@ Array = npt.NDArray[np.float64]
 #: mm and degrees by which rounding may move a set-point.
 ROUNDING: Final = 1e-4
 #: mm and degrees that lie between two samples, where a place is looked up at its own moment.
-NEAR_MM: Final = 0.1
-NEAR_DEGREES: Final = 0.05
+NEAR_MM: Final = 0.5
+NEAR_DEGREES: Final = 0.2
 
 
 @dataclass(frozen=True)

@@ -79,8 +79,9 @@ def _has_exact_stops(program: Program) -> bool:
     return _is_timeless(program) and not any(one.criteria for one in _motions(program))
 
 
-def _has_no_blend_by_speed(program: Program) -> bool:
-    return _is_timeless(program) and not any("C_VEL" in one.criteria for one in _motions(program))
+def _blends_by_way(program: Program) -> bool:
+    criteria = {each for one in _motions(program) for each in one.criteria}
+    return _is_timeless(program) and bool(criteria) and "C_VEL" not in criteria
 
 
 def _with_prelude(program: Program, *statements: ast.Statement) -> Program | None:
@@ -314,12 +315,21 @@ LAWS: Final[Sequence[Law]] = (
     ),
     Law(
         "override",
-        "the override changes times, not where the arm goes, but for blends by speed",
+        "the override changes times, not where the arm goes: exact stops and spline blocks",
         ("SPL-03", "MOT-09"),
         same_geometry,
         _slower,
         _KINEMATIC,
-        needs=_has_no_blend_by_speed,
+        needs=_has_exact_stops,
+    ),
+    Law(
+        "override of blends",
+        "nor does it change where blends lie, but for those by speed",
+        ("BLD-01", "MOT-09"),
+        same_geometry,
+        _slower,
+        _KINEMATIC,
+        needs=_blends_by_way,
     ),
     Law(
         "half the override",

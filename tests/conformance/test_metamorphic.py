@@ -216,7 +216,7 @@ def test_a_loop_one_pass_short_is_caught(law: str, monkeypatch: pytest.MonkeyPat
 
 def test_a_blend_that_depends_on_the_override_is_caught() -> None:
     """The law about the override applies to blends by distance, not to those by speed."""
-    law = next(one for one in laws() if one.name == "override")
+    law = next(one for one in laws() if one.name == "override of blends")
     blends, speed = (MOVES.replace("700.0}", f"700.0}} {by}") for by in ("C_DIS", "C_VEL"))
     wrong = replace(law, change=lambda *_: _program(blends.replace("$VEL", "$APO.CDIS=30\n  $VEL")))
     assert run_law(law, _program(speed)) is None

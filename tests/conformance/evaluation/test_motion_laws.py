@@ -33,7 +33,7 @@ END
 """
 
 
-#: Motions as short as a few samples, and a straight way of which only a part is known in time.
+#: Motions of few samples, a narrow circle, a straight way of which only a part is known in time.
 _SHORT: Final = """DEF a()
   $TOOL = $NULLFRAME
   $BASE = $NULLFRAME
@@ -54,6 +54,7 @@ _SHORT: Final = """DEF a()
   LIN {X 545}
   LIN {X 445}
   LIN {X 545}
+  CIRC {X 546.4, Y 1.4}, {X 547.8, Y 0}
 END
 """
 
@@ -125,9 +126,9 @@ def test_the_tool_is_where_machine_data_put_it(change: Callable[[PathRecord], Pa
 @pytest.mark.parametrize(
     ("line", "target", "rule"),
     [
-        (6, {"A1": 0.2}, "MOT-20"),
-        (8, {"Y": 150.3}, "MOT-20"),
-        (7, {"X": 445, "Y": 50, "Z": 890, "A": 30, "B": 179.8, "C": 0}, "MOT-20"),
+        (6, {"A1": 0.5}, "MOT-20"),
+        (8, {"Y": 151.0}, "MOT-20"),
+        (7, {"X": 445, "Y": 50, "Z": 890, "A": 30, "B": 179.0, "C": 0}, "MOT-20"),
         (7, {"X": 445, "S": 3, "T": 2}, "POS-03"),
         (7, {"X": 445, "S": 0, "T": 2}, "POS-04"),
         (7, {"X": 445, "S": 6, "T": 2}, "POS-05"),
