@@ -527,12 +527,12 @@ def _folds(site: ErrorSite) -> _Mistake | None:
 
 
 def _prose(site: ErrorSite) -> _Mistake | None:
-    """A line of words, none of which KRL knows."""
+    """A line of words, none of which KRL knows; what was meant is for a person to say."""
     words = [token[0] for token in site.tokens]
     begin = words[:_PROSE]
     if len(begin) < _PROSE or not all(word.isalpha() and not _is_keyword(word) for word in begin):
         return None
-    fix = site.swap(f"; {words[0]}", 0)
+    fix = Fix("write ; ahead of it if it is one")
     return _Mistake("a comment begins with a semicolon", fix, region=site.region(0))
 
 
