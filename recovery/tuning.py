@@ -357,7 +357,7 @@ OPERAND_FILES = 5
 #: Bound on memory.
 GRAMMARS_KEPT = 3
 #: Files, the shortest, on which a block is tried, and on which it is tried whether an alternative
-#: is needed. Bound on time.
+#: is needed and what an edit does to damaged lines. Bound on time.
 BLOCK_FILES = 12
 FOLD_FILES = 40
 

@@ -1,7 +1,12 @@
-"""What speaks against edits: they do not fit, or accept a program that must stay rejected."""
+"""What speaks against edits: they do not fit, or accept what must stay rejected.
+
+That are written negatives; and lines that can be read, with one token lost or doubled, where an
+edit lets more of them pass than lines have shown it: a broken file teaches such forms.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -19,20 +24,28 @@ from recovery.tuning import GAIN_PER_NEGATIVE
 class Judge:
     """Judges edits of the grammar of a recogniser by the negatives that are ``rejected``.
 
-    ``reserved_in`` gives the words of a line that cannot be names (`recovery.language.Language`).
+    ``reserved_in`` gives the words of a line that cannot be names (`recovery.language.Language`),
+    ``texts`` are programs that the recogniser reads.
     """
 
     recognizer: Recognizer
     rejected: NegativeSet
     reserved_in: Callable[[str], frozenset[str]]
+    texts: Sequence[str] = ()
 
     def objection(
-        self, grammar: Grammar, edits: Sequence[Edit], alone: Sequence[Edit], gain: float = 0.0
+        self,
+        grammar: Grammar,
+        edits: Sequence[Edit],
+        alone: Sequence[Edit],
+        gain: float = 0.0,
+        most_damaged: float = math.inf,
     ) -> str:
         """Why edits are not to be taken; empty where nothing speaks against them.
 
         ``grammar`` has edits since, so that not all of those that were tried ``alone`` are left; an
-        edit of more ``gain`` may accept more.
+        edit of more ``gain`` may accept more. Of the lines of the texts, each with one token lost
+        or doubled, it may accept ``most_damaged`` more.
         """
         try:
             after = apply(grammar, edits)
@@ -48,7 +61,29 @@ class Judge:
         accepted = [n for n in self.rejected.accepted(wider) if self._is_read_anew(wider, n)]
         if len(accepted) > gain / GAIN_PER_NEGATIVE:
             return f"accepts {len(accepted)} programs that must be rejected: {accepted[0].reason}"
+        if most_damaged < math.inf:
+            damaged = self._damaged_read(wider) - self._damaged_read(self.recognizer)
+            if len(damaged) > most_damaged:
+                return f"accepts {len(damaged)} lines that have lost or doubled a token"
         return ""
+
+    def _damaged_read(self, recognizer: Recognizer) -> frozenset[tuple[int, int, int, bool]]:
+        """Which lines of the texts are read without one of their tokens, or with it twice."""
+        found = set()
+        for number, text in enumerate(self.texts):
+            kinds, state, begin = recognizer.kinds(text), recognizer.start, 0
+            for end in (n for n, kind in enumerate(kinds) if kind == recognizer.line_kind):
+                line = kinds[begin : end + 1]
+                for place in range(len(line) - 1):
+                    for is_twice in (False, True):
+                        damaged = line[: place + is_twice] + line[place + 1 - is_twice :]
+                        if recognizer.run(state, damaged)[1] is None:
+                            found.add((number, begin, place, is_twice))
+                state, failed = recognizer.run(state, line)
+                if failed is not None:
+                    break
+                begin = end + 1
+        return frozenset(found)
 
     def _is_read_anew(self, wider: Recognizer, negative: Negative) -> bool:
         """Whether a negative was rejected at the line that is wrong, all words of it known.

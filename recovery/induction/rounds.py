@@ -7,6 +7,7 @@ program which must stay rejected, and that lose lines which could be read.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -118,7 +119,10 @@ class Induction:
         if self._judge is None or self._judge.recognizer is not recognizer:
             self._held_read = reading([finder.find(file.text) for file in self.held])
             rejected = self.negatives.rejected_by(recognizer)
-            self._judge = Judge(recognizer, rejected, self._reserved_in)
+            found = zip(self.shown.files, failures, strict=True)
+            good = (file.text for file, failed in found if not failed)
+            texts = sorted(good, key=len)[:FOLD_FILES]
+            self._judge = Judge(recognizer, rejected, self._reserved_in, texts)
         judge = self._judge
         if step == "fold":
             taken, refused = self._folded(judge, failures, is_last=least == (1, 1))
@@ -253,7 +257,8 @@ class Induction:
                 continue  # its place has changed in this round: the next one will try it again
             else:
                 worth = 0.0 if found.is_strict else gain
-                reason = judge.objection(grammar, edits, found.edits, worth)
+                most = evidence.lines if evidence.files < LEAST_FILES_ALONE else math.inf
+                reason = judge.objection(grammar, edits, found.edits, worth, most)
             if reason:
                 refused.append(Refused(found.title, found.edits, gain, reason))
                 continue
@@ -277,8 +282,6 @@ class Induction:
         reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
         lines = CorpusLines(files, recognizer.lexer).lines
         operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
-        good = (file.text for file, found in zip(files, failures, strict=True) if not found)
-        some = sorted(good, key=len)[:FOLD_FILES]
         taken: list[Taken] = []
         refused: dict[str, Refused] = {}
         found = Folding(recognizer, operands, self._prefixes).candidates()
@@ -292,7 +295,7 @@ class Induction:
                 narrower = Recognizer(shorter)
                 if size(shorter) >= size(grammar) + fold.breadth:
                     reason = "the grammar would not be shorter"
-                elif not all(map(narrower.accepts, some)):
+                elif not all(map(narrower.accepts, judge.texts)):
                     reason = "loses lines that can be read"
             if reason:
                 refused[fold.title] = Refused(fold.title, fold.edits, 0.0, reason)

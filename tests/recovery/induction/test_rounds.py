@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grammar.notation.edits import AddAlternative, AddRule, AddToken, apply
+from grammar.notation.edits import AddAlternative, AddRule, AddToken, MakeOptional, apply
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
@@ -17,6 +17,7 @@ from recovery.induction import list_lengths, rounds
 from recovery.induction.corpus_lines import held_out
 from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
+from recovery.induction.objections import Judge
 from recovery.induction.rounds import Induction
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
@@ -241,6 +242,15 @@ def test_a_negative_is_an_objection(toy: Grammar, toy_files: tuple[CorpusFile, .
         Recognizer(grown.grammar).accepts(slash.text),
         any("a slash divides nothing" in reason for reason in reasons),
     )
+
+
+@pytest.mark.parametrize(("most", "is_taken"), [(1, False), (2, True)])
+def test_damaged_lines_are_an_objection(toy: Grammar, most: int, is_taken: bool) -> None:
+    """An edit that reads more lines that have lost or doubled a token than it may is refused."""
+    edits = (MakeOptional("assignment", (1, 2)),)  # the sign of an assignment
+    judge = Judge(Recognizer(toy), NegativeSet(()), lambda _line: frozenset(), ["A := 1\nB := 2\n"])
+    assert not judge.objection(toy, edits, edits)
+    assert is_taken == (not judge.objection(toy, edits, edits, most_damaged=most))
 
 
 def test_a_step_is_struck_out(growth: Growth) -> None:
