@@ -37,7 +37,8 @@ NEAR_DEGREES: Final = 0.2
 class EndedMotion:
     """A motion that came to its end, times in µs; where it is blended, the blend is left out.
 
-    ``begins`` and ``stops``: it starts from rest, and comes to it. ``planned``: when it was
+    ``begins`` and ``stops``: it starts from rest, and comes to it. ``planned`` is the time at
+    which its way was known.
     """
 
     motion: Motion

@@ -17,8 +17,9 @@ def check(context: Context) -> Iterator[Diagnostic]:
     """Where ;FOLD and ;ENDFOLD do not belong together."""
     source = context.source
     found = dict(_unbalanced(source))
-    bare = {source.place(one.start(2))[0]: one[2] for one in _BARE.finditer(source.text)}
-    if found and bare:
+    lost = _BARE.finditer(source.text) if found else ()
+    bare = {source.place(one.start(2))[0]: one[2] for one in lost}
+    if bare:
         mended = dict(_unbalanced(Source(_BARE.sub(r"\1;\2", source.text), source.path)))
         if len(mended) < len(found):  # else these are variables of such names
             found = mended | {line: f"; is missing before {word}" for line, word in bare.items()}

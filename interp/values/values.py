@@ -378,7 +378,7 @@ def _fill_structure(target: StructureValue, value: StructureValue) -> None:
         parts = list(value.members)
     else:
         names = {target.type.name.upper(), value.type.name.upper()}
-        if not any(names.issubset(kind) for kind in (CARTESIAN, AXES)):
+        if not (names.issubset(CARTESIAN) or names.issubset(AXES)):
             raise fault("inadmissible")
         places = _places(value.type)
         found = (places.get(member.name.upper()) for member in target.type.members)

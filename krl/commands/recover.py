@@ -103,7 +103,6 @@ def recover(
     ] = None,
 ) -> int:
     """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
-    from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
@@ -113,6 +112,8 @@ def recover(
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
     if auto:
+        from grammar.notation.foreign import read_foreign
+
         if suffix and not grammar:
             raise InputError(f"--suffix {suffix}: a language other than KRL needs --grammar FILE")
         if without and (grammar or resume or strike):

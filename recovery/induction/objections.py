@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from grammar.notation.edits import Edit, apply
 from grammar.notation.model import Grammar, GrammarError
@@ -20,7 +21,7 @@ from recovery.survey.failing_line import source_lines
 from recovery.tuning import GAIN_PER_NEGATIVE
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, as it keeps what its recogniser reads
 class Judge:
     """Judges edits of the grammar of a recogniser by the negatives that are ``rejected``.
 
@@ -62,10 +63,14 @@ class Judge:
         if len(accepted) > gain / GAIN_PER_NEGATIVE:
             return f"accepts {len(accepted)} programs that must be rejected: {accepted[0].reason}"
         if most_damaged < math.inf:
-            damaged = self._damaged_read(wider) - self._damaged_read(self.recognizer)
+            damaged = self._damaged_read(wider) - self._read_so_far
             if len(damaged) > most_damaged:
                 return f"accepts {len(damaged)} lines that have lost or doubled a token"
         return ""
+
+    @cached_property
+    def _read_so_far(self) -> frozenset[tuple[int, int, int, bool]]:
+        return self._damaged_read(self.recognizer)
 
     def _damaged_read(self, recognizer: Recognizer) -> frozenset[tuple[int, int, int, bool]]:
         """Which lines of the texts are read without one of their tokens, or with it twice."""
