@@ -19,9 +19,7 @@ from conformance.evaluation.motions import (
     ROUNDING,
     Array,
     EndedMotion,
-    ended,
 )
-from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import change_rates
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
@@ -43,9 +41,8 @@ _SPLINE_JERKS: Final = (500e3, 50e3)
 _RAMP: Final = 0.08
 
 
-def delays(seen: Observation) -> Iterator[Violation]:
+def delays(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Motions that take another time than they have to, of a run whose override is 100."""
-    motions = list(ended(seen))
     for one in motions:
         yield from _is_quick(one)
     yield from _compared(motions)
@@ -108,9 +105,8 @@ def _of_axes(one: EndedMotion, way: Array) -> float:
 def _of_path(one: EndedMotion) -> float:
     """The seconds of a path, as the slowest of way, swivel and rotation would take; 0: unknown."""
     motion, settings, most = one.motion, one.motion.settings, one.machine
-    first, *_, last = poses = one.poses(
-        np.vstack((one.ends[:1], one.path.axes[one.rows], one.ends[1:]))
-    )
+    first, last = one.poses(one.ends)
+    poses = np.concatenate((first[None], one.tools, last[None]))
     way = float(np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).sum())
     turned = first[:3, :3].T @ last[:3, :3]
     swivel = math.degrees(math.acos(min(max(turned[0, 0], -1.0), 1.0)))

@@ -16,6 +16,7 @@ from typing import Literal
 
 from conformance.evaluation.duration_laws import delays
 from conformance.evaluation.motion_laws import misdeeds
+from conformance.evaluation.motions import ended
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_laws import deviations
@@ -70,8 +71,9 @@ def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
         return
     texts = (*case.io, *(source.text for source in case.sources))
     slow = any("OV_PRO" in text.upper() for text in texts)
-    laws = (deviations, violations, misdeeds, *(() if slow else (delays,)))
-    for one in chain.from_iterable(law(seen) for law in laws):
+    motions = tuple(ended(seen))
+    broken = [deviations(seen), violations(seen), misdeeds(seen, motions)]
+    for one in chain(*broken, () if slow else delays(motions)):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail
         yield Check(file or case.main, line, one.law, "unmet", one.actual, is_sure, one.rule)

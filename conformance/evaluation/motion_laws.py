@@ -17,7 +17,6 @@ from conformance.evaluation.motions import (
     NEAR_MM,
     ROUNDING,
     EndedMotion,
-    ended,
     flanges_of,
 )
 from conformance.evaluation.observation import Observation
@@ -34,13 +33,12 @@ _POINT: Final = ("X", "Y", "Z")
 _ANGLES: Final = ("A", "B", "C")
 
 
-def misdeeds(seen: Observation) -> Iterator[Violation]:
-    """What motions do that was not programmed; nothing where path or machine data are unknown."""
+def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """What the motions of a run do that was not programmed."""
     path, machine = seen.path, seen.machine
-    if path is None or machine is None:
-        return
-    yield from _displaced(path, machine)
-    for one in ended(seen):
+    if path is not None and machine is not None:
+        yield from _displaced(path, machine)
+    for one in motions:
         for law in (_arrives, _has_posture, _keeps_speed, _passes_auxiliary):
             yield from law(one)
 
@@ -146,7 +144,7 @@ def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
     if motion.settings.placement.mode is not IpoMode.BASE:
         return
     wanted = np.array([[point[name] for name in _POINT] for point in points])
-    rows = one.poses(one.path.axes[one.rows])[:, :3, 3]
+    rows = one.tools[:, :3, 3]
     start = one.poses(one.ends[:1])[0, :3, 3]
     try:
         off = float(from_circle(rows, start, *wanted).max(initial=0.0))
@@ -162,18 +160,17 @@ def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
     motion, settings = one.motion, one.motion.settings
     if motion.parts or one.rows.stop - one.rows.start < 3:
         return
-    times, axes = one.path.times[one.rows], one.path.axes[one.rows]
+    times = one.path.times[one.rows]
     if motion.kind in ("PTP", "SPTP"):
         most = one.axis_rates
         if most is None:
             return
-        share = np.abs(change_rates(times, axes)).max(axis=0) / most[0]
+        share = np.abs(change_rates(times, one.path.axes[one.rows])).max(axis=0) / most[0]
         axis = int(np.argmax(share))
         if share[axis] > RATE_MARGIN:
             yield one.broken("axes keep $VEL_AXIS", f"{share[axis]:.1%} of it", "MOT-02")
         return
-    poses = one.poses(axes)
-    speeds = np.linalg.norm(change_rates(times, poses[:, :3, 3]), axis=1) / 1000.0
+    speeds = np.linalg.norm(change_rates(times, one.tools[:, :3, 3]), axis=1) / 1000.0
     most_path = min(settings.velocity, one.machine.velocity.path)
     if settings.is_reduced:
         most_path = min(most_path, one.machine.t1_speed)

@@ -64,6 +64,11 @@ class EndedMotion:
         """The axes at its start and its end, (2, axes)."""
         return between(self.path.times, self.path.axes, [self.start, self.end])
 
+    @cached_property
+    def tools(self) -> Array:
+        """The tool in the base at its samples, (n, 4, 4)."""
+        return self.poses(self.path.axes[self.rows])
+
     def poses(self, axes: Array) -> Array:
         """The tool in the base, (n, 4, 4), where axes (n, axes) stand."""
         placement, own = self.motion.settings.placement, axes[:, ROBOT_AXES:]

@@ -11,7 +11,7 @@ import pytest
 from conformance.evaluation.duration_laws import delays, seconds_of
 from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.motion_laws import misdeeds
-from conformance.evaluation.motions import flanges_of
+from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
@@ -98,7 +98,8 @@ def settings_of(line: int, **changed: object) -> Observation:
 
 def broken(run: Observation) -> list[tuple[str, int]]:
     """Rules and lines of what is broken."""
-    found = (*misdeeds(run), *delays(run))
+    motions = tuple(ended(run))
+    found = (*misdeeds(run, motions), *delays(motions))
     return [(one.rule, one.event.line if one.event else 0) for one in found]
 
 
