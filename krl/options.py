@@ -3,11 +3,14 @@
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from krl.errors import InputError
+
+if TYPE_CHECKING:
+    from recovery.negatives.negatives import Negative
 
 #: Where a command's record goes; `krl.output_files.check_files` sees to it before the work.
 JsonOption = Annotated[
@@ -41,9 +44,8 @@ CorpusArgument = Annotated[
     ),
 ]
 
-#: Programs that a grammar has to reject, where a checkout has them.
-NEGATIVES = Path("corpus", "negatives")
 _CORPUS = Path("corpus")
+_NEGATIVES = Path("corpus", "negatives")
 _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
 
 
@@ -70,3 +72,13 @@ def _there(folders: Iterable[Path]) -> list[Path]:
     if not roots:
         raise InputError("there is no corpus/ here: name files, folders or .zip archives")
     return roots
+
+
+def negatives_or_ours(folder: Path | None = None) -> "tuple[Negative, ...]":
+    """The programs that a grammar has to reject: those below a folder, or of a checkout, if any.
+
+    Raises `recovery.negatives.negatives.NegativeError`.
+    """
+    from recovery.negatives.negatives import load
+
+    return load(folder or _NEGATIVES) if folder or _NEGATIVES.is_dir() else ()

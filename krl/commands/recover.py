@@ -11,7 +11,13 @@ import typer
 from krl.commands.recover_auto import recover_auto
 from krl.construct_ledger import expected_errors
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import NEGATIVES, CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
+from krl.options import (
+    CorpusArgument,
+    JobsOrOneOption,
+    JsonTooOption,
+    corpus_or_ours,
+    negatives_or_ours,
+)
 from krl.output_files import check_targets, write_json
 from krl.progress import progress_bar
 from krl.survey_summary import print_survey
@@ -157,8 +163,7 @@ def recover(
     with expected_errors():
         chosen = read_file(grammar) if grammar else krl_grammar()
         restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
-        given = negatives or (NEGATIVES if NEGATIVES.is_dir() else None)
-        surveyor = _Surveyor(roots, load(given) if given else (), out, jobs, scheduler)
+        surveyor = _Surveyor(roots, negatives_or_ours(negatives), out, jobs, scheduler)
         # where nothing has grown yet, the start is what is in force
         if grammar is None and start and restrictive.sha256 != chosen.sha256:
             ledger = Ledger.read(GRAMMAR.with_name("constructs"))

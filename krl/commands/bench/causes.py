@@ -7,7 +7,7 @@ from rich.console import Console
 
 from krl.construct_ledger import expected_errors
 from krl.errors import FINE
-from krl.options import NEGATIVES, JsonOption, ProgramsArgument, programs_or_ours
+from krl.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
@@ -31,7 +31,6 @@ def causes(
     from grammar.notation.generate import GRAMMAR
     from recovery.bench.cause_agreement import measured
     from recovery.ledger.ledger import Ledger, replay
-    from recovery.negatives.negatives import load
     from recovery.survey.survey import survey
 
     check_files(json_file)
@@ -39,7 +38,7 @@ def causes(
     with expected_errors():
         start = read_file(GRAMMAR.with_name("preliminary.g4"))
         steps = replay(start, Ledger.read(GRAMMAR.with_name("constructs")).accepted)
-        negatives = load(NEGATIVES) if NEGATIVES.is_dir() else ()
+        negatives = negatives_or_ours()
         found = survey(roots, start, jobs=1)
     with progress_bar("measuring", halves + 2) as bar:
         grammars = [start, *(grammar for _, grammar in steps)]

@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINE, as_input_errors
-from krl.options import NEGATIVES, JobsOption, JsonOption, all_cores
+from krl.options import JobsOption, JsonOption, all_cores, negatives_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
@@ -40,8 +40,11 @@ def mutation(
         Path | None, typer.Option(metavar="FILE", help="The .g4 to damage; default: KRL.g4.")
     ] = None,
     negatives: Annotated[
-        Path, typer.Option(metavar="DIR", help="Programs that must stay rejected.")
-    ] = NEGATIVES,
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="Programs that must stay rejected; default: corpus/negatives."
+        ),
+    ] = None,
     singles: Annotated[
         int, typer.Option(min=0, metavar="N", help="At most so many single mutants; 0 for all.")
     ] = 0,
@@ -66,13 +69,13 @@ def mutation(
     from recovery.bench.assessment import assess_all
     from recovery.bench.specimens import choose_mutants, material_for
     from recovery.bench.stability import rankings, same_ranking
-    from recovery.negatives.negatives import NegativeError, load
+    from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError
 
     check_files(json_file)
     with as_input_errors(GrammarError, IngestError, NegativeError):
         whole = read_file(grammar or GRAMMAR)
-        material = material_for(whole, paths or [_PROGRAMS], load(negatives), seed)
+        material = material_for(whole, paths or [_PROGRAMS], negatives_or_ours(negatives), seed)
         chosen = choose_mutants(whole, singles, multiple, seed)
         again = chosen[:: max(1, len(chosen) // repeated)][:repeated] if repeated else []
         with progress_bar("assessing", len(chosen)) as bar:

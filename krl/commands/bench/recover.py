@@ -17,7 +17,7 @@ from krl.commands.bench.scaling import (
     sizes_of,
 )
 from krl.errors import FINE, as_input_errors
-from krl.options import NEGATIVES, JsonOption, ProgramsArgument, programs_or_ours
+from krl.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
 from krl.text_table import figures
@@ -69,16 +69,14 @@ def _damaged(
 ) -> int:
     from grammar.notation.krl_grammar import krl_grammar
     from recovery.bench.damaged_survey import measure_damaged
-    from recovery.negatives.negatives import load
     from support.files.discovery import IngestError
 
-    negatives = load(NEGATIVES) if NEGATIVES.is_dir() else ()
     with as_input_errors(IngestError), progress_bar("measuring", len(sizes)) as advance:
         rows = list(
             measure_damaged(
                 roots,
                 krl_grammar(),
-                negatives,
+                negatives_or_ours(),
                 sizes=sizes,
                 damages=damages,
                 seed=seed,

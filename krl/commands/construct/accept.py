@@ -17,7 +17,7 @@ from krl.construct_ledger import (
     print_refusals,
 )
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import NEGATIVES, JobsOrOneOption
+from krl.options import JobsOrOneOption, negatives_or_ours
 from krl.progress import progress_bar
 from support.files.atomic_write import write_atomic
 
@@ -173,7 +173,6 @@ def _evaluated(
 
 def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":
     from recovery.ledger.baseline import Corpora
-    from recovery.negatives.negatives import load
 
     if not paths:
         paths = [_OPEN] if _OPEN.is_dir() else []
@@ -182,7 +181,7 @@ def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":
     return Corpora(
         paths,
         _OWN if _OWN.is_dir() else None,
-        load(NEGATIVES) if NEGATIVES.is_dir() else (),
+        negatives_or_ours(),
         cache=_CACHE,
         jobs=jobs,
     )
