@@ -14,6 +14,7 @@ _PARTS = re.compile(
     |(?P<tokens>\b(?:tokens|channels)\s*\{{[^{{}}]*\}})
     |(?P<predicate>{_ACTION}\s*\?)
     |(?P<action>{_ACTION})
+    |(?P<lazy>\.(?P<often>[*+])\?(?P<gap>\s*)(?P<stop>'(?>\\.|[^'\\])'))
     |(?P<set>\[(?>\\.|[^\]\\\r\n])*+\]?)
     |(?P<literal>'(?>\\.|[^'\\\r\n])*+'?)
     |(?P<kind>\b(?:lexer|parser)\s+grammar\b)
@@ -60,7 +61,10 @@ def without_decoration(text: str) -> str:
     """
 
     def blank(part: re.Match[str]) -> str:
+        if part["lazy"]:
+            first = ". " if part["often"] == "+" else ""
+            return f"{first}~{part['stop']}*{part['gap']}{part['stop']}"
         is_left_out = part.lastgroup in ("named", "action", "label", "element")
         return re.sub(r"[^\r\n]", " ", part[0]) if is_left_out else part[0]
 
-    return re.sub(r"\.([*+])\?(\s*)('(?:[^'\\]|\\.)')", r"~\3\1\2\3", _PARTS.sub(blank, text))
+    return _PARTS.sub(blank, text)

@@ -73,6 +73,13 @@ def test_a_loop_that_ends_early() -> None:
     """Up to one character it is one over all others."""
     rules = "s : TEXT NAME EOF ;\nTEXT : '\"' .*? '\"' ;"
     assert [True, False] == _accepts(rules, '"a b" c', '"a" "b" c')
+    once = "s : TEXT EOF ;\nTEXT : '<' .+? '>' ;"
+    assert [True, True, False] == _accepts(once, "<a>", "<>>", "<>")
+
+
+def test_a_quoted_loop_is_a_text() -> None:
+    """What stands within quotes is read as it is."""
+    assert [True, False] == _accepts("s : TEXT EOF ;\nTEXT : '.*?' 'x' ;", ".*?x", "aax")
 
 
 @pytest.mark.parametrize(
