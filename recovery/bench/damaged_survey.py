@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from recovery.bench.survey_speed import synthesise
 from recovery.negatives.negatives import Negative
 from recovery.survey.survey import survey
 from support.measure.isolated import call_isolated
-from support.measure.speed import MB, peak_mb
+from support.measure.speed import MB, peak_mb, scaling
 
 
 def measure_damaged(
@@ -27,20 +27,23 @@ def measure_damaged(
     damages: Sequence[str],
     seed: int,
     on_step: Callable[[], object] = lambda: None,
-) -> Iterator[dict[str, Any]]:
-    """Yield the cost of each of the ``sizes`` in MB: copies of what lies below ``roots``, damaged.
+) -> dict[str, Any]:
+    """What each of the ``sizes`` in MB costs: copies of what lies below ``roots``, damaged.
 
-    Each is surveyed by a process of its own, with one core. ``read_seconds`` and ``cause_seconds``
-    are of CPU; ``forms`` counts the different failing lines. ``on_step`` is called for each.
+    Each is surveyed by a process of its own, with one core, see `support.measure.speed.scaling`.
+    ``read_seconds`` and ``cause_seconds`` are of CPU, ``s_per_mb`` of both; ``forms`` counts the
+    different failing lines. ``on_step`` is called for each.
 
     Raises `support.files.discovery.IngestError` where there is nothing to copy.
     """
-    for size in sizes:
+
+    def measured(size: float) -> dict[str, Any]:
         with tempfile.TemporaryDirectory() as folder:
             place = Path(folder)
             call_isolated(synthesise, roots, grammar.text, place, round(size * MB), seed, damages)
-            yield {"mb": size, **call_isolated(_surveyed, place, grammar.text, negatives)}
-        on_step()
+            return call_isolated(_surveyed, place, grammar.text, negatives)
+
+    return scaling(sizes, measured, "s_per_mb", on_step)
 
 
 def _surveyed(folder: Path, grammar_text: str, negatives: Sequence[Negative]) -> dict[str, Any]:
@@ -50,6 +53,7 @@ def _surveyed(folder: Path, grammar_text: str, negatives: Sequence[Negative]) ->
     found = survey([folder], grammar, jobs=1)
     read = clock()
     record = analyse(found, negatives, grammar_name="")
+    searched = clock()
     return {
         "files": record["files"],
         "parsed": record["parsed"],
@@ -58,6 +62,7 @@ def _surveyed(folder: Path, grammar_text: str, negatives: Sequence[Negative]) ->
         "forms": len(found.forms),
         "clusters": len(record["clusters"]),
         "read_seconds": read - began,
-        "cause_seconds": clock() - read,
+        "cause_seconds": searched - read,
+        "s_per_mb": (searched - began) * MB / record["bytes"],
         "peak_mb": peak_mb(),
     }

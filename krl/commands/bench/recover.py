@@ -72,18 +72,16 @@ def _damaged(
     from support.files.discovery import IngestError
 
     with as_input_errors(IngestError), progress_bar("measuring", len(sizes)) as advance:
-        rows = list(
-            measure_damaged(
-                roots,
-                krl_grammar(),
-                negatives_or_ours(),
-                sizes=sizes,
-                damages=damages,
-                seed=seed,
-                on_step=advance,
-            )
+        costs = measure_damaged(
+            roots,
+            krl_grammar(),
+            negatives_or_ours(),
+            sizes=sizes,
+            damages=damages,
+            seed=seed,
+            on_step=advance,
         )
-    record = {"bench": "recover damaged", "damage": damages, "seed": seed, "scaling": rows}
+    record = {"bench": "recover damaged", "damage": damages, "seed": seed, **costs}
     write_json(record, out, indent=1)
     shown = [
         (
@@ -91,13 +89,16 @@ def _damaged(
             *(f"{row[count]:,}" for count in ("files", "failures", "forms", "clusters")),
             f"{row['read_seconds']:.1f} s",
             f"{row['cause_seconds']:.1f} s",
-            f"{(row['read_seconds'] + row['cause_seconds']) * MB / row['bytes']:.1f}",
+            f"{row['s_per_mb']:.1f}",
             peak(row),
         )
-        for row in rows
+        for row in costs["scaling"]
     ]
     titles = ("damaged", "files", "failures", "forms", "clusters", "reading", "causes", "s/MB")
-    Console(highlight=False).print(figures((*titles, "peak memory"), shown))
+    console = Console(highlight=False)
+    console.print(figures((*titles, "peak memory"), shown))
+    if shown:
+        print_growth(console, record, "cost of a MB")
     return FINE
 
 
