@@ -61,8 +61,9 @@ class EndedMotion:
 
     @cached_property
     def ends(self) -> Array:
-        """The axes at its start and its end, (2, axes)."""
-        return between(self.path.times, self.path.axes, [self.start, self.end])
+        """The axes at its start and its end, (2, axes); a run may end within a cycle of its samples."""
+        times = self.path.times
+        return between(times, self.path.axes, [self.start, self.end], _cycle(times))
 
     @cached_property
     def tools(self) -> Array:
@@ -115,6 +116,7 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
     stopped = min(
         (one.time or 0 for one in seen.of_kind("brake", "resume", "halt")), default=math.inf
     )
+    known = path.times[-1] + _cycle(path.times)
     found: dict[tuple[str, object], Event] = {}
     kinds = ("motion_planned", "motion_start", "motion_end", "blend_start", "blend_end")
     for one in seen.of_kind(*kinds):
@@ -127,10 +129,15 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
         planned = found.get(("motion_planned", motion.number), event).time or 0
         start = begun if entered is None else entered.time
         last = end.time if left is None else left.time
-        if start is not None and last is not None and start <= last <= path.times[-1]:
+        if start is not None and last is not None and start <= last <= known:
             yield EndedMotion(
                 motion, event, planned, start, last, entered is None, left is None, path, machine
             )
+
+
+def _cycle(times: npt.NDArray[np.int64]) -> int:
+    """µs from one sample to the next."""
+    return int(times[-1] - times[-2]) if len(times) > 1 else 0
 
 
 def flanges_of(chain: Chain, axes: Array) -> Array:

@@ -104,13 +104,16 @@ def from_synchronous(axes: Array) -> float | None:
     return float(np.abs(axes - axes[0] - share[:, None] * way).max())
 
 
-def between(times: npt.NDArray[np.int64], rows: Array, moments: npt.ArrayLike) -> Array:
+def between(
+    times: npt.NDArray[np.int64], rows: Array, moments: npt.ArrayLike, after: int = 0
+) -> Array:
     """Rows at other times, by the cubic through the four samples around each; the ends are kept.
 
     ``rows`` is of shape (n, columns), the result of shape (moments, columns), or (columns,) for one
-    moment.
+    moment. The last cubic goes on for ``after`` µs.
     """
-    wanted = np.clip(np.atleast_1d(np.asarray(moments, dtype=np.float64)), times[0], times[-1])
+    last = times[-1] + after
+    wanted = np.clip(np.atleast_1d(np.asarray(moments, dtype=np.float64)), times[0], last)
     count = min(4, len(times))
     first = np.clip(np.searchsorted(times, wanted) - count // 2, 0, len(times) - count)
     found = np.zeros((len(wanted), rows.shape[1]))

@@ -1,0 +1,168 @@
+"""Where blends begin and end, held against what docs/motion.md says of their zones.
+
+Ways are those that were programmed, from point to point, not those that were gone: what a blend
+takes of both follows from targets, criteria and machine data alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from conformance.evaluation.motions import Array, EndedMotion
+from conformance.evaluation.path_geometry import drawn
+from conformance.evaluation.run_laws import Violation
+from interp.robot.arm import Target
+from interp.robot.kinematics.machine_data import ROBOT_AXES
+from interp.robot.kinematics.placement import IpoMode
+
+_SHARES: Final = np.linspace(0.0, 1.0, 501)[:, None]
+_POINT: Final = ("X", "Y", "Z")
+#: mm and degrees by which a zone may be off.
+_NEAR_MM, _NEAR_DEGREES = 0.05, 0.01
+#: At most so much of a way is blended.
+_HALF: Final = 0.5
+
+
+@dataclass(frozen=True)
+class _Way:
+    """A motion to its target: the axes of a PTP (n, axes), where known; the tool (n, 3)."""
+
+    axes: Array | None
+    points: Array
+
+    @cached_property
+    def sums(self) -> Array:
+        """mm of the way of the tool up to each point."""
+        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return np.concatenate(([0.0], np.cumsum(steps)))
+
+    def gone(self, point: Array) -> float:
+        """mm of the way up to what of it is nearest to a point."""
+        starts, along = self.points[:-1], np.diff(self.points, axis=0)
+        squares = np.maximum((along**2).sum(axis=1), 1e-12)
+        shares = np.clip(((point - starts) * along).sum(axis=1) / squares, 0.0, 1.0)
+        off = np.linalg.norm(starts + shares[:, None] * along - point, axis=1)
+        place = int(np.argmin(off))
+        return float(self.sums[place] + shares[place] * np.sqrt(squares[place]))
+
+
+def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Blends that take more of a motion than their criteria say, or less of both [BLD-07]."""
+    law = "a blend takes of both motions what its criteria say"
+    for (one, way), (other, further) in pairwise(_ways(motions)):
+        if one.stops or other.begins:
+            continue
+        is_path, leads_on = (not each.motion.kind.endswith("PTP") for each in (one, other))
+        main, *second = one.motion.criteria
+        behind = main
+        if is_path is not leads_on:
+            behind = second[0] if second else "C_DIS" if leads_on else "C_PTP"
+        off = [
+            _excess(one, way, main, one, at_end=True),
+            _excess(other, further, behind, one, at_end=False),
+        ]
+        known = [each for each in off if each is not None]
+        if max(known, default=0.0) > 1.0 or (len(known) == 2 and max(known) < -1.0):
+            told = " and ".join("?" if each is None else f"{each:.1f}" for each in off)
+            yield one.broken(law, f"{told} tolerances beyond them, before and behind the point")
+
+
+def _excess(
+    one: EndedMotion, way: _Way | None, criterion: str, first: EndedMotion, *, at_end: bool
+) -> float | None:
+    """By how many tolerances a blend takes more of a motion than it should; ``None``: not known.
+
+    ``first`` is the motion before the point: its $APO.CDIS counts on both sides.
+    """
+    cdis = max(first.motion.settings.approximation.cdis, 0.0)
+    is_both = one.motion.kind == "SPTP" and cdis > 0.0
+    if way is None or (criterion == "C_PTP" and way.axes is None):
+        return None
+    zones = []
+    place = one.ends[int(at_end)]
+    if criterion in ("C_DIS", "C_SPL") or is_both:
+        zones.append(cdis / way.sums[-1])
+        gone = way.gone(one.poses(place[None])[0, :3, 3])
+        taken, size = (way.sums[-1] - gone if at_end else gone), way.sums[-1] / _NEAR_MM
+        taken /= way.sums[-1]
+    if criterion == "C_PTP" or one.motion.kind == "SPTP":
+        if way.axes is None:
+            return None
+        travel = np.abs(way.axes[-1] - way.axes[0])
+        share = min(max(one.motion.settings.approximation.cptp, 0.0), 100.0) / 100.0
+        axes = (*one.machine.axes, *one.machine.externals)
+        reach = share * np.array([axis.approximation for axis in axes])
+        zones.append(float((reach / np.maximum(travel, 1e-9)).min()))
+        taken = np.abs(place - way.axes[-int(at_end)]).max() / travel.max()
+        size = travel.max() / _NEAR_DEGREES
+    if not zones:
+        return None
+    return float((taken - min(*zones, _HALF)) * size)
+
+
+def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | None]]:
+    """The way of each motion, ``None`` where not all of it is told in numbers."""
+    axes: Array | None = None
+    point: Array | None = None
+    placement = None
+    for one in motions:
+        if one.begins or placement != one.motion.settings.placement:
+            axes = one.ends[0] if one.begins else axes
+            point = None if axes is None else _tool(one, axes)[0]
+        placement = one.motion.settings.placement
+        start, axes = axes, one.ends[1] if one.stops else _axes(one, axes)
+        origin, point = point, _point(one, one.motion.target, point)
+        if axes is not None:
+            point = _tool(one, axes)[0]
+        yield one, _way(one, start, axes, origin, point)
+
+
+def _way(
+    one: EndedMotion, start: Array | None, end: Array | None, origin: Array | None, last: Array | None
+) -> _Way | None:
+    """A way between axes, of a PTP, or between points, of a path; ``None``: not known."""
+    motion = one.motion
+    is_plain = not motion.parts and motion.angle is None and one.machine.palletising is None
+    if not is_plain or motion.settings.placement.mode is not IpoMode.BASE:
+        return None
+    match motion.kind:
+        case "PTP" | "SPTP" if start is not None and end is not None:
+            axes = start + _SHARES * (end - start)
+            return _Way(axes, _tool(one, axes))
+        case "LIN" | "SLIN" if origin is not None and last is not None:
+            return _Way(None, np.array([origin, last]))
+        case "CIRC" | "SCIRC" if origin is not None and last is not None:
+            middle = _point(one, motion.auxiliary, origin)
+            return None if middle is None else _Way(None, drawn("circle", np.array([origin, middle, last]), 501))
+    return None
+
+
+def _tool(one: EndedMotion, axes: Array) -> Array:
+    """Where the tool is in the base (n, 3) with some axes."""
+    points: Array = one.poses(np.atleast_2d(axes))[:, :3, 3]
+    return points
+
+
+def _axes(one: EndedMotion, before: Array | None) -> Array | None:
+    """The axes of a target that is told in them; what it leaves out stays [MOT-16]."""
+    names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
+    target = one.motion.target
+    if before is None or one.motion.is_relative or not set(names[:ROBOT_AXES]) & set(target):
+        return None
+    return np.array([target.get(name, value) for name, value in zip(names, before, strict=True)])
+
+
+def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Array | None:
+    """The point that a target tells; what it leaves out stays [MOT-16]."""
+    told = set(_POINT) & set(target or {})
+    if target is None or not told or one.motion.is_relative or (before is None and len(told) < 3):
+        return None
+    if before is None:
+        before = np.zeros(3)
+    return np.array([target.get(name, old) for name, old in zip(_POINT, before, strict=True)])
