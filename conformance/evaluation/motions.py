@@ -61,7 +61,7 @@ class EndedMotion:
 
     @cached_property
     def ends(self) -> Array:
-        """The axes at its start and its end, (2, axes); a run may end within a cycle of its samples."""
+        """The axes at its start and its end, (2, axes), which may be within a cycle of the last."""
         times = self.path.times
         return between(times, self.path.axes, [self.start, self.end], _cycle(times))
 

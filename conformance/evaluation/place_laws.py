@@ -38,12 +38,12 @@ class _Way:
 
     @cached_property
     def sums(self) -> Array:
-        """mm of the way of the tool up to each point."""
+        """The way of the tool up to each point, mm."""
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate(([0.0], np.cumsum(steps)))
 
     def gone(self, point: Array) -> float:
-        """mm of the way up to what of it is nearest to a point."""
+        """The way up to what of it is nearest to a point, mm."""
         starts, along = self.points[:-1], np.diff(self.points, axis=0)
         squares = np.maximum((along**2).sum(axis=1), 1e-12)
         shares = np.clip(((point - starts) * along).sum(axis=1) / squares, 0.0, 1.0)
@@ -124,7 +124,11 @@ def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | 
 
 
 def _way(
-    one: EndedMotion, start: Array | None, end: Array | None, origin: Array | None, last: Array | None
+    one: EndedMotion,
+    start: Array | None,
+    end: Array | None,
+    origin: Array | None,
+    last: Array | None,
 ) -> _Way | None:
     """A way between axes, of a PTP, or between points, of a path; ``None``: not known."""
     motion = one.motion
@@ -139,7 +143,11 @@ def _way(
             return _Way(None, np.array([origin, last]))
         case "CIRC" | "SCIRC" if origin is not None and last is not None:
             middle = _point(one, motion.auxiliary, origin)
-            return None if middle is None else _Way(None, drawn("circle", np.array([origin, middle, last]), 501))
+            return (
+                None
+                if middle is None
+                else _Way(None, drawn("circle", np.array([origin, middle, last]), 501))
+            )
     return None
 
 

@@ -13,8 +13,10 @@ from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.motion_laws import misdeeds
 from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
+from conformance.evaluation.place_laws import misplaced
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
+from interp.robot.arm import Approximation
 from interp.robot.models import default_machine
 from interp.robot.simulation.tracking import PathRecord
 
@@ -29,6 +31,10 @@ _PROGRAM = """DEF a()
   CIRC {X 465, Y 170, Z 890}, {X 485, Y 150, Z 890}
   PTP {A1 10, A6 20} C_PTP
   PTP {A1 30, A6 -20}
+  LIN_REL {X -30}
+  LIN {X 445, Y 150, Z 890} C_DIS
+  CIRC {X 465, Y 170, Z 890}, {X 485, Y 150, Z 890} C_DIS
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
 END
 """
 
@@ -99,7 +105,7 @@ def settings_of(line: int, **changed: object) -> Observation:
 def broken(run: Observation) -> list[tuple[str, int]]:
     """Rules and lines of what is broken."""
     motions = tuple(ended(run))
-    found = (*misdeeds(run, motions), *delays(motions))
+    found = (*misdeeds(run, motions), *misplaced(motions), *delays(motions))
     return [(one.rule, one.event.line if one.event else 0) for one in found]
 
 
@@ -165,6 +171,26 @@ def test_a_ptp_is_as_quick_as_its_axes() -> None:
         :1
     ]
     assert ("MOT-02", 7) in broken(settings_of(7, axis_velocity=(10.0,) * 12))
+
+
+@pytest.mark.parametrize(
+    ("line", "changed"),
+    [
+        (10, {"cptp": 5.0}),
+        (13, {"cdis": 2.9}),
+        (13, {"cdis": 3.1}),
+        (14, {"cdis": 2.9}),
+    ],
+)
+def test_a_blend_takes_what_its_criterion_says(line: int, changed: dict[str, float]) -> None:
+    """Neither more nor less, of PTP, LIN and CIRC."""
+    values = replace(Approximation(3.0, 50.0, 100.0, 5.0), **changed)
+    assert [("", line)] == broken(settings_of(line, approximation=values))
+
+
+def test_a_motion_that_ends_the_run_is_judged_too() -> None:
+    """It ends between two samples."""
+    assert ("MOT-20", 15) in broken(with_motion(15, target={"A1": 1.0}))
 
 
 def test_seconds_of_a_length() -> None:
