@@ -11,7 +11,7 @@ from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity.mutant_trial import OF_TRIAL, Fate, Trial
-from conformance.sensitivity.mutants import PACKAGES
+from conformance.sensitivity.mutants import OF_CASES
 from conformance.sensitivity.planted_fault import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 from conformance.suite.case import Case
@@ -128,7 +128,7 @@ def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
 def _by_package(trials: Sequence[Trial]) -> list[dict[str, Any]]:
     return [
         {"package": package, **_fates(own)}
-        for package in PACKAGES
+        for package in OF_CASES
         if (own := [one for one in trials if one.mutant.package == package])
     ]
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, Final
 
-from conformance.sensitivity.planted_fault import Fault, constant, group_of, on
-from interp.controller import signals
+from conformance.sensitivity.planted_fault import Fault, group_of, on
 from interp.controller.clock import Clock
 from interp.controller.cyclic_evaluation import CyclicEvaluation
-from interp.controller.signals import ALWAYS_TRUE, Signals
+from interp.controller.signals import Signals
 from interp.controller.timers import Timers
 from interp.controller.variable_access import VariableAccess
 from interp.controller.waits import Waits
@@ -46,36 +44,13 @@ def _slow_polls(right: Any) -> Any:
     return later
 
 
-def _slow_submit(right: Any) -> Any:
-    def later(self: Waits, task: Any) -> int:
-        more = 49 * self._state.clock.cycle if task.name == "submit" else 0
-        return int(right(self, task)) + more
-
-    return later
-
-
 _CLOCK: Final = (
     ("times to wait are rounded down to cycles", _IO, on(Clock, "tick_after", _down)),
     ("times to wait are not rounded", ("io", "control"), on(Clock, "tick_after", _exact)),
     (
-        "times to wait end a cycle late",
-        _IO,
-        on(Clock, "tick_after", lambda right: lambda self, t: right(self, t) + self.cycle),
-    ),
-    (
-        "times to wait are half as long",
-        _IO,
-        on(Clock, "tick_after", lambda right: lambda self, t: right(self, t / 2)),
-    ),
-    (
         "WAIT FOR looks in every tenth cycle only",
         ("io", "control", "program"),
         on(Waits, "next_slice", _slow_polls),
-    ),
-    (
-        "the submit program runs once in half a second",
-        ("submit", "program"),
-        on(Waits, "next_slice", _slow_submit),
     ),
 )
 
@@ -112,14 +87,6 @@ def _wide_groups(right: Any) -> Any:
     return read
 
 
-def _without_input_1025(right: Any) -> Any:
-    def made(self: Signals, *given: Any) -> None:
-        right(self, *given)
-        self._digital["$IN"][ALWAYS_TRUE] = False
-
-    return made
-
-
 def _clamped_analog(right: Any) -> Any:
     def put(self: Signals, name: str, place: int, value: Any) -> None:
         right(self, name, place, min(max(value, -1.0), 1.0))
@@ -135,20 +102,6 @@ def _pulse_once(right: Any) -> Any:
     return pulse
 
 
-def _unending_pulse(_right: Any) -> Any:
-    def put_bit(self: Signals, name: str, place: int, value: bool) -> None:
-        pulses, self._pulses = self._pulses, {}
-        try:
-            _PUT_BIT(self, name, place, value)
-        finally:
-            self._pulses = pulses
-
-    return put_bit
-
-
-_PUT_BIT: Final = Signals._put_bit
-
-
 _SIGNALS: Final = (
     (
         "outputs are switched a cycle late",
@@ -157,33 +110,16 @@ _SIGNALS: Final = (
     ),
     ("groups have their bits the other way round", ("io",), on(Signals, "put", _reversed_groups)),
     ("groups have eight bits at most", ("io",), on(Signals, "read", _wide_groups)),
-    ("input 1025 is FALSE", ("io",), on(Signals, "__init__", _without_input_1025)),
     (
         "analog values beyond the range are cut off silently",
         ("io", "message"),
         on(Signals, "_put_analog", _clamped_analog),
     ),
-    (
-        "a pulse is a tenth of a second longer",
-        ("io",),
-        on(Signals, "pulse", lambda right: lambda self, n, v, t: right(self, n, v, t + 0.1)),
-    ),
-    (
-        "a pulse has no end",
-        ("io",),
-        on(Signals, "pulse", lambda _: lambda self, n, v, _t: self.put(("$OUT", n), v)),
-    ),
-    ("a pulse may be as short as one likes", ("io",), constant(signals, "_SHORTEST", 0.0)),
     ("a pulse that runs is not restarted", ("io",), on(Signals, "pulse", _pulse_once)),
-    ("the other level does not end a pulse", ("io",), on(Signals, "_put_bit", _unending_pulse)),
 )
 
 
 # ------------------------------------------------------------------------------------ timers
-
-
-def _slow_timer(right: Any) -> Any:
-    return lambda self, timer: timer.base + (right(self, timer) - timer.base) // 2
 
 
 def _fine_timer(_right: Any) -> Any:
@@ -192,23 +128,6 @@ def _fine_timer(_right: Any) -> Any:
         return int(timer.base + passed)
 
     return value
-
-
-def _raised_flag(right: Any) -> Any:
-    return lambda self, path: path[0] == "$TIMER_FLAG" or right(self, path)
-
-
-def _timer_write(drops: Callable[[Any, Any], bool]) -> Any:
-    """Writes of some kind are lost."""
-
-    def make(right: Any) -> Any:
-        def write(self: Timers, path: Any, value: Any) -> None:
-            if not drops(path, value):
-                right(self, path, value)
-
-        return write
-
-    return make
 
 
 def _starting_from_zero(right: Any) -> Any:
@@ -236,32 +155,11 @@ def _once(name: str) -> Any:
 
 
 _TIMERS: Final = (
-    ("timers run at half the speed", ("io",), on(Timers, "_value", _slow_timer)),
     ("timers count between ticks as well", ("io",), on(Timers, "_value", _fine_timer)),
     (
         "a timer begins at zero when it is started",
         ("io",),
         on(Timers, "write", _starting_from_zero),
-    ),
-    (
-        "timers are not stopped",
-        ("io",),
-        on(Timers, "write", _timer_write(lambda p, v: p[0] == "$TIMER_STOP" and v is True)),
-    ),
-    (
-        "the value of a timer cannot be set",
-        ("io",),
-        on(Timers, "write", _timer_write(lambda p, _: p[0] == "$TIMER")),
-    ),
-    (
-        "the flag of a timer is always TRUE",
-        ("io",),
-        on(Timers, "read", _raised_flag),
-    ),
-    (
-        "cyclic flags keep their first value",
-        ("io", "interrupt"),
-        on(CyclicEvaluation, "refresh_flags", lambda _: lambda _self: None),
     ),
     (
         "cyclic signals are computed once",

@@ -80,7 +80,7 @@ def conform(
     with expected_extras(*ARM):
         from conformance.evaluation.execution import Setup, missing
         from conformance.sensitivity.bench import measure, speed_of
-        from conformance.sensitivity.mutants import PACKAGES
+        from conformance.sensitivity.mutants import OF_CASES
         from conformance.sensitivity.trial import all_faults
         from conformance.suite.case import CaseError, find_cases
     if removed:
@@ -90,15 +90,15 @@ def conform(
         if name not in (*groups, "none"):
             raise InputError(f"--group {name}: the groups are {', '.join(groups)}, none")
     for name in package or ():
-        if name not in PACKAGES:
-            raise InputError(f"--package {name}: the packages are {', '.join(PACKAGES)}")
+        if name not in OF_CASES:
+            raise InputError(f"--package {name}: the packages are {', '.join(OF_CASES)}")
     if lacking := missing(Setup(executor.value, "none")):
         raise InputError(f"--executor {executor.value}: {lacking}")
     faults = [one for one in all_faults() if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
     seeds = seed or [_SEED]
-    packages = [one for one in PACKAGES if not package or one in package]
+    packages = [one for one in OF_CASES if not package or one in package]
     drawn: dict[str, Any] = {}
     if mutants:
         drawn = _mutants(cases, seeds, mutants, packages, most, all_cores(jobs), cache)
