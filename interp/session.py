@@ -315,14 +315,15 @@ def _observer(machine: MachineData, setup: RunSetup) -> Observer | None:
     return ContactCheck(Cell(machine, setup.scene or Scene(), setup.robot_file))
 
 
-#: Virtual time in µs from one report of progress to the next, while the arm moves and else.
+#: Virtual time in µs from one report of progress to the next, while the arm moves and when it
+#: has come to stand: the longer it stands the longer that is.
 _REPORT, _LONG_REPORT = 1_000_000, 5_000_000
 
 
 def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]) -> RunOutcome:
     now = moved = known = 0
     while True:
-        report = _REPORT if moved == now else _LONG_REPORT
+        report = _REPORT if moved == now else max(_LONG_REPORT, now - moved)
         now = min(now + report, moved + setup.patience, setup.until)
         outcome = controller.run(now)
         on_time(outcome.time)

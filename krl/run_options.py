@@ -121,6 +121,12 @@ class RunOptions:
             help="Stop after so much virtual time; default: 3600, with --io auto 600.",
         ),
     ] = None
+    statements: Annotated[
+        int,
+        typer.Option(
+            min=1, max=2**31 - 1, help="How many it may begin until it counts as endless."
+        ),
+    ] = 10_000_000
     strict: Annotated[
         bool,
         typer.Option(
@@ -164,6 +170,7 @@ def prepared_run(
     from interp.controller.automatic_inputs import OPERATOR
     from interp.controller.input_script import Script
     from interp.controller.profile import Profile
+    from interp.program.load import Limits
     from interp.session import RunSetup, available, submit_of
 
     chosen = options.io
@@ -183,10 +190,11 @@ def prepared_run(
     )
     submit = submit_of(program) if is_auto and options.submit is None else options.submit
     seconds = options.max_time or (_AUTO_SECONDS if is_auto else _SECONDS)
+    profile = Profile.load(options.profile or _agreed_profile(file))
     setup = RunSetup(
         executor=options.executor.value if options.executor is not None else available()[-1],
         robot=options.robot.value,
-        profile=Profile.load(options.profile or _agreed_profile(file)),
+        profile=profile,
         script=script,
         routine=options.routine,
         submit=submit,
@@ -194,6 +202,7 @@ def prepared_run(
         is_told=is_told,
         motion=options.motion.value,
         until=round(seconds * 1e6),
+        limits=Limits(statements=options.statements, per_slice=profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,
         machine=own.machine,

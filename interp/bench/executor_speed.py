@@ -306,7 +306,7 @@ def _version(name: str) -> str | None:
 
 # ------------------------------------------------------------------------------- controller
 
-#: A request each 400,000 statements, or the controller would take it for a program without an end.
+#: A request each 400,000 statements.
 _COMPUTING = f"""
 DEF RUN()
    DECL INT I, K, SUM

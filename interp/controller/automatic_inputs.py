@@ -64,10 +64,13 @@ class AutomaticInputs:
     @property
     def wake(self) -> int | None:
         """When it will change an input, in µs, if it knows that it will."""
-        if self._since is None or not self._changes:
-            return None
-        then = self._since[1] + self._delay
-        return then if then > self._before else None
+        then = self.next_change
+        return then if then is not None and then > self._before else None
+
+    @property
+    def next_change(self) -> int | None:
+        """The time in µs from which on it changes the next input, if there is one to change."""
+        return self._since[1] + self._delay if self._since is not None and self._changes else None
 
     @property
     def _delay(self) -> int:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 from interp.controller.automatic_inputs import AutomaticInputs
 from interp.controller.motion_queue import MotionQueue
@@ -17,20 +16,14 @@ from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
 from interp.port.requests import Poll, Request, Wait
 
-#: Slices in a row in which a program only computes, until it counts as endless where nothing else
-#: could end it: half a million statements, more than programs have a use for between two requests.
-_MOST_SLICES: Final = 500
-
 
 @dataclass(slots=True)
 class QuietTime:
-    """Finds such stretches, and programs that will never leave one."""
+    """Finds such stretches."""
 
     state: ControllerState
     queue: MotionQueue
     automatic: AutomaticInputs
-    #: Slices in a row that a program used up without any other request.
-    slices: int = 0
     _before: tuple[int, int, int] = (0, 0, 0)
 
     def begin_tick(self) -> None:
@@ -55,22 +48,6 @@ class QuietTime:
         times += (task.blocked.wake for task in tasks if task.blocked and _is_timed(task))
         end = min(time for time in times if time is not None)
         return end - end % clock.cycle
-
-    @property
-    def slices_left(self) -> int:
-        """How many slices may pass at once before the one that would be endless."""
-        return max(_MOST_SLICES - 1 - self.slices, 1)
-
-    def is_endless(self, tasks: Sequence[Task], count: int) -> bool:
-        """Whether a program that has used up ``count`` more slices never does anything else."""
-        is_alone = (
-            sum(not task.is_over for task in tasks) == 1
-            and not any(task.interrupts.is_watched for task in tasks)
-            and self.queue.next_time() is None
-            and self.state.actions.next_time() is None
-        )
-        self.slices = self.slices + count if is_alone else 0
-        return self.slices >= _MOST_SLICES
 
     def _counts(self) -> tuple[int, int, int]:
         state = self.state

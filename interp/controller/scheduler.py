@@ -233,7 +233,7 @@ class Scheduler:
             return 1
         times = [self._limit + 1, self._next_time(), self.waits.idle_time(task)]
         end = min(time for time in times if time is not None)
-        return min(max(-(-(end - clock.now) // clock.cycle), 1), self.quiet.slices_left)
+        return max(-(-(end - clock.now) // clock.cycle), 1)
 
     def _answer(self, task: Task, request: Request) -> Answer:
         """The answer to a request; one too many in a slice waits for the next slice."""
@@ -249,12 +249,6 @@ class Scheduler:
                     "crash", self.state.clock.now, at, RuntimeFailure(reason)
                 )
                 return None
-        if not isinstance(request, Slice):
-            self.quiet.slices = 0
-        elif self.quiet.is_endless(self.tasks, request.count):
-            error = BudgetExhausted("an endless loop: it only computes, and nothing can end it")
-            self._fail(task, Fail(request.at, error))
-            return None
         most = None
         if task.level is None or task.level.signal is None:
             profile = self.state.profile

@@ -113,7 +113,9 @@ class Waits:
         return self.until(request, self.next_slice(task) + more, lambda: None)
 
     def idle_time(self, task: Task) -> int | None:
-        """The time in µs from which a program that only computes counts as idle, if any does."""
+        """The time in µs from which inputs may change for a program that only computes, if any."""
+        if task.idle_at is not None:
+            return self._automatic.next_change
         return task.busy_at + _IDLE_AFTER if self._automatic.is_on else None
 
     # ----------------------------------------------------------------------- the operator

@@ -25,7 +25,7 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
 from interp.standins.unreadable_lines import readable
-from interp.values.faults import LinkError
+from interp.values.faults import BudgetExhausted, LinkError
 from support.lazy_dataclass import dataclass
 
 #: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
@@ -46,6 +46,10 @@ class Limits:
     per_slice: int = 1_000
     depth: int = 64
     skips_failures: bool = False
+
+    def exhausted(self) -> BudgetExhausted:
+        """What is raised where one more statement would begin."""
+        return BudgetExhausted(f"it has not ended after {self.statements:,} statements")
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from interp.program.load import CheckedProgram, Limits, Routine, Unit
 from interp.program.variables import cells_of_routine
 from interp.tree.places import LocalPlace, Place, SystemPlace
 from interp.values.builtins import Randomness
-from interp.values.faults import BudgetExhausted, LinkError
+from interp.values.faults import LinkError
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +124,7 @@ class ProgramState:
         frame.line, frame.has_begun = line, True
         self.guard = Guard.NOW if self.guard is Guard.NEXT else Guard.OFF
         if self.begun >= self.limits.statements:
-            raise BudgetExhausted("the program does not end")
+            raise self.limits.exhausted()
         if self.begun >= self.due:
             yield Slice(self.at(frame))
         self.begun += 1

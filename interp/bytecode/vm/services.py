@@ -21,7 +21,7 @@ from interp.port.requests import At, MoveEmily, Request, Slice, StopAdvance, Val
 from interp.port.requests import CodeHandle as HandedOver
 from interp.program.load import Limits
 from interp.values.builtins import FUNCTIONS, Surroundings, call
-from interp.values.faults import BudgetExhausted, LinkError
+from interp.values.faults import LinkError
 from interp.values.values import converted, text_of
 
 #: Why a condition faults that does more than compute and read.
@@ -55,6 +55,7 @@ class Services:
         self._makers = RequestBuilder(program, self._handed_over)
         self._surroundings = Surroundings(random, self._names.find)
         self.counter = Counter(state, limits)
+        self._limits = limits
         self.calls_are_told = self._calls is not None
         self.returns_are_told = self._returns is not None
         self.entered = 0
@@ -109,7 +110,7 @@ class Services:
 
         match counter.pause():
             case Pause.EXHAUSTED:
-                raise BudgetExhausted("the program does not end")
+                raise self._limits.exhausted()
             case Pause.SLICE if state.reader is None:
                 counter.asked()
                 state.request = Slice(self.at(), counter.passed() + 1)

@@ -1,4 +1,4 @@
-"""Waiting costs nothing and changes nothing; loops that nothing can end are found."""
+"""Waiting and computing for long cost nothing and change nothing."""
 
 from dataclasses import replace
 from typing import Any
@@ -6,13 +6,13 @@ from typing import Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.controller import quiet_time, scheduler
+from interp.controller import scheduler
 from interp.controller.automatic_inputs import OPERATOR
 from interp.controller.input_script import Script
 from interp.controller.quiet_time import QuietTime
 from interp.controller.waits import Waits
-from interp.program.load import Limits, load
-from interp.session import EXECUTORS, RunResult, RunSetup, available, run_program
+from interp.program.load import load
+from interp.session import RunResult, RunSetup, available, run_program
 
 WAITS = """DEF main ( )
 INTERRUPT DECL 3 WHEN $IN[3] DO SEEN ( )
@@ -68,21 +68,10 @@ def test_waiting_takes_few_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     assert ("time", True) == (run.outcome.ending, looks < 60 * 5)
 
 
-@pytest.mark.parametrize("executor", EXECUTORS)
-@pytest.mark.parametrize("body", ["LOOP\nENDLOOP\n", "A:\nI=I+1\nGOTO A\n"], ids=["LOOP", "GOTO"])
-def test_endless_loop(executor: str, body: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A loop that only computes ends the run after so many slices, in the loop."""
-    monkeypatch.setattr(quiet_time, "_MOST_SLICES", 20)
-    run = _run(f"DEF main ( )\nINT I\nI=0\n{body}END\n", executor)
-    assert run.outcome.at is not None
-    assert ("budget", 19 * 12_000) == (run.outcome.ending, run.outcome.time)
-    assert run.outcome.at.line in (4, 5, 6)
-
-
-def test_endless_loop_as_it_is() -> None:
-    """That is half a million statements, after six seconds."""
-    run = _run("DEF main ( )\nLOOP\nENDLOOP\nEND\n", available()[-1])
-    assert ("budget", 5_988_000) == (run.outcome.ending, run.outcome.time)
+def test_long_computing() -> None:
+    """A program may compute for as many statements as the limits say, whatever else is going on."""
+    run = _run("DEF main ( )\nINT I\nFOR I=1 TO 1000000\nENDFOR\nEND\n", available()[-1])
+    assert ("end", 12_000_000) == (run.outcome.ending, run.outcome.time)
 
 
 def test_interrupt_ends_a_loop() -> None:
@@ -159,13 +148,17 @@ def test_slices_at_once(executor: str, io: str) -> None:
     assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
 
 
-@pytest.mark.parametrize("executor", available())
-def test_endless_at_the_same_time(executor: str) -> None:
-    """It does not matter for the end of an endless loop how many slices it got at once."""
-    program = load([Source("DEF main ( )\nLOOP\nENDLOOP\nEND\n", "main.src")], "main.src")
-    setup = RunSetup(executor=executor, is_told=False, limits=Limits(per_slice=6))
-    outcome = run_program(program, setup).outcome
-    assert ("budget", 5_988_000) == (outcome.ending, outcome.time)
+def test_computing_between_looks_at_inputs() -> None:
+    """Automatic inputs change at the same times for a program that got many slices at once."""
+    computes = "FOR I=1 TO 130007\nENDFOR\n"
+    head = "DEF main ( )\nINT I\nWHILE NOT ($IN[5] AND NOT $IN[6])\n"
+    text = f"{head}{computes}ENDWHILE\nEND\n"
+    program = load([Source(text, "main.src")], "main.src", strict=False)
+    setup = RunSetup(executor=available()[-1], script=Script.read(OPERATOR), until=5_000_000)
+    told, quick = run_program(program, setup), run_program(program, replace(setup, is_told=False))
+    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
+    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
+    assert 4 == quick.controller.automatic_inputs.count == told.controller.automatic_inputs.count
 
 
 def test_few_slices_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

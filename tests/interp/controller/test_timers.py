@@ -45,7 +45,10 @@ def test_polling_lets_time_pass(go: Go) -> None:
 def test_endless_program(go: Go) -> None:
     """A program that never ends uses up its statements: a clear end."""
     ran = go(program("LOOP\nI=1\nENDLOOP\n"), limits=Limits(statements=5000))
-    assert ("budget", "the program does not end") == (ran.outcome.ending, str(ran.outcome.error))
+    assert ("budget", "it has not ended after 5,000 statements") == (
+        ran.outcome.ending,
+        str(ran.outcome.error),
+    )
 
 
 def test_time_is_over(go: Go) -> None:

@@ -520,7 +520,10 @@ CALLING = INTERRUPTED.replace(
         ("PUSH_INT 1\nASK SHOW", "a condition can only compute and read"),
         ("PUSH_REAL 1.0\nASK WAIT", "a condition can only compute and read"),
         ("FAIL domain", "the function has no value there"),
-        ("CALL ENDLESS\nPUSH_BOOL TRUE\nRETURN_VALUE", "the program does not end"),
+        (
+            "CALL ENDLESS\nPUSH_BOOL TRUE\nRETURN_VALUE",
+            "it has not ended after 500 statements",
+        ),
         ("CALL ASKING\nRETURN_VALUE", "the program stack overflows"),
         ("PROCEED\nLINE 3 E\nFAIL domain\nE:", "a condition can only compute and read"),
     ],
