@@ -29,6 +29,7 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import ModuleTable
 from grammar.syntax.source import Source
 from support.files.decode import decode
 from support.files.discovery import Found, IngestError, discover, read
@@ -72,7 +73,7 @@ class _Checked:
         self.findings: dict[str, Findings] = {}
         self.names: dict[str, dict[int, str]] = {}
         self._check(programs)
-        self.found = frozenset(check_project(self.findings.values()))
+        self.found = frozenset(check_project(self.findings.values(), self._file))
 
     def _check(self, paths: Iterable[str]) -> None:
         wanted = set(paths)
@@ -81,6 +82,10 @@ class _Checked:
             for module in project.modules:
                 if module.path in wanted:
                     self.findings[module.path] = self._findings(project, module)
+
+    def _file(self, path: str) -> tuple[ModuleTable | None, Source]:
+        program = self.programs[path]
+        return program.file.table, program.source
 
     def _findings(self, project: Project, module: Module) -> Findings:
         program = self.programs[module.path]
@@ -125,7 +130,7 @@ class _Checked:
                 for other, one in self.programs.items()
                 if other.rpartition(".")[0].casefold() == stem or names & one.given.words
             )
-            found = check_project(self.findings.values())
+            found = check_project(self.findings.values(), self._file)
         finally:
             self.programs[path], self.findings = before, findings
         return [one for one in found if one not in self.found and one.severity != "note"]

@@ -16,7 +16,6 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grammar.check.framework import check_project
 from grammar.check.project_check import (
     CheckOptions,
     Content,
@@ -24,6 +23,7 @@ from grammar.check.project_check import (
     KnownFile,
     check_part,
     completed,
+    found_in_project,
     needs,
     read_part,
     recheck,
@@ -250,7 +250,7 @@ class _Project:
                 checked |= part.result()
             self._files = completed(self.contents, self._read, self._known, checked, self._needs)
         looked = [known.checked for known in self._files]
-        diagnostics = check_project(one.findings for one in looked)
+        diagnostics = found_in_project(self.contents, self._files)
         by_path: dict[str, list[Diagnostic]] = {content.path: [] for content in self.contents}
         for diagnostic in diagnostics:
             by_path[diagnostic.path].append(diagnostic)
@@ -265,6 +265,8 @@ class _Project:
             sizes[content.path] = len(content.data)
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
+            for number in {diagnostic.region.line for diagnostic in its} - (one.lines or {}).keys():
+                lines[content.path, number] = content.source.line(number)
             found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
         kept = frozenset(
             content.path

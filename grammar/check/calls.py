@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from grammar.check.signal_direction import side_of
 from grammar.check.type_checker import TypeChecker
-from grammar.semantics.assignability import passable
+from grammar.semantics.assignability import misfit, passable
 from grammar.semantics.package_scope import PackageScope
 from grammar.semantics.scopes import Found, Scope, SystemScope
 from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
@@ -119,10 +119,10 @@ def _check(
 
     def accepts(to: Type, value: Type) -> Verdict:
         verdict = passable(to, value, is_out=is_out, is_variable=is_variable)
-        of = f"for {parameter.name} of {symbol.name}"
-        return replace(
-            verdict, reason=verdict.reason.replace("is expected here", f"is expected {of}")
-        )
+        if not verdict.is_misfit:
+            return verdict
+        where = f"for {parameter.name} of {symbol.name}"
+        return replace(verdict, reason=misfit(to, value, where))
 
     checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
     if is_out and not is_variable and checker.context.types[argument] != UNKNOWN:

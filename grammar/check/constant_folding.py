@@ -1,11 +1,14 @@
-"""Values of expressions that are known before a program runs: literals, constants, sums of these.
+"""Values of expressions that are known before a program runs: literals, constants, what they make.
 
 The language demands them in sizes of arrays, steps of FOR, labels of CASE, numbers of inputs and
 outputs. A quotient of integers that leaves a rest is not folded: which way it is rounded is not
-certain for negative ones [ARI-02].
+certain for negative ones [ARI-02]. Nor are rounded numbers that are compared with == [ARI-10].
 """
 
 from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
 
 from grammar.check.context import Context
 from grammar.semantics.symbols import Kind
@@ -15,6 +18,16 @@ from grammar.syntax.walk import left_chain
 
 #: A number, a truth value, a text, or a constant of an enumeration as ``#NAME`` in upper case.
 Value = int | float | bool | str
+
+_ORDERS: Mapping[str, Callable[[float, float], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+_EQUALITY: Mapping[str, Callable[[Value, Value], bool]] = {"==": operator.eq, "<>": operator.ne}
+#: By operator the value of one side that settles it whatever the other side is.
+_SETTLED = {"AND": False, "OR": True}
 
 
 def constant(context: Context, node: ast.Expression) -> Value | None:
@@ -82,22 +95,30 @@ def _binary(context: Context, node: ast.Binary) -> Value | None:
     first, *others = left_chain(node)
     value = _folded(first.operator, constant(context, first.left), constant(context, first.right))
     for each in others:
-        if value is None:
-            break
         value = _folded(each.operator, value, constant(context, each.right))
     return value
 
 
-def _folded(operator: str, left: Value | None, right: Value | None) -> Value | None:
-    if (
-        left is None
-        or isinstance(left, str | bool)
-        or right is None
-        or isinstance(right, str | bool)
-    ):
+def _folded(sign: str, left: Value | None, right: Value | None) -> Value | None:
+    settled = _SETTLED.get(sign)
+    if settled is not None and (left is settled or right is settled):
+        return settled
+    if left is None or right is None:
         return None
+    if type(left) is type(right) is not float and sign in _EQUALITY:
+        return _EQUALITY[sign](left, right)
+    if isinstance(left, bool) and isinstance(right, bool):
+        return {"AND": left and right, "OR": left or right, "EXOR": left != right}.get(sign)
+    if isinstance(left, str | bool) or isinstance(right, str | bool):
+        return None
+    if sign in _ORDERS:
+        return _ORDERS[sign](left, right)
+    return _calculated(sign, left, right)
+
+
+def _calculated(sign: str, left: float, right: float) -> float | None:
     value: int | float | None = None
-    match operator:
+    match sign:
         case "+":
             value = left + right
         case "-":

@@ -58,9 +58,10 @@ class Context:
     ``resolution`` has what its names mean. ``types``, ``enumerations`` and ``values`` are filled by
     the first check, `grammar.check.statements`: the type of each expression but literals, the
     enumeration of each constant, the values of expressions that have to be constant, and the
-    ``constants`` that names without a declaration would be with a #. ``accesses`` are those that
-    `grammar.check.accesses` has worked out. ``is_lacking``: the data list of the program is not at
-    hand, and may declare what is found in other files.
+    ``constants`` that names without a declaration would be with a #; ``unknown_constants`` are
+    those that an enumeration lacks. ``accesses`` are those that `grammar.check.accesses` has worked
+    out. ``is_lacking``: the data list of the program is not at hand, and may declare what is found
+    in other files.
     """
 
     project: Project
@@ -72,6 +73,7 @@ class Context:
     enumerations: dict[ast.EnumConstant, Enumeration] = field(default_factory=dict)
     values: dict[Node, Any] = field(default_factory=dict)
     constants: dict[ast.Name, str] = field(default_factory=dict)
+    unknown_constants: list[tuple[Enumeration, str, Diagnostic]] = field(default_factory=list)
     accesses: dict[Node, Any] = field(default_factory=dict)
     is_lacking: bool = False
     suggestions: NameSuggestions = field(default_factory=NameSuggestions)

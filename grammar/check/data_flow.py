@@ -17,6 +17,7 @@ from grammar.check.accesses import Access, Use, accesses, calls_of
 from grammar.check.constant_folding import constant
 from grammar.check.context import Context, PlacedStatement, RoutineBody
 from grammar.check.control_flow_graph import FlowGraph, FlowNode, flow_graph
+from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import BOOL, REAL
@@ -386,6 +387,8 @@ def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
         names = ", ".join(dict.fromkeys(access.name.text for access in used))
         message = f"nothing can change {names} while this waits"
         yield context.finding("waits-for-ever", node.condition, message)
-    elif constant(context, node.condition) is False:  # programs stop so on purpose
+    elif constant(context, node.condition) is False:
+        is_on_purpose = isinstance(without_parentheses(node.condition), ast.BoolLiteral)
+        severity: Severity = "note" if is_on_purpose else "warning"
         message = "this condition is never fulfilled"
-        yield context.finding("waits-for-ever", node.condition, message, severity="note")
+        yield context.finding("waits-for-ever", node.condition, message, severity=severity)

@@ -105,7 +105,7 @@ def _suggested(project: Project) -> Iterator[str]:
     for module in project.modules:
         if module.table is not None:
             for space, symbol in module.table.table.symbols():
-                yield f"{space.name} {symbol.access.name} {symbol.name}"
+                yield f"{module.path} {space.name} {symbol.access.name} {symbol.name}"
 
 
 def _mentioned(facts: Iterable[str], known: Mapping[str, object]) -> set[str]:

@@ -9,7 +9,7 @@ from grammar.check.aggregates import aggregate
 from grammar.check.calls import call
 from grammar.check.constant_folding import integer_of
 from grammar.check.context import Context
-from grammar.check.type_checker import NO_CONSTANT, Rule, TypeChecker
+from grammar.check.type_checker import Rule, TypeChecker
 from grammar.diagnostics.diagnostic import Fix
 from grammar.semantics.assignability import index
 from grammar.semantics.operations import (
@@ -176,16 +176,11 @@ def _joined(checker: TypeChecker, node: ast.Binary, left: Type) -> Type:
             where = node.right
         enumeration = left if isinstance(left, Enumeration) else right
         constant = right if isinstance(left, Enumeration) else left
-        is_elsewhere = typed.verdict.message == NO_CONSTANT and not checker.is_described(
-            enumeration
-        )
-        checker.reject(
-            _of_operator(operator),
-            where,
-            typed.verdict,
-            checker.suggestion(enumeration, constant),
-            is_unconfirmed=is_elsewhere,
-        )
+        slug = _of_operator(operator)
+        if isinstance(enumeration, Enumeration) and isinstance(constant, Constant):
+            checker.reject_constant(slug, where, typed.verdict, enumeration, constant)
+        else:
+            checker.reject(slug, where, typed.verdict)
     elif operator in EQUALITY:
         checker.settle(node.right, left)
         checker.settle(node.left, right)

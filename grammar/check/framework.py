@@ -27,7 +27,7 @@ from grammar.check.constant_folding import Value
 from grammar.check.context import Context
 from grammar.check.effects import NO_EFFECTS, Effects, effects
 from grammar.check.effects import of_project as of_effects
-from grammar.check.unresolved_names import UnresolvedName
+from grammar.check.unresolved_names import FileOf, UnresolvedName, slipped_declarations
 from grammar.check.unresolved_names import of_project as of_names
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import Project, Workspace
@@ -132,12 +132,19 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     )
 
 
-def check_project(findings: Iterable[Findings]) -> list[Diagnostic]:
-    """All findings of a project, from those of all its files, in order."""
+def check_project(findings: Iterable[Findings], file_of: FileOf) -> list[Diagnostic]:
+    """All findings of a project, from those of all its files, in order.
+
+    ``file_of`` has the table and the text of a file, for what others find in its declarations.
+    """
     kept = list(findings)
-    found = [diagnostic for one in kept for diagnostic in one.diagnostics]
+    references = [reference for one in kept for reference in one.references]
     used = frozenset[str]().union(*(one.uses for one in kept))
-    found += of_names((reference for one in kept for reference in one.references), used)
+    slips = slipped_declarations(references, used, file_of)
+    explained = {one.finding for one in references if one.called in slips}
+    found = [one for file in kept for one in file.diagnostics if one not in explained]
+    found += slips.values()
+    found += of_names(one for one in references if not one.finding and one.called not in slips)
     found += of_effects(one.effects for one in kept)
     return in_order(found)
 
@@ -146,9 +153,8 @@ def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[D
     """Check all files of a workspace that can be read; the findings are in order."""
     found: list[Diagnostic] = []
     for project in workspace.projects:
-        found += check_project(
-            check_module(project, module, source_of(module)).findings
-            for module in project.modules
-            if module.syntax is not None
-        )
+        read = [module for module in project.modules if module.syntax is not None]
+        files = {module.path: (module.table, source_of(module)) for module in read}
+        findings = (check_module(project, one, files[one.path][1]).findings for one in read)
+        found += check_project(findings, files.__getitem__)
     return in_order(found)

@@ -15,8 +15,9 @@ from grammar.check import advance_stops
 from grammar.check.context import Context
 from grammar.check.dependencies import Contribution, Needs, contribution, needs_of
 from grammar.check.effects import effects_of_unread
-from grammar.check.framework import Findings, check_module
+from grammar.check.framework import Findings, check_module, check_project
 from grammar.check.suppression_comments import SuppressionComment, suppression_comments
+from grammar.check.undeclared_names import uses_of_unread
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.diagnostics.error_recovery import recover
 from grammar.diagnostics.syntax_errors import syntax_findings
@@ -69,6 +70,13 @@ class Content:
     path: str
     origin: str
     data: bytes
+
+    @property
+    def source(self) -> Source:
+        """The text of a file that is known to have one."""
+        decoded = decode(self.data)
+        assert not isinstance(decoded, str), "it was decoded before"
+        return Source(decoded.text, self.path)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +134,7 @@ class Reading:
     def alone(self) -> Findings:
         """What was found in reading, and what the text that was not read may do."""
         unread = effects_of_unread(self.words or frozenset())
-        return Findings(self.diagnostics, (), unread)
+        return Findings(self.diagnostics, (), unread, uses_of_unread(self.words or ()))
 
     def completed(self, found: Findings) -> Findings:
         """What was found in the tree, with what was found in reading; nothing in place of it."""
@@ -145,6 +153,16 @@ def read_source(source: Source) -> Reading:
     found = tuple(syntax_findings(recovered.failures, source))
     words = words_of(recovered.dropped) | ({REST} if recovered.is_cut else set())
     return Reading(recovered.syntax, found, words, recovered.exchanged)
+
+
+def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) -> list[Diagnostic]:
+    """All findings of a project whose files were checked, in order."""
+
+    def file(path: str) -> tuple[ModuleTable | None, Source]:
+        index = next(i for i, content in enumerate(contents) if content.path == path)
+        return files[index].read.table, contents[index].source
+
+    return check_project((one.checked.findings for one in files), file)
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,8 +41,6 @@ Accepts = Callable[[Type, Type], Verdict]
 #: The type of a node; the last argument is that of its place, `UNKNOWN` where it may be anything.
 Rule = Callable[["TypeChecker", Any, Type], Type]
 
-#: The message of the controller for a constant that an enumeration does not have.
-NO_CONSTANT = 2296
 #: An array that is named so has neither an index nor the brackets of a whole array.
 _NAMES = frozenset({ast.Variable, ast.Member})
 
@@ -147,10 +145,11 @@ class TypeChecker:
             return
         verdict = accepts(to, value)
         if not verdict:
-            if verdict.message == NO_CONSTANT:
-                is_unconfirmed |= not self.is_described(to)
-            fix = self.suggestion(to, value)
-            self.reject(_slug(verdict, slug), node, verdict, fix, is_unconfirmed=is_unconfirmed)
+            slug = _slug(verdict, slug)
+            if isinstance(to, Enumeration) and isinstance(value, Constant):
+                self.reject_constant(slug, node, verdict, to, value, is_unconfirmed=is_unconfirmed)
+            else:
+                self.reject(slug, node, verdict, is_unconfirmed=is_unconfirmed)
         elif not verdict.is_lossless:
             self._report_loss(to, node, verdict)
         elif isinstance(value, Constant):
@@ -197,11 +196,22 @@ class TypeChecker:
         is_unconfirmed = not self.is_described(type_)
         self.reject("no-such-component", where, verdict, fix, is_unconfirmed=is_unconfirmed)
 
-    def suggestion(self, to: Type, value: Type) -> Fix | None:
-        """What a constant may have been meant to be."""
-        if isinstance(to, Enumeration) and isinstance(value, Constant):
-            return self.context.suggestions.suggest(value.name, to.constants, mark="#")
-        return None
+    def reject_constant(
+        self,
+        slug: str,
+        where: Node,
+        verdict: Verdict,
+        to: Enumeration,
+        constant: Constant,
+        *,
+        is_unconfirmed: bool = False,
+    ) -> None:
+        """Note a constant that an enumeration lacks, which may have a slip where it is declared."""
+        is_unconfirmed |= not self.is_described(to)
+        fix = self.context.suggestions.suggest(constant.name, to.constants, mark="#")
+        found = self.context.refusal(slug, where, verdict, fix=fix, is_unconfirmed=is_unconfirmed)
+        self.diagnostics.append(found)
+        self.context.unknown_constants.append((to, constant.name, found))
 
     def is_described(self, type_: Type) -> bool:
         """Whether more than one release describes a type of the controller."""

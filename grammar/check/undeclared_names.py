@@ -8,10 +8,17 @@ those of all files are graded together (`grammar.check.unresolved_names`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache, partial
 
 from grammar.check.context import Context
-from grammar.check.unresolved_names import SLUGS, WORDS, UnresolvedName
+from grammar.check.unresolved_names import (
+    SLUGS,
+    WORDS,
+    Declared,
+    UnresolvedName,
+    slipped_declaration,
+)
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.link import Project
@@ -30,11 +37,15 @@ def check(context: Context) -> Iterator[Diagnostic]:
     slips = _slipped_declarations(context)
     reported = {(Space.VALUE, key) for key in slips}
     for symbol, name, count in slips.values():
-        message = f"{symbol.name} is declared and never used, and {name} is not declared"
-        reason = f"{name} is used {count} times"
-        fix = Fix(f"did you mean {name}?")
-        yield context.finding(
-            "unknown-name", symbol.span, message, reason=reason, severity="warning", fix=fix
+        region = Region.of(context.source, symbol.span)
+        yield slipped_declaration(
+            "unknown-name",
+            context.source.path,
+            region,
+            symbol.name,
+            name,
+            count,
+            is_certain=False,
         )
     for use in context.resolution.open_uses:
         if use.space is None or use.space is Space.LABEL or not isinstance(use.answer, NotFound):
@@ -95,8 +106,18 @@ def _used(context: Context) -> Iterator[Found]:
 
 
 def uses(context: Context) -> frozenset[str]:
-    """The names in upper case that a file uses and some file declares."""
-    return frozenset(found.symbol.key for found in _used(context) if found.module)
+    """The names in upper case that a file uses and some file declares, or that cannot be read.
+
+    Constants of enumerations are among them with a #.
+    """
+    constants = {f"#{node.name.key}" for node in context.types if type(node) is ast.EnumConstant}
+    declared = {found.symbol.key for found in _used(context) if found.module}
+    return frozenset(declared | constants | uses_of_unread(context.module.words or ()))
+
+
+def uses_of_unread(words: Iterable[str]) -> frozenset[str]:
+    """What text that cannot be read may use, given its words in upper case."""
+    return frozenset(written for word in words for written in (word, f"#{word}"))
 
 
 def _near_system_names(context: Context) -> Iterator[Diagnostic]:
@@ -106,7 +127,11 @@ def _near_system_names(context: Context) -> Iterator[Diagnostic]:
     known = context.system.variables
     for key, symbol in context.table.table.spaces[Space.VALUE].items():
         if key.startswith("$") and key not in known:
-            near = [name for name in _system_typos().meant(key) if not _is_declared(context, name)]
+            near = [
+                name
+                for name in _system_typos().meant(key)
+                if not _declared(context, Space.VALUE, name)
+            ]
             if near:
                 message = f"no system variable is called {symbol.name}"
                 fix = Fix(f"did you mean {' or '.join(near)}?")
@@ -115,9 +140,11 @@ def _near_system_names(context: Context) -> Iterator[Diagnostic]:
                 )
 
 
-def _is_declared(context: Context, name: str, space: Space = Space.VALUE) -> bool:
+def _declared(context: Context, space: Space, name: str) -> Declared | None:
     found = context.scope.find(space, name.upper())
-    return isinstance(found, Found) and found.module is not None
+    if not isinstance(found, Found) or found.module is None:
+        return None
+    return Declared(found.module.path, space, found.symbol.key)
 
 
 @cache
@@ -217,7 +244,25 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
     data = context.project.data_of(context.module) if open_ else None
     unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
     swapped = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
-    return (*_members(context), *_others(context, open_, own, swapped))
+    return (*_members(context), *_constants(context), *_others(context, open_, own, swapped))
+
+
+def _constants(context: Context) -> Iterator[UnresolvedName]:
+    """The constants that enumerations of the project lack."""
+    for enumeration, name, finding in context.unknown_constants:
+        at = _declared(context, Space.TYPE, enumeration.name)
+        near = Typos(enumeration.constants, 3, series=Series.DIGITS).meant(name)
+        yield UnresolvedName(
+            Space.TYPE,
+            f"{enumeration.name}#{name}",
+            finding.path,
+            finding.region,
+            1,
+            False,
+            near,
+            declared=replace(at, constant=near[0].upper()) if at and len(near) == 1 else None,
+            finding=finding,
+        )
 
 
 def _members(context: Context) -> Iterator[UnresolvedName]:
@@ -260,7 +305,7 @@ def _others(
             space is Space.VALUE and key.startswith("$"),
             near or (unused if is_swapped else ()),
             is_swapped,
-            all(_is_declared(context, one, space) for one in near),
+            _declared(context, space, near[0]) if len(near) == 1 else None,
             _is_all_read(context, some[0]),
             is_certain,
         )

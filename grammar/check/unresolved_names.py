@@ -8,13 +8,19 @@ how often it is used, and how many more there are like it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.typos import Typos
+from grammar.semantics.scopes import REST
+from grammar.semantics.symbols import ModuleTable, TypeSymbol
 from grammar.syntax.references import Space
+from grammar.syntax.source import Source
+
+#: The table and the text of a file of the project, by its path.
+FileOf = Callable[[str], tuple[ModuleTable | None, Source]]
 
 #: The code of a name that nothing declares, and what it is called, by the space it belongs to.
 SLUGS: Mapping[Space | None, str] = {
@@ -46,14 +52,38 @@ _MOST_MODULES = 2
 
 
 @dataclass(frozen=True, slots=True)
+class Declared:
+    """What a file at ``path`` declares, in upper case; a ``constant`` is one of an enumeration."""
+
+    path: str
+    space: Space
+    key: str
+    constant: str = ""
+
+    @property
+    def used(self) -> str:
+        """What the names that are used have in them if it is."""
+        return f"#{self.constant}" if self.constant else self.key
+
+    def region(self, file_of: FileOf) -> Region | None:
+        """Where it is declared; ``None`` where the file does not any more."""
+        table, source = file_of(self.path)
+        symbol = table.table.find(self.space, self.key) if table else None
+        if self.constant and isinstance(symbol, TypeSymbol):
+            symbol = symbol.members.get(self.constant)
+        return Region.of(source, symbol.span) if symbol else None
+
+
+@dataclass(frozen=True, slots=True)
 class UnresolvedName:
     """A name that a file uses and that may be declared in a file that is not at hand.
 
     ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
     first place of ``count``. ``near`` are names seen there that it may be a slip of; it
-    ``is_swapped`` with one that the data list declares and the program does not use.
-    ``is_declared``: files at hand declare those near. ``is_all_read``: no file is missing that
+    ``is_swapped`` with one that the data list declares and the program does not use. ``declared``
+    is where a file at hand declares the only one near. ``is_all_read``: no file is missing that
     could declare it; ``is_certain``: the data list of the program is among those that are there.
+    A constant that its enumeration lacks is found in its file already, as ``finding``.
     """
 
     space: Space | None
@@ -64,23 +94,55 @@ class UnresolvedName:
     is_system: bool
     near: tuple[str, ...] = ()
     is_swapped: bool = False
-    is_declared: bool = False
+    declared: Declared | None = None
     is_all_read: bool = False
     is_certain: bool = False
+    finding: Diagnostic | None = None
+
+    @property
+    def called(self) -> tuple[Space | None, str]:
+        """What tells it from other names."""
+        return self.space, self.name.upper()
 
 
-def of_project(found: Iterable[UnresolvedName], used: Set[str]) -> Iterator[Diagnostic]:
+def slipped_declarations(
+    found: Iterable[UnresolvedName], used: Set[str], file_of: FileOf
+) -> dict[tuple[Space | None, str], Diagnostic]:
+    """The findings at declarations, by what the uses are `called` that these leave undeclared.
+
+    A declaration has a slip where nothing uses it and a name that is near has several uses.
+    ``used`` are declared names that some file uses.
+    """
+    uses = _by_name(found)
+    slips = {key: at for key, some in uses.items() if (at := _slipped(some, used, file_of))}
+    often = [
+        key
+        for key in slips
+        if uses[key][0].finding is None and sum(one.count for one in uses[key]) > _MOST_SLIPS
+    ]
+    if len(often) > 1:  # their declarations are missing, or were given other names
+        slips = {key: at for key, at in slips.items() if key not in often}
+    return slips
+
+
+def _by_name(
+    found: Iterable[UnresolvedName],
+) -> dict[tuple[Space | None, str], list[UnresolvedName]]:
+    uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
+    for reference in found:
+        uses.setdefault(reference.called, []).append(reference)
+    return uses
+
+
+def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
     An error in each file for what nothing declares though all that could is read; a warning for
     what is a slip of a name that is seen there, or that is used again and again and comes from
     elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
-    is a slip, what declares them is missing, so that these are notes, too. ``used`` are declared
-    names that some file uses: what is near one that none does is a slip in its declaration.
+    is a slip, what declares them is missing, so that these are notes, too.
     """
-    uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
-    for reference in found:
-        uses.setdefault((reference.space, reference.name.upper()), []).append(reference)
+    uses = _by_name(found)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
     seen = {
         space: Typos(some[0].name for (at, _), some in uses.items() if at is space)
@@ -99,19 +161,14 @@ def of_project(found: Iterable[UnresolvedName], used: Set[str]) -> Iterator[Diag
     series = Counter(name for names in meant.values() for name in names)
     lost: dict[bool, list[tuple[Space | None, str]]] = {True: [], False: []}
     slips = {}
-    unused = {}
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)
         is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
         if near and (is_rare or any(one.is_swapped for one in some)):
             slips[key] = near
-        elif len(near) == 1 and some[0].is_declared and near[0].upper() not in used:
-            unused[key] = near
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
             lost[all(one.is_certain for one in some)].append(key)
     programs = Counter(uses[key][0].path for key in lost[False])
-    if len(unused) == 1:  # of several the declarations are missing, or were given other names
-        slips |= unused
     told = slips | {
         key: ()
         for is_certain, keys in lost.items()
@@ -131,6 +188,39 @@ def _is_usual(near: tuple[int, int], wrong: tuple[int, int], name: str) -> bool:
     if near[0] == wrong[0]:
         return near[0] == 1 and len(name) >= _LONG and near > wrong
     return near > wrong
+
+
+def _slipped(some: Sequence[UnresolvedName], used: Set[str], file_of: FileOf) -> Diagnostic | None:
+    """The finding at a declaration that nothing uses, where what is near it has several uses."""
+    first, count = some[0], sum(one.count for one in some)
+    at = first.declared
+    if at is None or count < _MOST_SLIPS or at.used in used or REST in used:
+        return None
+    region = at.region(file_of)
+    if region is None:
+        return None
+    is_certain = all(one.is_all_read and one.is_certain for one in some)
+    slug, written, name = SLUGS[at.space], first.near[0], first.name
+    if first.finding:
+        slug, is_certain = "no-such-constant", first.finding.severity == "error"
+        of, _, constant = name.partition("#")
+        written, name = f"#{written} of {of}", f"#{constant}"
+    return slipped_declaration(slug, at.path, region, written, name, count, is_certain=is_certain)
+
+
+def slipped_declaration(
+    slug: str, path: str, region: Region, written: str, name: str, count: int, *, is_certain: bool
+) -> Diagnostic:
+    """A declaration that nothing uses, ``written`` one slip away from a name that many do."""
+    return diagnose(
+        slug,
+        path,
+        region,
+        f"{written} is declared and never used, and {name} is not declared",
+        reason=f"{name} is used {count} times",
+        severity="error" if is_certain else "warning",
+        fix=Fix(f"did you mean {name}?"),
+    )
 
 
 def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:

@@ -27,6 +27,8 @@ _ROUTINES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 #: How a routine begins that ends so.
 _HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
+#: A type that loses its last members is still one, and known to have others.
+_TYPE = re.compile(r"[ \t]*(?:(?:DECL|GLOBAL)[ \t]+)*(?:ENUM|STRUC)\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,10 +155,14 @@ class _Recovery:
         return word in CLOSERS or word in BRANCHES
 
     def _shorten(self, line: int, column: int) -> bool:
-        """Read a line that opens or divides a block only up to where it fails."""
+        """Read a line that opens or divides a block, or declares a type, up to where it fails."""
         beginning = self._written.line(line)[: column - 1].rstrip()
         word = lead(beginning)
-        if (word not in BLOCKS and word not in BRANCHES) or not self._write(line, beginning):
+        if _TYPE.match(beginning):
+            beginning = beginning.rpartition(",")[0]
+        elif word not in BLOCKS and word not in BRANCHES:
+            return False
+        if not beginning or not self._write(line, beginning):
             return False
         self._shortened.add(line)
         return True
@@ -195,7 +201,8 @@ class _Recovery:
             if word in _ROUTINES:
                 return False
             if word not in BLOCKS and word not in BRANCHES and word not in CLOSERS:
-                self._write(last, "")
+                text = self._written.line(last)
+                self._write(last, text.rpartition(",")[0] if _TYPE.match(text) else "")
         self._text = self._text.rstrip()
         while block is not None:
             self._text += f"\n{block.closer}"

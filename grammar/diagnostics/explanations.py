@@ -36,8 +36,12 @@ class Explanation:
 
 
 def explanation(name: str) -> Explanation | None:
-    """The explanation of a code or slug in any letter case; ``None`` where there is no such one."""
-    entry = by_code().get(name.upper()) or by_slug().get(name.lower())
+    """The explanation of a code or slug in any letter case; ``None`` where there is no such one.
+
+    The number of a message of the controller is enough.
+    """
+    code = f"KSS{name}" if name.isdecimal() else name.upper()
+    entry = by_code().get(code) or by_slug().get(name.lower())
     if entry is None:
         return None
     known = _examples().get(entry.code, {})

@@ -62,7 +62,12 @@ def initial(to: Type, value: Type) -> Verdict:
 
 
 def _refused(to: Type, value: Type) -> Verdict:
-    return Verdict(False, ("ARI-11",), f"{to} is expected here, and this is {value}", 1446)
+    return Verdict(False, ("ARI-11",), misfit(to, value), 1446, is_misfit=True)
+
+
+def misfit(to: Type, value: Type, where: str = "here") -> str:
+    """The sentence on a value of another type than its place has."""
+    return f"{to} is expected {where}, and this is {value}"
 
 
 def _to_scalar(to: Scalar, value: Type) -> Verdict:

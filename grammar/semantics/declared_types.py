@@ -43,7 +43,7 @@ class DeclaredTypes:
 
     def _type(self, symbol: Symbol, scope: Scope) -> Type:
         if isinstance(symbol, TypeSymbol):
-            return self._declared(symbol, scope)
+            return self._declared(symbol, scope, is_open=Found(symbol, scope).is_open)
         if isinstance(symbol, SignalSymbol):
             return self._signal(symbol, scope)
         return UNKNOWN if symbol.type is None else self.written(symbol.type, scope)
@@ -56,9 +56,10 @@ class DeclaredTypes:
             return element
         return Array(element, tuple(_size(index, scope) for index in written.indices))
 
-    def _declared(self, symbol: TypeSymbol, scope: Scope) -> Type:
+    def _declared(self, symbol: TypeSymbol, scope: Scope, *, is_open: bool) -> Type:
         if symbol.kind is Kind.ENUMERATION:
-            return Enumeration(symbol.name, tuple(one.name for one in symbol.members.values()))
+            constants = tuple(one.name for one in symbol.members.values())
+            return Enumeration(symbol.name, constants, is_open)
         if self._depth == _DEEPEST:
             return UNKNOWN
         self._depth += 1
@@ -69,7 +70,7 @@ class DeclaredTypes:
             )
         finally:
             self._depth -= 1
-        return Structure(symbol.name, members)
+        return Structure(symbol.name, members, is_open)
 
     def _signal(self, symbol: SignalSymbol, scope: Scope) -> Type:
         """A signal of several bits is a number; another one has the type of what it stands for."""

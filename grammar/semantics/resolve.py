@@ -129,7 +129,7 @@ class _Walk:
         answer = known.get(key)
         if answer is None:
             symbol = structure.symbol.members.get(key)
-            answer = Found(symbol, structure.scope) if symbol else _no_member(structure.symbol)
+            answer = Found(symbol, structure.scope) if symbol else _no_member(structure)
             known[key] = answer
         self.answers[name] = answer
         if type(answer) is not Found:
@@ -198,7 +198,7 @@ def _as_structure(answer: Answer | None) -> Found | None:
     return None
 
 
-def _no_member(structure: TypeSymbol) -> Answer:
+def _no_member(structure: Found) -> Answer:
     return MaybeElsewhere(Reason.SYSTEM) if structure.is_open else NotFound()
 
 

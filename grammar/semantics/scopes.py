@@ -62,9 +62,9 @@ class Module:
         return self.words is not None and REST in self.words
 
     def is_head_unread(self, key: str) -> bool:
-        """Whether the line that begins a routine of the file, or its data list, is not read.
+        """Whether the line is not read that begins a routine, the data list or a type of the file.
 
-        It may say PUBLIC then, or name other parameters.
+        It may say PUBLIC then, or name other parameters or members.
         """
         return self.words is not None and key in self.words
 
@@ -102,6 +102,13 @@ class Found:
     def module(self) -> Module | None:
         """The file that declares it; ``None`` for what the controller itself brings."""
         return self.scope.module
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a type may have other members than are known, as its line is read in part."""
+        if isinstance(self.symbol, TypeSymbol) and self.symbol.is_open:
+            return True
+        return self.module is not None and self.module.is_head_unread(self.symbol.key)
 
     def type_symbol(self) -> Answer | None:
         """The type that the declaration names, of an array its elements'; ``None`` without one."""

@@ -240,7 +240,8 @@ class Verdict:
 
     ``reason`` is a sentence without an end, empty where all is plain; ``message`` the number of the
     controller's own message where one fits. What is allowed and not ``is_lossless`` changes the
-    value: a REAL is rounded, a component dropped. A verdict is true when it ``is_fine``.
+    value: a REAL is rounded, a component dropped. It ``is_misfit`` where nothing but the two types
+    is the reason. A verdict is true when it ``is_fine``.
     """
 
     is_fine: bool
@@ -248,6 +249,7 @@ class Verdict:
     reason: str = ""
     message: int | None = None
     is_lossless: bool = True
+    is_misfit: bool = False
 
     def __bool__(self) -> bool:
         return self.is_fine

@@ -294,7 +294,9 @@ def _checked(
         project, stand_ins = whole.project, tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}
     units = _units(project, sources, typed_module if stands_in and not strict else check_module)
-    for one in check_project(unit.checked.findings for unit in units.values()) if strict else ():
+    files = {unit.module.path: (unit.module.table, unit.source) for unit in units.values()}
+    findings = [unit.checked.findings for unit in units.values()]
+    for one in check_project(findings, files.__getitem__) if strict else ():
         if one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 def explain(
     code: Annotated[
         str | None,
-        typer.Argument(metavar="[CODE]", help="As findings have it, KSS2296; none lists all."),
+        typer.Argument(
+            metavar="[CODE]", help="As findings have it, KSS2296 or 2296; none lists all."
+        ),
     ] = None,
 ) -> int:
     """Explain a code of `krl check`: what is wrong, why, and how it is put right."""

@@ -24,6 +24,12 @@ def test_the_number_of_the_controller_is_told(capsys: pytest.CaptureFixture[str]
     assert said.index("Wrong:") < said.index("Right:")
 
 
+def test_the_number_of_a_message_is_a_code(capsys: pytest.CaptureFixture[str]) -> None:
+    """What stands on the controller's display is enough."""
+    assert 0 == main(["explain", "2296"])
+    assert capsys.readouterr().out.startswith("KSS2296 ")
+
+
 def test_without_a_code_all_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     """One line a code."""
     assert 0 == main(["explain"])

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from grammar.check.framework import check, check_project
-from grammar.check.project_check import CheckOptions, Content, recheck
+from grammar.check.framework import check
+from grammar.check.project_check import CheckOptions, Content, found_in_project, recheck
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link, words_of
 from grammar.syntax.build import read_module
@@ -203,20 +203,38 @@ END"""
 
 def test_a_slip_in_the_data_list(agrees: Agrees) -> None:
     """What the program uses often and its list does not have is one slip away from what it has."""
-    data = "DEFDAT CELL\nDECL INT RECIEVED=0\nENDDAT\n"
-    lines = ["DEF CELL()", "RECEIVED = 1 ;> KRL101?", *["RECEIVED = 2"] * 4, "END"]
+    data = "DEFDAT CELL\nDECL INT RECIEVED=0 ;> KRL101?\nENDDAT\n"
+    lines = ["DEF CELL()", *["RECEIVED = 2"] * 5, "END"]
     agrees({"cell.dat": data, "cell.src": "\n".join(lines)}, is_complete=None)
 
 
 def test_a_slip_in_what_is_global(agrees: Agrees) -> None:
     """What nothing uses and is one slip away from what others use often is declared wrongly."""
-    calls = ["RESETCLOCK() ;> KRL102?", *["RESETCLOCK()"] * 3]
-    cell = "\n".join(["DEF CELL()", *calls, "END"])
-    files = {"cell.src": cell, "resetclok.src": "DEF RESETCLOK()\nEND"}
-    agrees(files, is_complete=None)
-    user = "DEF USER()\nRESETCLOK()\nEND"
-    used = cell.replace("KRL102?", "KRL701-")
-    agrees({**files, "cell.src": used, "user.src": user}, is_complete=None)
+    cell = "\n".join(["DEF CELL()", *["RESETCLOCK()"] * 4, "END"])
+    clock = "DEF RESETCLOK() ;> KRL102?\nEND"
+    agrees({"cell.src": cell, "resetclok.src": clock}, is_complete=None)
+    used = cell.replace("CLOCK()", "CLOCK() ;> KRL701-", 1)
+    files = {"cell.src": used, "resetclok.src": clock.replace(";> KRL102?", "")}
+    agrees({**files, "user.src": "DEF USER()\nRESETCLOK()\nEND"}, is_complete=None)
+
+
+ENUM = "DEFDAT $CONFIG PUBLIC\nGLOBAL ENUM JOB PICK, PLCAE ;> KSS2296\nDECL GLOBAL JOB J\nENDDAT\n"
+PLACES = "DEF A()\nJ = #PLACE\nIF J==#PLACE THEN\nHALT\nENDIF\nEND\n"
+
+
+def test_a_slip_in_a_constant_is_told_where_it_is_declared(agrees: Agrees) -> None:
+    """What several places call otherwise, and nothing as it is declared, is one finding."""
+    b = PLACES.replace("A()", "B()")
+    agrees({"$config.dat": ENUM, "a.src": PLACES, "b.src": b}, is_complete=None)
+
+
+def test_a_slip_in_the_use_of_a_constant(agrees: Agrees) -> None:
+    """Where the constant is used as it is declared, its other uses are wrong."""
+    b = "DEF B()\nJ = #PLCAE\nEND\n"
+    a = PLACES.replace("PLACE\n", "PLACE ;> KSS2296\n").replace("THEN", "THEN ;> KSS2296")
+    agrees(
+        {"$config.dat": ENUM.replace(";> KSS2296", ""), "a.src": a, "b.src": b}, is_complete=None
+    )
 
 
 @pytest.mark.parametrize(
@@ -234,8 +252,7 @@ def test_any_slip_is_one_where_the_list_has_what_nothing_uses(
 def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
     """The errors and warnings in files that need not be readable."""
     contents = [Content(path, "", text.encode()) for path, text in files.items()]
-    known = recheck(contents, CheckOptions(), {})
-    found = check_project(one.checked.findings for one in known)
+    found = found_in_project(contents, recheck(contents, CheckOptions(), {}))
     return [(one.path, one.region.line, one.code) for one in found if one.severity != "note"]
 
 
@@ -243,6 +260,18 @@ CUT = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nDECL GLOBAL IN"
 UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
 WATCHED = "DEF A()\nINTERRUPT DECL 5 WHEN $IN[1] DO B()\n"
 MAIN = "DEF MAIN()\n  GRIPPED = 1\n  PARTS = OTHERS\n  CELL(1)\nEND\n"
+
+
+OPEN = "DEFDAT $CONFIG PUBLIC\nGLOBAL ENUM JOB PICK, {}\nGLOBAL STRUC BOX INT SIDE, {}\nENDDAT\n"
+JOBS = "DEF A()\nDECL JOB J\nDECL BOX B\nJ=#PICK\nJ=#PALCE\nJ=5\nB.HIGH=1\nB.SIDE=TRUE\nEND\n"
+
+
+def test_a_type_whose_line_is_damaged_is_one_with_other_members() -> None:
+    """What is read of its line is known, and what is lost may be anything."""
+    damaged = told({"$config.dat": OPEN.format("5", "REAL"), "a.src": JOBS})
+    config = [("$config.dat", line, "KRL001") for line in (2, 3)]
+    wrong = [("a.src", line, "KSS1446") for line in (6, 8)]
+    assert [*config, *wrong] == damaged
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,7 @@
 
 import re
 
-from grammar.check.framework import check_project
-from grammar.check.project_check import CheckOptions, Content, recheck
+from grammar.check.project_check import CheckOptions, Content, found_in_project, recheck
 from grammar.check.suppression_comments import apply_suppressions
 from grammar.diagnostics.codes import by_code
 from grammar.diagnostics.explanations import explanation
@@ -21,8 +20,9 @@ def found_in(example: str, *, is_complete: bool) -> set[str]:
     names = parts[::2] or ["work.dat" if first.lstrip().startswith("DEFDAT") else "work.src"]
     files = dict(zip(names, parts[1::2] or [first], strict=True))
     contents = [Content(name, "", text.encode()) for name, text in files.items()]
-    results = [one.checked for one in recheck(contents, options, {})]
-    all_ = check_project(one.findings for one in results)
+    known = recheck(contents, options, {})
+    results = [one.checked for one in known]
+    all_ = found_in_project(contents, known)
     found = set()
     for name, result in zip(files, results, strict=True):
         its = [one for one in all_ if one.path == name]
