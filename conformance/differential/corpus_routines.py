@@ -1,7 +1,7 @@
 """Programs as people wrote them, tried routine by routine on several executors.
 
 Each routine is looked at by itself: whether it checks without an error, whether all that it names
-is there, whether all of it is compiled, how it ends in a stub world, and whether all executors say
+is there, whether all of it is compiled, how it ends in a quiet world, and whether all executors say
 the same on the way. Motions take no time there, and inputs are drawn from a seed. What waits for
 the world to change in a way that it never does is stopped.
 """
@@ -14,10 +14,10 @@ from functools import partial
 from typing import Final, Literal
 
 from conformance.differential import divergence
+from conformance.differential.observation import Observed, difference, observe
+from conformance.differential.random_world import QuietWorld
 from conformance.differential.runs import facts_of
 from grammar.syntax.source import Source
-from interp.bench.executor_differences import Observed, difference, observe
-from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import Compiled, compile_program
 from interp.bytecode.verifier.verify import VerificationError, Verified, verify
 from interp.bytecode.vm.executor import Machine
@@ -189,14 +189,10 @@ class _Project:
             for name in self._executors
         )
         found = (divergence.difference(name, first[1], facts) for name, facts in others)
-        return {
-            one.executor: f"fact {one.place}: {one.expected_text} by {first[0]}, {one.actual_text}"
-            for one in found
-            if one is not None
-        }
+        return self._in_words(found)
 
     def _observed(self, executor: str, program: CheckedProgram, start: Routine) -> Observed:
-        world = StubController(self._effort.seed, self._values)
+        world = QuietWorld(self._effort.seed, self._values)
         make = partial(self._made, executor, program, start)
         return observe(make, world, self._effort.requests)
 
@@ -214,8 +210,15 @@ class _Project:
 
     def _differences(self, seen: Mapping[str, Observed]) -> dict[str, str]:
         first, *others = self._executors
-        found = {name: difference(seen[first], seen[name]) for name in others}
-        return {name: str(one) for name, one in found.items() if one is not None}
+        return self._in_words(difference(name, seen[first], seen[name]) for name in others)
+
+    def _in_words(self, found: Iterable[divergence.Difference | None]) -> dict[str, str]:
+        first = self._executors[0]
+        return {
+            one.executor: f"fact {one.place}: {one.expected_text} by {first}, {one.actual_text}"
+            for one in found
+            if one is not None
+        }
 
 
 _LONGEST: Final = 200

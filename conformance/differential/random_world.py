@@ -1,12 +1,13 @@
 """A world that answers at random from a seed, disturbs programs, and holds little in memory.
 
-It differs from `interp.bench.stub_controller.StubController` in that it answers with a fault now
-and then, in that what was never written has values that are no zeros, and in that arrays of
-thousands of inputs and outputs cost nothing before they are used.
+It answers with a fault now and then, and what was never written has values that are no zeros.
+Arrays of thousands of inputs and outputs cost nothing before they are used. A `QuietWorld` does
+neither.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from random import Random
 from typing import Any, Final
 
@@ -25,7 +26,15 @@ from grammar.semantics.types import (
 from interp.port.requests import Invoke, Move, MoveSpline, Path, Poll, Read, Request, Value, Write
 from interp.values.faults import Fault, fault
 from interp.values.texts import Outcome
-from interp.values.values import ArrayValue, EnumValue, StructureValue, copied, empty, has_value
+from interp.values.values import (
+    ArrayValue,
+    EnumValue,
+    StructureValue,
+    copied,
+    empty,
+    has_value,
+    zero,
+)
 
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN1"})
 #: After so many polls in vain every input is TRUE, so that no wait is endless.
@@ -76,7 +85,7 @@ class RandomWorld:
         key, members = _split(path)
         value = self._values.get(key)
         if value is None:
-            value = self._values[key] = self._made(self._type(key))
+            value = self._values[key] = self._first(key)
         for name in members:
             value = _member(value, name)
         if value is None:
@@ -91,7 +100,7 @@ class RandomWorld:
             self._values[key] = copied(value)
             return
         if key not in self._values:
-            self._values[key] = self._made(self._type(key))
+            self._values[key] = self._first(key)
         whole = self._values[key]
         for name in members[:-1]:
             whole = _member(whole, name)
@@ -128,6 +137,10 @@ class RandomWorld:
         drawn = self.below(2) == 1
         return drawn or self._looks >= _PATIENCE
 
+    def _first(self, key: Path) -> Any:
+        """The value of what was never written."""
+        return self._made(self._type(key))
+
     def _type(self, key: Path) -> Type:
         entry = self._system.variables.get(str(key[0]))
         type_ = UNKNOWN if entry is None else entry.type
@@ -161,6 +174,36 @@ class RandomWorld:
         if type_ == BOOL:
             return self.below(2) == 1
         return "KRL "[self.below(4)] if type_ == CHAR else self.below(5)
+
+
+class QuietWorld(RandomWorld):
+    """A world without a robot, in which nothing is drawn but inputs, and nothing fails.
+
+    Motions take no time. ``values`` are those of system variables at first, by name in upper case;
+    what is handed out are copies. All others are zeros of the types that the controller's tables
+    tell, INT where these tell none.
+    """
+
+    def __init__(self, seed: int = 0, values: Mapping[str, Value] | None = None) -> None:
+        super().__init__(str(seed), has_faults=False)
+        self._given = values or {}
+
+    def _first(self, key: Path) -> Any:
+        value: Any = self._given.get(str(key[0]))
+        if value is None:
+            return super()._first(key)
+        for step in key[1:]:
+            value = _member(value, step)
+        return copied(value)
+
+    def _made(self, type_: Type) -> Any:
+        match type_:
+            case Array():
+                sizes = tuple(_LARGEST_WHOLE if one is None else one for one in type_.sizes)
+                return zero(Array(INT if type_.element == UNKNOWN else type_.element, sizes))
+            case Structure():
+                return StructureValue(type_, [self._made(one.type) for one in type_.members])
+        return 0 if type_ == UNKNOWN else zero(type_)
 
 
 def _split(path: Path) -> tuple[Path, tuple[str | int, ...]]:

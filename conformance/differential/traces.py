@@ -53,11 +53,11 @@ class Trace:
 
     def request(self, request: Request) -> None:
         """The executor has asked."""
-        self.facts.append(self._fact(request))
+        self.facts.append(fact_of(request))
 
     def evaluated(self, outcome: object) -> None:
         """A condition was looked at; ``outcome`` is a value or what was raised."""
-        self.facts.append(("evaluated", None, self._plain(outcome)))
+        self.facts.append(("evaluated", None, _plain(outcome)))
 
     def entered(self) -> None:
         """An action was entered."""
@@ -69,25 +69,27 @@ class Trace:
 
     def raised(self, error: Exception) -> None:
         """The executor did not come to be, or raised what it never should."""
-        self.facts.append(("raised", None, *self._plain(error)))
+        self.facts.append(("raised", None, *_plain(error)))
 
-    def _fact(self, asked: Any) -> Fact:
-        values = (self._plain(getattr(asked, name)) for name in _fields(type(asked)))
-        return (type(asked).__name__, *values)
 
-    def _plain(self, value: Any) -> Any:
-        match value:
-            case At() | None | str():
-                return value
-            case CodeHandle():
-                return "CODE"
-            case Exception():
-                return (type(value).__name__, str(value))
-            case tuple():
-                return tuple(self._plain(one) for one in value)
-            case _ if type(value).__module__ == "interp.port.requests":
-                return self._fact(value)
-        return plain(value)
+def fact_of(step: Any) -> Fact:
+    """A request, a part of one, or an event, as its name and its fields."""
+    return (type(step).__name__, *(_plain(getattr(step, name)) for name in _fields(type(step))))
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case At() | None | str():
+            return value
+        case CodeHandle():
+            return "CODE"
+        case Exception():
+            return (type(value).__name__, str(value))
+        case tuple():
+            return tuple(_plain(one) for one in value)
+        case _ if type(value).__module__ == "interp.port.requests":
+            return fact_of(value)
+    return plain(value)
 
 
 _FIELDS: dict[Any, tuple[str, ...]] = {}

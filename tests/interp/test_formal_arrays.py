@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 import pytest
 
+from conformance.differential.observation import Observed, difference, observe
+from conformance.differential.random_world import QuietWorld
 from grammar.semantics.types import Array
 from grammar.syntax.source import Source
-from interp.bench.executor_differences import Observed, difference, observe
-from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import verify
@@ -48,10 +48,10 @@ def _makers(program: CheckedProgram) -> list[Maker]:
 def _run(text: str) -> Observed:
     """What all executors ask and tell; the machine in C without a trace ends in the same way."""
     makers = _makers(_loaded(text))
-    tree, *others = [observe(make, StubController(), most=500) for make in makers]
+    tree, *others = [observe(make, QuietWorld(), most=500) for make in makers]
     for other in others:
-        assert None is difference(tree, other)
-    silent = observe(lambda _sink: makers[-1](None), StubController(), most=500)
+        assert None is difference("", tree, other)
+    silent = observe(lambda _sink: makers[-1](None), QuietWorld(), most=500)
     assert repr(tree.last) == repr(silent.last)
     return tree
 
@@ -170,7 +170,7 @@ END
 def test_actions_pass_on_what_their_routine_was_given(given: str) -> None:
     """An action passes a parameter on, left out or not, until its routine has ended."""
     for make in _makers(_loaded(_HANDED.format(given))):
-        executor, world = make(None), StubController()
+        executor, world = make(None), QuietWorld()
         declared = executor.advance()
         assert isinstance(declared, DeclareInterrupt)
         inside = executor.advance(world.reply(declared))

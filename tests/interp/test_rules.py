@@ -14,13 +14,14 @@ from typing import Any
 
 import pytest
 
+from conformance.differential.observation import observe
+from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.bench.stub_controller import StubController, run
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import Verified, verify
 from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
-from interp.port.events import Recorder, Sink
+from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.port.requests import Fail
 from interp.program.load import CheckedProgram, load
@@ -118,12 +119,12 @@ def test_rules(
 
 def _outcome(make: Callable[[Sink], Executor]) -> Any:
     """The value that the variable receives, or the slug of the fault."""
-    recorder = Recorder()
-    ended = run(make(recorder), StubController()).last
+    seen = observe(make, QuietWorld())
+    ended = seen.last
     if isinstance(ended, Fail):
         assert isinstance(ended.fault, Fault), ended.fault
         return f"!{ended.fault.slug}"
-    value = next(one.value for one in reversed(recorder.events) if one.path == ("R",))
+    value = next(one.value for one in reversed(seen.told("assign")) if one.path == ("R",))
     return to_json(value)
 
 

@@ -180,7 +180,7 @@ def test_a_change_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> No
 def test_a_fault_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
     """Words that fit several faults name them; words that fit none say where all are named."""
     assert 2 == run("control/recursion", "--fault", "DELAY")
-    assert "DELAY counts nothing; DELAY is in hundredths of a second" in capsys.readouterr().err
+    assert "DELAY has the other sign; DELAY is in hundredths of a second" in capsys.readouterr().err
     assert 2 == run("control/recursion", "--fault", "nobody knows this")
     assert "krl bench conform" in capsys.readouterr().err
 

@@ -9,12 +9,13 @@ from typing import get_args
 import pytest
 
 from conformance.differential.corpus_routines import Trial, trials
+from conformance.differential.observation import Observed, difference, observe
+from conformance.differential.random_world import QuietWorld
 from conformance.differential.runs import facts_of
+from conformance.differential.traces import fact_of
 from grammar.syntax import ast
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
-from interp.bench.executor_differences import Difference, Observed, difference, observe
-from interp.bench.stub_controller import StubController
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.assembly.disassembler import disassemble
 from interp.bytecode.compiler import Compiled, compile_program
@@ -51,13 +52,13 @@ def _makers(program: CheckedProgram) -> list[Callable[[Sink], Executor]]:
 
 def _observed(program: CheckedProgram) -> list[Observed]:
     """What both ask and tell."""
-    return [observe(make, StubController(1), 500) for make in _makers(program)]
+    return [observe(make, QuietWorld(1), 500) for make in _makers(program)]
 
 
 def _last(text: str, **more: str) -> Exception:
     """The fault that both executors end with."""
     tree, machine = _observed(_loaded(text, **more))
-    assert None is difference(tree, machine)
+    assert None is difference("", tree, machine)
     assert isinstance(tree.last, Fail)
     return tree.last.fault
 
@@ -215,7 +216,7 @@ def test_every_statement() -> None:
     """Requests and events are the same, also with interrupts, RESUME and faults on the way."""
     program = _loaded(_EVERYTHING)
     assert () == compile_program(program).refusals
-    assert None is difference(*_observed(program))
+    assert None is difference("", *_observed(program))
     kinds = set()
     for seed in "12345":
         tree, machine = (facts_of(make, seed) for make in _makers(program))
@@ -292,7 +293,7 @@ def test_what_is_not_there(text: str, reason: str) -> None:
 def test_a_counter_that_is_not_declared_ends_the_loop(step: str) -> None:
     """No comparison of it can be written, in either direction; the program ends all the same."""
     tree, machine = _observed(_loaded(f"DEF A()\n FOR I=5 TO 1{step}\n ENDFOR\nEND\n"))
-    assert None is difference(tree, machine)
+    assert None is difference("", tree, machine)
 
 
 def test_huge_data_lists() -> None:
@@ -311,7 +312,7 @@ def test_cyclic_flags_and_paths() -> None:
     """A cyclic flag receives a condition, PULSE the path of its output [IOT-11, TIM-05]."""
     text = "DEF main()\nDECL INT I\nI=2\n$CYCFLAG[I]=$IN[1]\nPULSE($OUT[I],TRUE,0.5)\nEND\n"
     tree, machine = _observed(_loaded(text))
-    assert None is difference(tree, machine)
+    assert None is difference("", tree, machine)
     assert [2] == [one.number for one in machine.steps if isinstance(one, SetCyclicFlag)]
     paths = [one.paths for one in machine.steps if isinstance(one, Invoke)]
     assert [(("$OUT", 2), None, None)] == paths
@@ -327,7 +328,7 @@ def test_imports_stop_the_advance_run() -> None:
             other_dat="DEFDAT other PUBLIC\nINT GIVEN=4\nENDDAT\n",
         )
     )
-    assert None is difference(tree, machine)
+    assert None is difference("", tree, machine)
     assert 2 == sum(isinstance(one, StopAdvance) for one in machine.steps)
 
 
@@ -355,7 +356,7 @@ def test_formal_arrays_passed_on() -> None:
         "DEF Inner(V[]:IN)\nDECL CHAR V[]\nDECL INT I\nI=StrLen(V[])\nEND\n"
     )
     tree, machine = _observed(_loaded(text))
-    assert None is difference(tree, machine)
+    assert None is difference("", tree, machine)
     assert 3 in [one.value for one in machine.steps if isinstance(one, ExecutorEvent)]
 
 
@@ -384,11 +385,12 @@ def test_differences_are_found() -> None:
     )
     one = Observed((first, steps[0]), is_cut=False)
     for other in steps[1:]:
-        found = difference(one, Observed((first, other), is_cut=False))
-        assert isinstance(found, Difference)
-        assert (1, steps[0], other) == (found.place, found.left, found.right)
-    short = difference(one, Observed((first,), is_cut=False))
-    assert Difference(1, steps[0], None) == short
+        found = difference("", one, Observed((first, other), is_cut=False))
+        assert found is not None
+        assert (1, fact_of(steps[0]), fact_of(other)) == (found.place, found.expected, found.actual)
+    short = difference("", one, Observed((first,), is_cut=False))
+    assert short is not None
+    assert (1, fact_of(steps[0]), None) == (short.place, short.expected, short.actual)
 
 
 def test_refusals_are_told() -> None:

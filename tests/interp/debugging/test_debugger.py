@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from conformance.differential.random_world import QuietWorld
 from grammar.semantics.types import UNKNOWN
 from grammar.syntax.source import Source
-from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
@@ -105,7 +105,7 @@ class Script:
 class World:
     """What a debugger asks of the controller."""
 
-    stub: StubController
+    stub: QuietWorld
     arm: ArmState = field(default_factory=lambda: ArmState(0, None, 0, 0))
 
     def look(self, path: Any) -> Any:
@@ -146,7 +146,7 @@ def program_of(text: str, data: str = "") -> CheckedProgram:
     return load(sources + ([Source(data, "main.dat")] if data else []), "main.src")
 
 
-def driven(executor: Any, world: StubController) -> list[Request]:
+def driven(executor: Any, world: QuietWorld) -> list[Request]:
     """All requests to the end."""
     found: list[Request] = []
     reply: Any = None
@@ -163,7 +163,7 @@ def debug(request: pytest.FixtureRequest) -> Callable[..., tuple[Script, list[Re
 
     def ran(*commands: Any, text: str = MAIN, data: str = DATA) -> tuple[Script, list[Request]]:
         program = program_of(text, data if text is MAIN else "")
-        script, world = Script(list(commands)), StubController()
+        script, world = Script(list(commands)), QuietWorld()
         make = make_of(request.param, program)
         debugger = Debugger(program, script)
         debugger.attach(World(world))
@@ -185,11 +185,11 @@ def test_a_program_does_the_same_under_a_debugger(name: str, per_slice: int) -> 
     program, limits = program_of(MAIN, DATA), Limits(per_slice=per_slice)
     make = make_of(name, program)
     alone, debugged = Recorder(), Recorder()
-    expected = driven(make(limits, alone), StubController())
+    expected = driven(make(limits, alone), QuietWorld())
     script = Script([StepCommand("into")] * 20)
     debugger = Debugger(program, script)
     inside = make(limits, debugged)
-    found = debugger.run(lambda: driven(debugger.around(inside, per_slice), StubController()))
+    found = debugger.run(lambda: driven(debugger.around(inside, per_slice), QuietWorld()))
     assert found is not None
     assert expected == found
     assert alone.events == debugged.events
@@ -434,7 +434,7 @@ END
 @pytest.mark.parametrize("name", EXECUTORS)
 def test_steps_and_actions(name: str, way: Any, lines: list[int]) -> None:
     """An action that comes up meanwhile is stepped over, or into."""
-    program, world = program_of(INTERRUPTED), StubController()
+    program, world = program_of(INTERRUPTED), QuietWorld()
     script = Script([StepCommand(way)] * (len(lines) - 1))
     stops = Debugger(program, script)
     debugger = stops.around(make_of(name, program)(Limits(), None), 1000)

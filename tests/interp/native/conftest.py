@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from interp.bench.stub_controller import StubController
+from conformance.differential.random_world import QuietWorld
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.verifier.verify import Verified, verify
 from interp.bytecode.vm import executor
@@ -48,7 +48,7 @@ def steps_of(
     """What a machine asks, and tells if it is to, as text: so that faults can be compared."""
     recorder = Recorder() if is_told else None
     machine = kind(verified, "MAIN", Limits(statements=400, per_slice=30, depth=6), recorder)
-    world, reply = StubController(), None
+    world, reply = QuietWorld(), None
     found: list[str] = []
     for _ in range(most):
         request: Request = machine.advance(reply)

@@ -6,8 +6,8 @@ from itertools import combinations
 
 import pytest
 
+from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.bench.stub_controller import StubController
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import Verified, verify
 from interp.bytecode.vm.executor import Machine
@@ -79,7 +79,7 @@ def _executor(name: str, program: CheckedProgram, verified: Verified, sink: Reco
 
 
 def _run(executor: Executor, recorder: Recorder) -> tuple[list[ExecutorEvent], list[Request]]:
-    world, requests = StubController(), [executor.advance()]
+    world, requests = QuietWorld(), [executor.advance()]
     while not isinstance(requests[-1], End):
         requests.append(executor.advance(world.reply(requests[-1])))
     return recorder.events, requests

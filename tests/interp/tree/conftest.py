@@ -3,46 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import pytest
 
+from conformance.differential.observation import Observed, observe
+from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.bench.stub_controller import Outcome, StubController, run
-from interp.port.events import Recorder
-from interp.port.requests import Path, Request
 from interp.program.load import Limits, load
 from interp.tree import TreeExecutor
 
-
-@dataclass(frozen=True)
-class Ran:
-    """A run: what was asked, and what was told."""
-
-    outcome: Outcome
-    recorder: Recorder
-
-    @property
-    def last(self) -> Request:
-        """The request it ended with."""
-        return self.outcome.last
-
-    def asked(self, kind: type[Any]) -> list[Any]:
-        """All requests of a kind."""
-        return [one for one in self.outcome.requests if isinstance(one, kind)]
-
-    def told(self, kind: str) -> list[Any]:
-        """All events of a kind."""
-        return [one for one in self.recorder.events if one.kind == kind]
-
-    def values(self, *path: str | int) -> list[Any]:
-        """What was assigned to a variable, one after the other."""
-        wanted: Path = path
-        return [one.value for one in self.told("assign") if one.path == wanted]
-
-
-Runner = Callable[..., Ran]
+Runner = Callable[..., Observed]
 
 
 def executor_of(
@@ -69,9 +40,7 @@ def make() -> Callable[..., TreeExecutor]:
 def go(make: Callable[..., TreeExecutor]) -> Runner:
     """Runs ``main.src`` and gives what happened."""
 
-    def ran(text: str, limits: Limits | None = None, most: int = 10_000, **more: str) -> Ran:
-        recorder = Recorder()
-        executor = make(text, limits, recorder, **more)
-        return Ran(run(executor, StubController(), most), recorder)
+    def ran(text: str, limits: Limits | None = None, most: int = 10_000, **more: str) -> Observed:
+        return observe(lambda sink: make(text, limits, sink, **more), QuietWorld(), most)
 
     return ran

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from interp.port.events import ExecutorEvent
 from interp.port.requests import Fail, Halt, Slice
 from interp.program.load import Limits
 from interp.tree import TreeExecutor
@@ -35,7 +36,8 @@ def test_endless_recursion(go: Run) -> None:
 def test_calls_are_told(go: Run) -> None:
     """A call is told at its caller's line, its end at the last line of the routine."""
     ran = go(body("Sub()") + "DEF Sub()\nHALT\nEND\n")
-    told = [(one.kind, one.name, one.at.line, one.at.depth) for one in ran.recorder.events]
+    events = [one for one in ran.steps if isinstance(one, ExecutorEvent)]
+    told = [(one.kind, one.name, one.at.line, one.at.depth) for one in events]
     assert [
         ("line", "", 3, 0),
         ("call", "Sub", 3, 0),

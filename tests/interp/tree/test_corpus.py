@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from conformance.differential.observation import Observed, observe
+from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.bench.stub_controller import Outcome, StubController, run
-from interp.port.events import Recorder
 from interp.port.requests import Crash, End, Fail
 from interp.program.load import Limits, load
 from interp.tree import TreeExecutor, system_values
@@ -15,7 +15,7 @@ from support.files.decode import decode
 PROGRAMS = Path(__file__).parents[3] / "corpus" / "programs"
 
 
-def executed(main: str, most: int) -> tuple[Outcome, Recorder]:
+def executed(main: str, most: int) -> Observed:
     folder = PROGRAMS / main.partition("/")[0]
     sources = []
     for path in sorted(folder.rglob("*")):
@@ -24,9 +24,8 @@ def executed(main: str, most: int) -> tuple[Outcome, Recorder]:
             text = "" if isinstance(found, str) else found.text  # an empty file
             sources.append(Source(text, path.relative_to(PROGRAMS).as_posix()))
     program = load(sources, main)
-    recorder = Recorder()
-    executor = TreeExecutor(program, limits=Limits(statements=50_000), sink=recorder)
-    return run(executor, StubController(1, system_values(program)), most), recorder
+    limits, world = Limits(statements=50_000), QuietWorld(1, system_values(program))
+    return observe(lambda sink: TreeExecutor(program, limits=limits, sink=sink), world, most)
 
 
 @pytest.mark.parametrize(
@@ -40,16 +39,14 @@ def executed(main: str, most: int) -> tuple[Outcome, Recorder]:
 )
 def test_runs_to_its_end(main: str) -> None:
     """The program ends, and a second run asks and tells the same."""
-    outcome, recorder = executed(main, 5_000)
-    assert isinstance(outcome.last, End)
-    again, told = executed(main, 5_000)
-    assert outcome == again
-    assert recorder.events == told.events
+    seen = executed(main, 5_000)
+    assert isinstance(seen.last, End)
+    assert seen == executed(main, 5_000)
 
 
 def test_palletiser_runs_on() -> None:
     """The palletiser's cell program, with BAS, messages and motions, runs without a fault."""
-    outcome, recorder = executed("palletiser/KRC/R1/cell.src", 3_000)
-    assert outcome.is_cut
-    assert not isinstance(outcome.last, Fail | Crash)
-    assert {"line", "assign", "call", "return", "branch"} == {one.kind for one in recorder.events}
+    seen = executed("palletiser/KRC/R1/cell.src", 3_000)
+    assert seen.is_cut
+    assert not isinstance(seen.last, Fail | Crash)
+    assert all(map(seen.told, ("line", "assign", "call", "return", "branch")))

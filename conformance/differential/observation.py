@@ -1,0 +1,71 @@
+"""A run that nothing disturbs, step by step: what an executor asks and what it tells.
+
+Executors that run the same program in the same world make the same requests and tell the same
+events, in the same order [design section 6].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from conformance.differential import divergence
+from conformance.differential.random_world import QuietWorld
+from conformance.differential.traces import fact_of
+from interp.port.events import ExecutorEvent, Recorder, Sink
+from interp.port.executor import Executor
+from interp.port.requests import Crash, End, Fail, Request
+
+Step = ExecutorEvent | Request
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """All that an executor asked and told; ``is_cut`` where it was stopped from outside."""
+
+    steps: tuple[Step, ...]
+    is_cut: bool
+
+    @property
+    def last(self) -> Step:
+        """What it ended with."""
+        return self.steps[-1]
+
+    def asked(self, kind: type[Any]) -> list[Any]:
+        """All requests of a kind."""
+        return [one for one in self.steps if isinstance(one, kind)]
+
+    def values(self, *path: str | int) -> list[Any]:
+        """What was assigned to a variable, one after the other."""
+        return [one.value for one in self.told("assign") if one.path == path]
+
+    def told(self, kind: str) -> list[ExecutorEvent]:
+        """All events of a kind."""
+        return [one for one in self.steps if isinstance(one, ExecutorEvent) and one.kind == kind]
+
+
+def observe(make: Callable[[Sink], Executor], world: QuietWorld, most: int = 10_000) -> Observed:
+    """Run a program to its end, or until it has made so many requests.
+
+    No interrupt ever comes, and no trigger; RESUME is answered by nothing. Raises
+    `interp.values.faults.LinkError` where the program cannot begin.
+    """
+    recorder = Recorder()
+    executor = make(recorder)
+    steps: list[Step] = []
+    reply: Any = None
+    for _ in range(most):
+        request = executor.advance(reply)
+        steps += [*recorder.events, request]
+        recorder.events.clear()
+        if isinstance(request, End | Fail | Crash):
+            return Observed(tuple(steps), is_cut=False)
+        reply = world.reply(request)
+    return Observed(tuple(steps), is_cut=True)
+
+
+def difference(executor: str, expected: Observed, actual: Observed) -> divergence.Difference | None:
+    """Where an executor differs from the reference; ``None`` where they agree."""
+    facts = ([fact_of(step) for step in one.steps] for one in (expected, actual))
+    return divergence.difference(executor, *facts)
