@@ -100,7 +100,7 @@ def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
         right = [one for one in right if one.path not in done[1]]
     lines = {one.path: one.keys for one in left}, {one.path: one.keys for one in right}
     by_path = {one.path: one for one in left}, {one.path: one for one in right}
-    for before, after in likest(*lines, lambda a, b: _suffix(a) == _suffix(b)):
+    for before, after in likest(*lines, _suffix):
         pairs.append((by_path[0][before], by_path[1][after]))
     return sorted(pairs, key=lambda pair: pair[1].path.casefold())
 
@@ -135,28 +135,21 @@ class _Placed:
 def _routines(
     old: Sequence[Content], new: Sequence[Content], pairs: Sequence[_Pair], names: Mapping[str, str]
 ) -> Iterator[Record]:
-    left = {one.path: list(_placed(one)) for one in old}
-    right = {one.path: list(_placed(one)) for one in new}
+    gone = {_key(each): each for one in old for each in _placed(one)}
+    come = {_key(each): each for one in new for each in _placed(one)}
+    there = {one.path: other.path for one, other in pairs}
     found: list[tuple[_Placed, _Placed]] = []
-    for one, other in pairs:
-        there = {(each.routine.name.upper(), each.number): each for each in right[other.path]}
-        for each in list(left[one.path]):
-            name = each.routine.name.upper()
-            match = there.get((names.get(name, name), each.number))
-            if match is not None:
-                found.append((each, match))
-                left[one.path].remove(each)
-                right[other.path].remove(match)
-    gone = {_key(one): one for some in left.values() for one in some}
-    come = {_key(one): one for some in right.values() for one in some}
+    for path, name, number in list(gone):
+        match = there.get(path, ""), names.get(name, name), number
+        if match in come:
+            found.append((gone.pop((path, name, number)), come.pop(match)))
     matches = likest(
         {key: (one.routine.signature, *one.routine.keys) for key, one in gone.items()},
         {key: (one.routine.signature, *one.routine.keys) for key, one in come.items()},
     )
     for before, after in matches:
         found.append((gone.pop(before), come.pop(after)))
-    paths = {(one.path, other.path) for one, other in pairs}
-    records = [_changed(one, other, (one.path, other.path) in paths) for one, other in found]
+    records = [_changed(one, other, there.get(one.path) == other.path) for one, other in found]
     records += [_alone("removed", each) for each in gone.values()]
     records += [_alone("added", each) for each in come.values()]
     yield from sorted(
@@ -254,8 +247,9 @@ def _data(old: Content, new: Content, *, is_point: bool) -> Iterator[Record]:
             yield from _point(old, new, was, now)
         elif was.key != now.key:
             yield _datum("changed", new.path, now, was.text, now.text)
+    known = after.keys() | set(renamed.values())
     for key, was in before.items():
-        if key not in after and key not in renamed.values():
+        if key not in known:
             yield _datum("removed", new.path, was, was.text, None)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
@@ -13,7 +13,7 @@ _K = TypeVar("_K", bound=Hashable)
 
 # Less is no likeness: short routines have much in common.
 _LEAST = 0.6
-# More candidates than anybody renames at once: then only what is the same counts.
+# More than anybody renames and changes at once: then only what is the same counts.
 _MOST = 300
 # Beyond so many lines, or pairs of equal lines, exact comparison takes long.
 _LONG = 5_000
@@ -85,36 +85,52 @@ def _joined(ones: Sequence[_Operation]) -> _Operation:
 def likest(
     old: Mapping[_K, Sequence[str]],
     new: Mapping[_K, Sequence[str]],
-    may_be: Callable[[_K, _K], bool] = lambda _old, _new: True,
+    kind: Callable[[_K], object] = lambda _: None,
 ) -> Iterator[tuple[_K, _K]]:
-    """Pairs of old and new things, each in one pair, by the lines they consist of.
+    """Pairs of old and new things of a kind, each in one pair, by the lines they consist of.
 
     What is the same comes first, then what has most in common, the first of several. Things of no
     lines are in no pair.
     """
-    pairs = _candidates(old, new, may_be)
-    done: set[tuple[bool, _K]] = set()
-    for _, before, after in pairs:
-        if (False, before) not in done and (True, after) not in done:
-            done |= {(False, before), (True, after)}
+    left, right = _counted(old, kind), _counted(new, kind)
+    same: dict[object, deque[_K]] = {}
+    for key, what in right.items():
+        same.setdefault(what, deque()).append(key)
+    for key, what in list(left.items()):
+        if same.get(what):
+            match = same[what].popleft()
+            del left[key], right[match]
+            yield key, match
+    if max(len(left), len(right)) > _MOST:
+        return
+    for _, before, after in _candidates(left, right):
+        if before in left and after in right:
+            del left[before], right[after]
             yield before, after
 
 
+def _counted(
+    things: Mapping[_K, Sequence[str]], kind: Callable[[_K], object]
+) -> dict[_K, tuple[object, frozenset[tuple[str, int]]]]:
+    """The kind of each thing, and its lines with how often each comes; those that have any."""
+    return {
+        key: (kind(key), frozenset(Counter(lines).items()))
+        for key, lines in things.items()
+        if lines
+    }
+
+
 def _candidates(
-    old: Mapping[_K, Sequence[str]],
-    new: Mapping[_K, Sequence[str]],
-    may_be: Callable[[_K, _K], bool],
+    old: Mapping[_K, tuple[object, frozenset[tuple[str, int]]]],
+    new: Mapping[_K, tuple[object, frozenset[tuple[str, int]]]],
 ) -> list[tuple[float, _K, _K]]:
-    least = _LEAST if max(len(old), len(new)) <= _MOST else 1.0
-    counts = {key: Counter(lines) for key, lines in new.items() if lines}
+    counts = {key: (kind, Counter(dict(lines))) for key, (kind, lines) in new.items()}
     found = []
-    for before, lines in old.items():
-        mine = Counter(lines)
-        for after, theirs in counts.items():
-            if not mine or not may_be(before, after):
-                continue
-            likeness = _likeness(mine, theirs)
-            if likeness >= least:
+    for before, (kind, lines) in old.items():
+        mine = Counter(dict(lines))
+        for after, (other, theirs) in counts.items():
+            likeness = _likeness(mine, theirs) if kind == other else 0.0
+            if likeness >= _LEAST:
                 found.append((likeness, before, after))
     return sorted(found, key=lambda one: -one[0])
 

@@ -37,14 +37,17 @@ def renamings(
 ) -> dict[str, str]:
     """The new name for each that was renamed; ``old`` and ``new`` are all names of both states."""
     votes: Counter[tuple[str, str]] = Counter()
+    gone, come = old - new, new - old
     for before, after in pairs:
         for one, other in zip(before.routines, after.routines, strict=False):
-            votes.update(_votes(one.keys, other.keys, old - new, new - old))
-        votes.update(_votes(_data_keys(before), _data_keys(after), old - new, new - old))
+            votes.update(_votes(one.keys, other.keys, gone, come))
+        votes.update(_votes(_data_keys(before), _data_keys(after), gone, come))
     found: dict[str, str] = {}
+    taken: set[str] = set()
     for (was, now), _ in sorted(votes.items(), key=lambda vote: (-vote[1], vote[0])):
-        if was not in found and now not in found.values():
+        if was not in found and now not in taken:
             found[was] = now
+            taken.add(now)
     return found
 
 

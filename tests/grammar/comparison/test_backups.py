@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grammar.comparison import matching
 from grammar.comparison.backups import compare
-from grammar.comparison.matching import line_operations
+from grammar.comparison.matching import likest, line_operations
 from grammar.syntax.source import Source
 
 MAIN = """&ACCESS RVP
@@ -160,6 +160,20 @@ def test_points_and_data_come_and_go() -> None:
     assert [("changed", "COUNT", "4", "5"), ("added", "SPEED", None, "0.5")] == [
         (one["kind"], one["name"], one["old"], one["new"]) for one in found["data"]
     ]
+
+
+def test_what_is_the_same_does_not_hide_what_is_alike() -> None:
+    """However many routines moved unchanged, the one that also changed is found."""
+    old = {f"A{i}": (f"X{i}",) for i in range(500)} | {"B": ("P", "Q", "R")}
+    new = {f"C{i}": (f"X{i}",) for i in range(500)} | {"D": ("P", "Q", "S")}
+    assert [*((f"A{i}", f"C{i}") for i in range(500)), ("B", "D")] == list(likest(old, new))
+
+
+def test_things_of_one_content_go_together_in_their_order() -> None:
+    """The first of several is the other's first, of its own kind only."""
+    assert [("a", "x"), ("b", "z")] == list(
+        likest({"a": "1", "b": "1"}, {"x": "1", "Y": "1", "z": "1"}, str.isupper)
+    )
 
 
 @given(st.lists(st.tuples(st.integers(0, 40), st.sampled_from("adc")), max_size=8))
