@@ -315,9 +315,10 @@ LONGEST_SIGNS_AHEAD = 60
 MOST_SAMPLES = 64
 #: Lists of more than one item from which on none is taken to be long where none is, the same where
 #: none has more than two, and the items behind the first one up to which a list is short. Where
-#: long lists are usual a tenth or more of those with two items have a third. Revised: 50 for both,
-#: with which a corpus of four origins left indices unbounded and 158 of 1,000 sentences rejected.
-SHORT_LIST_EXAMPLES = 50
+#: long lists are usual a seventh or more of those with two items have a fourth. Revised: 50 for
+#: both, with which corpora of 45 such indices left them unbounded and some 100 of 1,000 sentences
+#: were rejected for that.
+SHORT_LIST_EXAMPLES = 30
 PAIR_EXAMPLES = 20
 ITEMS_BEHIND_THE_FIRST = 2
 #: Elements in a row that may be missing together. Not measured.

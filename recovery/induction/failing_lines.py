@@ -9,7 +9,7 @@ from itertools import islice
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.failures import Failure
-from grammar.parser.recognizer import State
+from grammar.parser.recognizer import Recognizer, State
 from recovery.induction.steps import Evidence
 from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.language import CorpusFile
@@ -75,13 +75,26 @@ class FailingLines:
         shown = tuple(islice(seen, PLACES_SHOWN))
         return Evidence(len(files), len(origins), self.weight(lines), shown)
 
-    def is_repeated(self, lines: Set[int], edits: Sequence[Edit]) -> bool:
+    def is_repeated(self, lines: Set[int], edits: Sequence[Edit], recognizer: Recognizer) -> bool:
         """Whether lines of a single file show edits often enough to be no slip."""
         some = [self.occurrences[n] for n in lines]
-        # where nothing else is wrong in a file a form that is known may grow by a single line
+        # where nothing else is wrong in a file a form that is known may grow by a single line, but
+        # not by a word where a name stands
         is_new = any(isinstance(edit, AddAlternative) for edit in edits)
+        is_new = is_new or self._are_misnamed(lines, recognizer)
         if not is_new and any(self._of_file[p] <= lines for line in some for p in line.files):
             return True
         if any(isinstance(edit, AddToken) for edit in edits):
             return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
         return sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE
+
+    def _are_misnamed(self, lines: Set[int], recognizer: Recognizer) -> bool:
+        """Whether all lines can be read with a name for the reserved word at which they fail."""
+        lexer = recognizer.lexer
+        for form in (self.patterns[n].form for n in lines):
+            kinds = list(form.kinds)
+            is_word = lexer.is_keyword(kinds[form.index])
+            kinds[form.index] = lexer.name_kind
+            if not is_word or recognizer.run(recognizer.restore(form.before), kinds)[1] is not None:
+                return False
+        return True

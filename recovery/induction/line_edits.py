@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from itertools import pairwise
 
 from grammar.notation.addresses import Address
@@ -111,8 +111,7 @@ class LineEdits:
                 alike = [
                     h
                     for h in heads
-                    if len(h[2] & tails) >= ALIKE_SHARE * min(len(h[2]), len(tails))
-                    and (h[0] in types) == (head in types)
+                    if go_on_alike(h[2], tails) and (h[0] in types) == (head in types)
                 ]
                 if len(alike) < ALIKE_WORDS:
                     continue
@@ -238,6 +237,16 @@ class LineEdits:
         sites = recognizer.sites(self.at.state(number))
         within = (site for site in sites if recognizer.network.rule[site[0]] == rule)
         return {place for site in within for place in places_of(recognizer, site)}
+
+
+def go_on_alike(some: Set[tuple[str, ...]], others: Set[tuple[str, ...]]) -> bool:
+    """Whether two words go on alike, by the kinds of what follows each at the head of a line.
+
+    Of a word that always has another one ahead nothing is known.
+    """
+    return bool(some and others) and (
+        len(some & others) >= ALIKE_SHARE * min(len(some), len(others))
+    )
 
 
 def _families(

@@ -6,11 +6,12 @@ decided at the end, over all files that are read.
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 
 from grammar.notation.addresses import sequences
 from grammar.notation.edits import Replace
-from grammar.notation.model import Element, Grammar, Group, Literal, Repeat
+from grammar.notation.model import Element, Grammar, Group, Literal, Repeat, Rule
 from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
@@ -30,12 +31,12 @@ def bounded_lists(
         if isinstance(tree, Tree):
             coverage.add(tree)
     for rule in grammar.rules:
+        lengths = _lengths(rule, coverage)
         known = start.by_name[rule.name].text if rule.name in start.by_name else ""
         for address, sequence in () if rule.is_lexer else sequences(rule):
             for place, element in enumerate(sequence.elements, 1):
-                at = (*address, place)
-                rounds = coverage.rounds[rule.name, at]
                 source = rule.source_of(element)
+                rounds = lengths[source]
                 if (
                     not _is_list(element)
                     or source in known
@@ -50,7 +51,16 @@ def bounded_lists(
                     for _ in range(ITEMS_BEHIND_THE_FIRST):
                         text = f"({source[1:-2]}{text and f' {text}'})?"
                     title = f"at most {1 + ITEMS_BEHIND_THE_FIRST} items in {rule.name}"
-                    yield Inferred(title, (Replace(rule.name, at, text),), ())
+                    yield Inferred(title, (Replace(rule.name, (*address, place), text),), ())
+
+
+def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
+    """How many items stand behind the first one, by what is repeated: alike in all of a rule."""
+    found: dict[str, Counter[int]] = defaultdict(Counter)
+    for address, sequence in () if rule.is_lexer else sequences(rule):
+        for place, element in enumerate(sequence.elements, 1):
+            found[rule.source_of(element)] += coverage.rounds[rule.name, (*address, place)]
+    return found
 
 
 def _is_list(element: Element) -> bool:

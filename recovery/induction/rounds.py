@@ -251,7 +251,9 @@ class Induction:
                 OPERAND_FILES if is_wide else least[1]
             ):
                 reason = "only one origin shows it"
-            elif evidence.files < LEAST_FILES_ALONE and not table.is_repeated(lines, edits):
+            elif evidence.files < LEAST_FILES_ALONE and not table.is_repeated(
+                lines, edits, judge.recognizer
+            ):
                 reason = "too few lines of one file show it"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again

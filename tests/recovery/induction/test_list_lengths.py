@@ -9,6 +9,8 @@ from recovery.induction.list_lengths import bounded_lists
 _START = "grammar Toy;\nprogram : (call NEWLINE)* EOF ;\ncall : NAME '(' NAME ')' ;\n"
 _TOKENS = """NAME : [A-Z] ;
 COMMA : ',' ;
+LBRACKET : '[' ;
+RBRACKET : ']' ;
 LPAREN : '(' ;
 RPAREN : ')' ;
 NEWLINE : '\\n' ;
@@ -36,9 +38,18 @@ def test_short_lists(start: str, lists: list[str], found: list[str]) -> None:
 def test_pairs(items: str, count: int) -> None:
     """Where none has three items fewer lists show that none is long."""
     edits = bounded_lists(
-        Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), [f"F({items})\n"] * 30
+        Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), [f"F({items})\n"] * 25
     )
     assert count == len(list(edits))
+
+
+@pytest.mark.parametrize(("items", "count"), [("A,B", 2), ("A,B,C,D", 0)])
+def test_lists_of_one_rule(items: str, count: int) -> None:
+    """How long the same list is in another alternative of a rule says it of both."""
+    other = "\n | NAME '[' NAME (',' NAME)* ']' ;"
+    grammar = read(_GROWN.replace(" ;\n", f"{other}\n").replace(f"EOF{other}", "EOF ;") + _TOKENS)
+    texts = [f"F(A,B)\nF[{items}]\n"] * 50
+    assert count == len(list(bounded_lists(Recognizer(grammar), read(_START + _TOKENS), texts)))
 
 
 def test_few_lists() -> None:

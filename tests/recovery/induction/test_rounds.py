@@ -116,6 +116,16 @@ def test_one_file_shows_what_it_has_often(
     assert accepted == Recognizer(_grown(toy, files).grammar).accepts(f"{word} D 7\n")
 
 
+def test_a_word_for_a_name(toy: Grammar) -> None:
+    """That a line of one file has a reserved word where a name stands tells nothing."""
+    start = _with(toy, "    | halt\n", "    | halt\n    | HALT '(' NAME ')'\n")
+    files = (
+        CorpusFile("one/a.toy", "HALT(HALT)\n", frozenset({"one"})),
+        CorpusFile("two/a.toy", "HALT\n", frozenset({"two"})),
+    )
+    assert not Recognizer(_grown(start, files).grammar).accepts("HALT(HALT)\n")
+
+
 def _with(toy: Grammar, old: str, new: str) -> Grammar:
     """The start with another text in place of one that it has once."""
     assert 1 == toy.text.count(old)
