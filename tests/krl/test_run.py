@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from zipfile import ZipFile
 
 import pytest
 
+from krl import run_options
 from krl.cli import main
 
 INI = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 90,A6 0}\n"
@@ -69,6 +70,20 @@ def test_time_that_is_over(run: Run) -> None:
     """Where the time is over before the program is, the status is 1 and the line tells where."""
     status, out, _ = run("WAIT FOR $IN[1]\n", "--max-time", "0.5")
     assert (1, "main.src: time after 0.5 s at main.src:2\n") == (status, out)
+
+
+@pytest.mark.parametrize(
+    ("options", "most"), [((), 40), (("--executor", "vm"), 90), (("--statements", "70"), 70)]
+)
+def test_statements_that_are_over(
+    run: Run, monkeypatch: pytest.MonkeyPatch, options: Sequence[str], most: int
+) -> None:
+    """An endless program ends after as many statements as take seconds, fewer on the tree."""
+    monkeypatch.setattr(run_options, "_TREE_STATEMENTS", 40)
+    monkeypatch.setattr(run_options, "_STATEMENTS", 90)
+    status, out, _ = run("LOOP\nENDLOOP\n", "--executor", "tree", *options)
+    assert 1 == status
+    assert out.endswith(f"it has not ended after {most} statements\n")
 
 
 def test_what_no_file_has(run: Run) -> None:
