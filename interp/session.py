@@ -36,7 +36,13 @@ from interp.robot.kinematics.machine_data import (
     read_machine,
 )
 from interp.robot.models import default_machine, model_file
-from interp.robot.models.stand_in import arm_or_stand_in, machine_data_of, understood
+from interp.robot.models.stand_in import (
+    arm_or_stand_in,
+    machine_data_of,
+    reaching,
+    understood,
+    with_assumed_limits,
+)
 from interp.robot.planning.deferred_arm import DeferredArm
 from interp.robot.simulation.factory import RobotName, make_robot
 from interp.robot.simulation.robot import Robot
@@ -172,6 +178,10 @@ def run_program(
         machine, note = arm_or_stand_in(sources, _machine_of(profile), used)
         is_other = bool(note) and machine_data_of(sources) is not None
         is_tolerant = is_other or bool(program.used_stand_ins(*starts))
+        if note and is_tolerant and not is_other:
+            texts = [unit.source.text for unit in program.reached(*starts)]
+            machine = with_assumed_limits(reaching(machine, texts))
+            note = f"no machine data of an arm: {machine.name} stands in, without axis limits"
         profile = replace(profile, is_tolerant=is_tolerant)
     else:
         machine = machine_of_program(program, profile)

@@ -69,7 +69,8 @@ class Axis:
 
     ``direction`` is 1 or -1, the sense of rotation that the kinematic chain gives a positive angle.
     ``dynamics`` is ``None`` where the data has no speed. ``approximation`` is the largest distance
-    at which a PTP motion may be approximated.
+    at which a PTP motion may be approximated. Limits that are ``assumed``, of an arm that stands
+    in, choose between ways and stop nothing.
     """
 
     name: str
@@ -79,6 +80,11 @@ class Axis:
     upper: float
     dynamics: Dynamics | None
     approximation: float
+    assumed: bool = False
+
+    def unlimited(self) -> Axis:
+        """The axis as it turns where its limits are assumed, else itself."""
+        return replace(self, lower=-math.inf, upper=math.inf) if self.assumed else self
 
 
 class Palletising(Enum):

@@ -75,7 +75,7 @@ def singularities(arm: Kinematics, axes: Sequence[float]) -> tuple[Singularity, 
 
 def check_limits(axes: Sequence[Axis], values: Sequence[float]) -> None:
     """Raise `Fault` 1447 where a value lies beyond a software limit switch, or is no number."""
-    for axis, value in zip(axes, values, strict=True):
+    for axis, value in zip((axis.unlimited() for axis in axes), values, strict=True):
         if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
             raise _beyond(axis, value)
 
@@ -86,6 +86,7 @@ def check_path(axes: Sequence[Axis], path: Array) -> None:
     1447 where it ends there, as no point behind a limit can be reached; 1211 where the limit lies
     on the way to a point that could.
     """
+    axes = [axis.unlimited() for axis in axes]
     lower = np.array([axis.lower for axis in axes]) - _LIMIT
     upper = np.array([axis.upper for axis in axes]) + _LIMIT
     beyond = np.argwhere((path < lower) | (path > upper))
@@ -183,12 +184,17 @@ def _choose(
     if not len(ways):
         raise Fault("unreachable", "the target cannot be reached", number=1366, rules=("MOT-15",))
     origin = tuple(start) if start is not None else (0.0,) * 6
-    fitting = [fit for way in ways if (fit := _fit(arm, way.tolist(), turn, origin)) is not None]
-    if not fitting:
-        named = zip(arm.machine.axes, ways[0].tolist(), strict=True)
+    limited = arm.machine.axes
+    for axes in (limited, tuple(axis.unlimited() for axis in limited)):
+        fits = (_fit(axes, way.tolist(), turn, origin) for way in ways)
+        fitting = [fit for fit in fits if fit is not None]
+        if fitting:
+            break
+    else:
+        named = zip(axes, ways[0].tolist(), strict=True)
         raise next(_beyond(axis, value) for axis, value in named if not _turns(axis, value, 0.0))
-    axes = min(fitting, key=lambda fit: _effort(arm.machine.axes, fit, origin))
-    return Solution(axes, int(arm.status(axes)), turn_of(axes), singularities(arm, axes))
+    found = min(fitting, key=lambda fit: _effort(limited, fit, origin))
+    return Solution(found, int(arm.status(found)), turn_of(found), singularities(arm, found))
 
 
 def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bool_]:
@@ -200,10 +206,10 @@ def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bo
     return have
 
 
-def _fit(arm: Kinematics, way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
+def _fit(axes: Sequence[Axis], way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
     """A way with each axis turned so that it lies within its limits, or ``None``."""
     fitted = []
-    for place, (axis, value) in enumerate(zip(arm.machine.axes, way, strict=True)):
+    for place, (axis, value) in enumerate(zip(axes, way, strict=True)):
         choices = _turns(axis, value, origin[place])
         if turn is not None:
             is_negative = bool(turn >> place & 1)
@@ -244,7 +250,7 @@ def _settled_wrist(
     difference = found.axes[3] - a4
     a5 = found.axes[4] * math.cos(math.radians(difference))
     a6 = found.axes[5] + axes[3].direction * axes[5].direction * difference
-    settled = _fit(arm, (*found.axes[:3], a4, a5, a6), turn, tuple(start))
+    settled = _fit(axes, (*found.axes[:3], a4, a5, a6), turn, tuple(start))
     if settled is None:
         return found
     return replace(found, axes=settled, status=int(arm.status(settled)), turn=turn_of(settled))

@@ -2,9 +2,11 @@
 
 Points of a large robot lie out of reach of a small one. The stand-in is the default arm as long as
 its outstretched length covers the points of the project, measured from its shoulder. Where it does
-not, its links are longer by one factor, so that they do with any orientation. Its axis limits are
-wide enough for the taught axis positions. Nothing else is known of the arm; its dynamics are those
-of the default.
+not, its links are longer by one factor, so that they do with any orientation. Nothing else is known
+of the arm; its dynamics are those of the default, and its axis limits are assumed.
+
+Where the bases are lost too, points lie in the arm or behind it. Then the arm stands elsewhere: its
+foot is where it reaches the most of them in one posture, upright or hanging, from any side.
 
 A point that no file has gets a place that the arm reaches, by its name: about the same posture, so
 that a straight line leads from each place to each other one.
@@ -18,7 +20,10 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from grammar.syntax.source import Source
 from interp.robot.kinematics.arms import kinematics_of
@@ -32,14 +37,16 @@ from interp.robot.kinematics.machine_data import (
     with_axis_limits_of,
 )
 from interp.robot.models import default_machine
-from interp.values.poses import Pose
+from interp.values.poses import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Kinematics
+    from interp.robot.kinematics.solver import Array, Kinematics
 
 _NUMBER: Final = r"\s*([-+]?\d*\.?\d+(?:E[-+]?\d+)?)\b"
 _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_NUMBER}", re.I)
-_AXIS: Final = re.compile(rf"[{{,]\s*A([1-6]){_NUMBER}", re.I)
+_WHOLE: Final = re.compile(
+    rf"{_POSE.pattern}\s*,\s*A{_NUMBER}\s*,\s*B{_NUMBER}\s*,\s*C{_NUMBER}", re.I
+)
 #: Points fewer than these may be anything: the arm stays what it is.
 _FEWEST: Final = 3
 #: The share of the points that is to be reached: a few may be garbage.
@@ -47,7 +54,17 @@ _SHARE: Final = 0.95
 #: How much of its outstretched length an arm uses to reach a point with any orientation.
 _USABLE: Final = 0.8
 _LARGEST: Final = 5.0
-_MOST_DEGREES: Final = 360.0
+#: So far from its first axis, in shares of its length, lies what the arm itself takes up below its
+#: shoulder.
+_OWN: Final = 0.2
+#: An arm stays where it is as long as it reaches this share of the points.
+_REACHED: Final = 0.75
+#: Where the middle of the points may lie in front of the foot: how far and how high, in shares of
+#: the length of the arm; and A and C in degrees of how the foot may stand. The first is the best.
+_AHEAD: Final = tuple(product((0.75, 0.6), (0.4, 0.7, 0.1)))
+_FEET: Final = tuple(product((0.0, 90.0, -90.0, 180.0), (0.0, 180.0)))
+#: So many points tell where an arm stands.
+_MOST_POINTS: Final = 64
 #: Axes in degrees of the posture about which places lie, and how far they are from it at most: the
 #: forearm level, the hand half down.
 _POSTURE: Final = (0.0, -90.0, 95.0, 0.0, 50.0, 0.0)
@@ -87,9 +104,7 @@ def arm_or_stand_in(
     """
     source = machine_data_of(sources)
     if source is None:
-        lists = [one.text for one in sources if one.kind == "dat"]
-        programs = [one.text for one in sources if one.kind != "dat"]
-        machine = fitting_arm(default, programs, lists, [one.text for one in used])
+        machine = fitting_arm(default, (one.text for one in sources), (one.text for one in used))
         return machine, f"no machine data of an arm: {machine.name} stands in"
     try:
         return understood(source), ""
@@ -129,34 +144,75 @@ class Places:
 
 
 def fitting_arm(
-    machine: MachineData,
-    programs: Iterable[str],
-    data_lists: Iterable[str],
-    used: Iterable[str] = (),
+    machine: MachineData, every: Iterable[str], used: Iterable[str] = ()
 ) -> MachineData:
     """The machine itself where it reaches the points in some texts, else a larger one.
 
-    Points are aggregates of numbers with X, Y, Z in mm; only those in data lists, which were
-    taught, tell of the limits of axes too, as A1 to A6 in degrees. Those in texts that are ``used``
-    are reached, however many others are nearer.
+    Points are aggregates of numbers with X, Y, Z in mm. Those in texts that are ``used`` are
+    reached, however many others are nearer.
     """
-    lower = [axis.lower for axis in machine.axes]
-    upper = [axis.upper for axis in machine.axes]
-    lists = list(data_lists)
-    for text in lists:
-        for found in _AXIS.finditer(text):
-            number, value = int(found[1]) - 1, float(found[2])
-            if abs(value) <= _MOST_DEGREES:
-                lower[number] = min(lower[number], value)
-                upper[number] = max(upper[number], value)
-    axes = tuple(
-        replace(axis, lower=low, upper=high)
-        for axis, low, high in zip(machine.axes, lower, upper, strict=True)
-    )
-    if axes != machine.axes:
-        machine = replace(machine, axes=axes)
-    factor = max(_factor(machine, texts) for texts in ((*programs, *lists), used))
+    factor = max(_factor(machine, texts) for texts in (every, used))
     return machine if factor == 1.0 else _scaled(machine, factor)
+
+
+def with_assumed_limits(machine: MachineData) -> MachineData:
+    """A machine that no limit of its axes stops."""
+    return replace(machine, axes=tuple(replace(axis, assumed=True) for axis in machine.axes))
+
+
+def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
+    """The machine where it stands, or where it reaches the points in some texts.
+
+    Points are aggregates of numbers with X, Y, Z in mm and A, B, C in degrees.
+    """
+    every = [found.groups() for text in texts for found in _WHOLE.finditer(text)]
+    some = every[:: len(every) // _MOST_POINTS + 1]
+    if len(some) < _FEWEST:
+        return machine
+    poses = np.array([Pose.of(*map(float, one)).matrix for one in some])
+    arm, length = kinematics_of(machine), _length(machine)
+    lower, upper = (
+        np.array([getattr(axis, end) for axis in machine.axes]) for end in ("lower", "upper")
+    )
+
+    def statuses(foot: Pose) -> Array:
+        """The Status of each way that points have within the limits, else -1: (points, ways).
+
+        There is none to where the arm itself stands.
+        """
+        flanges = np.array(foot.inverse().matrix) @ poses
+        x, y, z = np.moveaxis(flanges[:, :3, 3], -1, 0)
+        is_free = (np.hypot(x, y) > _OWN * length) | (z > machine.tiroro.position[2])
+        ways = arm.inverse(flanges)
+        inside = ((ways >= lower) & (ways <= upper)).all(axis=-1) & is_free[:, np.newaxis]
+        return np.where(inside, arm.status(np.nan_to_num(ways)), -1)
+
+    def reached(foot: Pose) -> int:
+        """How many points have a way in the Status that has the most."""
+        found = statuses(foot)
+        return max(int((found == one).any(axis=-1).sum()) for one in range(8))
+
+    if np.mean((statuses(IDENTITY) >= 0).any(axis=-1)) >= _REACHED:
+        return machine
+    middle = Pose.of(*np.median(poses[:, :3, 3], axis=0).tolist())
+    feet = [
+        middle @ Pose.of(a=a, c=c) @ Pose.of(x=-ahead * length, z=-up * length)
+        for (ahead, up), (a, c) in product(_AHEAD, _FEET)
+    ]
+    best = max(feet, key=reached)
+    if not reached(best):
+        return machine
+    rounded = Pose.of(*(round(value) for value in best.components))
+    where = ",".join(
+        f"{name} {value:g}" for name, value in zip("XYZABC", rounded.components, strict=True)
+    )
+    return replace(machine, name=f"{machine.name} at {{{where}}}", robroot=rounded)
+
+
+def _length(machine: MachineData) -> float:
+    """From the shoulder to the wrist of the outstretched arm, in mm."""
+    forearm = math.hypot(*(row[3] for row in machine.tx3p3.rows))
+    return machine.length_a + machine.length_b + forearm
 
 
 def _factor(machine: MachineData, texts: Iterable[str]) -> float:
@@ -169,8 +225,7 @@ def _factor(machine: MachineData, texts: Iterable[str]) -> float:
     if len(distances) < _FEWEST:
         return 1.0
     far = sorted(distances)[math.ceil(_SHARE * len(distances)) - 1]
-    forearm = math.hypot(*(row[3] for row in machine.tx3p3.rows))
-    reach = machine.length_a + machine.length_b + forearm
+    reach = _length(machine)
     if far <= reach:
         return 1.0
     return min(math.ceil(10 * far / (_USABLE * reach)) / 10, _LARGEST)
