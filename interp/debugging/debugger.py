@@ -11,7 +11,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar
 
 from grammar.semantics.types import UNKNOWN, Type
 from interp.controller.controller import ArmState
@@ -46,6 +46,7 @@ from interp.values.values import converted
 #: Called where a program stops; may look around in the debugger, and set what it likes there.
 Client = Callable[["Debugger", Stop], Command]
 _T = TypeVar("_T")
+_NOWHERE: Final[frozenset[tuple[str, int]]] = frozenset()
 
 
 class World(Protocol):
@@ -126,6 +127,7 @@ class Debugger:
         self._tasks: dict[TaskName, DebuggedExecutor] = {}
         self._history = History()
         self._breakpoints: dict[int, list[Breakpoint]] = {}
+        self._places = _NOWHERE
         self._hits: dict[Breakpoint, array[int]] = {}
         self._watches: list[_Watched] = []
         self._stepping: _Stepping | None = None
@@ -193,6 +195,12 @@ class Debugger:
             is_hit(one.hits, 1)
             by_line.setdefault(one.line, []).append(one)
         self._breakpoints = by_line
+        self._places = frozenset(
+            (unit.module.path, one.line)
+            for unit in self._program.units.values()
+            for one in breakpoints
+            if _is_of(one.file, unit.module.path)
+        )
         self._hits = {one: self._hits.get(one, array("q")) for one in breakpoints if one.hits}
 
     @property
@@ -313,15 +321,23 @@ class Debugger:
     # ----------------------------------------------------------------------- what goes by
 
     @property
-    def unseen(self) -> int:
-        """How many statements may begin before one has to be looked at."""
+    def places(self) -> frozenset[tuple[str, int]]:
+        """The files and lines whose statements have to be looked at, wherever `unseen` ends."""
         history = self._history
-        if history.is_repeating:
-            return history.unseen(self._count())
-        looks = self._breakpoints or self._watches or self._stepping
-        if looks or self._is_to_pause or self._is_selected or not self._is_begun:
-            return 0
-        return history.unseen(self._count())
+        is_idle = history.is_repeating and not history.is_looking(self._count())
+        return _NOWHERE if is_idle else self._places
+
+    def unseen(self, shows_places: bool) -> int:
+        """How many statements may begin before one has to be looked at.
+
+        With ``shows_places`` those of `places` are shown as well, and do not count.
+        """
+        history = self._history
+        if not history.is_repeating:
+            looks = (self._places and not shows_places) or self._watches or self._stepping
+            if looks or self._is_to_pause or self._is_selected or not self._is_begun:
+                return 0
+        return history.unseen(self._count(), shows_places)
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
         """A program is about to begin a statement; the line to go on at instead, if any.
@@ -481,7 +497,8 @@ class Debugger:
                 case Back(way=way, task=task):
                     if self._history.here > START:
                         stepped = self._tasks.get(task or stop.task, executor)
-                        self._history.look_back(self._fitting(way, stepped))
+                        is_of_places = way == "go" and not self._watches
+                        self._history.look_back(self._fitting(way, stepped), is_of_places)
                         raise _Again
                     text = "this is the first statement"
                 case Restart():

@@ -21,8 +21,14 @@ class Hook(Protocol):
     """What is shown the statements and faults of debugged executors: the debugger."""
 
     @property
-    def unseen(self) -> int:
-        """How many statements may begin before one has to be shown."""
+    def places(self) -> frozenset[tuple[str, int]]:
+        """The files and lines whose statements are shown; the same object while they stay."""
+
+    def unseen(self, shows_places: bool) -> int:
+        """How many statements may begin before one has to be shown, but for those of `places`.
+
+        Without ``shows_places`` these count too.
+        """
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
         """A statement is about to begin; the line to go on at instead, if any."""
@@ -43,6 +49,8 @@ class DebuggedExecutor:
         self.at = At("", 0, 0)
         self._hook = hook
         self._per_slice = per_slice
+        self._places: frozenset[tuple[str, int]] = frozenset()
+        self._shows_places = True
         #: When the slice ends that the outside has given.
         self._due = inside.begun + per_slice
         self._open: Request | None = None
@@ -71,7 +79,9 @@ class DebuggedExecutor:
         if isinstance(self._open, Slice | StopAdvance):
             reply = None  # it may ask sooner than the controller would have it
         while True:
-            inside.ask_at(min(self._due, inside.begun + hook.unseen))
+            if self._places is not (places := hook.places):
+                self._places, self._shows_places = places, inside.break_at(places)
+            inside.ask_at(min(self._due, inside.begun + hook.unseen(self._shows_places)))
             request = inside.advance(reply)
             reply = None
             self.at = request.at

@@ -56,6 +56,7 @@ class _Search:
     """For the last moment before ``end`` that ``fits``, from so many statements on."""
 
     fits: Fits
+    is_of_places: bool
     end: Position
     first: int
     found: Position | None = None
@@ -92,13 +93,21 @@ class History:
         """The run has ended, behind all moments."""
         self.here = (count, _MANY)
 
-    def unseen(self, count: int) -> int:
-        """How many more statements may begin before one has to be looked at."""
+    def is_looking(self, count: int) -> bool:
+        """Whether what begins behind so many statements may be what is searched for."""
+        return self._search is not None and count >= self._search.first
+
+    def unseen(self, count: int, shows_places: bool) -> int:
+        """How many more statements may begin before one has to be looked at.
+
+        Where only breakpoints are searched for and executors show them, no other has to be.
+        """
         ahead = [moment[0] for moment, _ in self.changes if moment > self.here]
         if self._goal is not None:
             ahead.append(self._goal[0])
-        if self._search is not None:
-            ahead.append(self._search.first)
+        if (search := self._search) is not None:
+            is_shown = search.is_of_places and shows_places and count >= search.first
+            ahead.append(search.end[0] if is_shown else search.first)
         return max(0, min(ahead, default=_MANY) - count)
 
     def due(self) -> list[Change]:
@@ -110,9 +119,13 @@ class History:
         self.changes = [one for one in self.changes if one[0] <= self.here]
         self.changes.append((self.here, change))
 
-    def look_back(self, fits: Fits) -> None:
-        """The next run is to stop at the last moment before this one that fits, or at its start."""
-        self._search = _Search(fits, self.here, max(0, self.here[0] - _STRETCH))
+    def look_back(self, fits: Fits, is_of_places: bool) -> None:
+        """The next run is to stop at the last moment before this one that fits, or at its start.
+
+        ``is_of_places``: only statements with a breakpoint can fit.
+        """
+        first = max(0, self.here[0] - _STRETCH)
+        self._search = _Search(fits, is_of_places, self.here, first)
 
     def forget(self) -> None:
         """Changes are no longer made."""

@@ -152,6 +152,7 @@ static void run(struct krl_machine *machine, int32_t step, int depth, int *state
             return;
         check_cells(machine);
         switch (stopped.why) {
+        case KRL_STOP_BREAK:
         case KRL_STOP_LINE:
             *statements -= PER_SLICE;
             if (*statements <= 0)
@@ -249,6 +250,11 @@ static int try_image(const uint8_t *data, size_t length)
     accepted++;
     if (!krl_give_memory(&machine, DEPTH, NULL))
         abort();
+    for (int32_t step = draw(4) ? machine.step_count : 0; step < machine.step_count; step++)
+        if (machine.steps[step].statement >= 0 && draw(4) == 0) {
+            krl_stop_at(&machine.steps[step], KRL_STOP_BREAK);
+            machine.breaks++;
+        }
     for (int32_t code = 0; code < machine.program.code_count; code++) {
         int statements = STATEMENTS;
         machine.fp = machine.first;

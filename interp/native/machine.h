@@ -83,6 +83,8 @@ struct krl_machine {
     struct krl_program program;
     krl_compiled *compiled; /* its steps as C that was compiled, NULL for none */
     const struct krl_outside *outside;
+    const int32_t *entries; /* the steps at which that is entered, up to -1; NULL for none */
+    int breaks;             /* steps that have a breakpoint: then nothing is entered */
     int told; /* which events are traced */
     struct krl_routine *routines;
     struct krl_step *steps;
@@ -131,7 +133,8 @@ enum krl_stop {
     KRL_STOP_LEFT,   /* a frame that Python has made has ended; its result is on the stack */
     KRL_STOP_ACTION, /* an action has ended; its frame is still there */
     KRL_STOP_END,    /* the routine that the program began with has ended */
-    KRL_STOP_COMPILED /* the program that was compiled goes on; `krl_run` never gives this */
+    KRL_STOP_COMPILED, /* the program that was compiled goes on; `krl_run` never gives this */
+    KRL_STOP_BREAK   /* as KRL_STOP_LINE, at a breakpoint */
 };
 
 struct krl_stopped {
@@ -172,9 +175,10 @@ void krl_close(struct krl_machine *machine);
 /* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun);
 
-/* Puts handlers into steps; and one into a step where a compiled program is entered. */
+/* Puts handlers into steps; and one into a step before which the machine stops for KRL_STOP_COMPILED or
+ * KRL_STOP_BREAK. */
 void krl_thread(struct krl_step *steps, int32_t count);
-void krl_thread_entry(struct krl_step *step);
+void krl_stop_at(struct krl_step *step, enum krl_stop why);
 
 /* ---------------------------------------------------------------------------- translate.c */
 

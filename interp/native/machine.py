@@ -9,7 +9,7 @@ something is to be done outside, and gives the operation that does it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from enum import IntEnum
 from typing import cast, overload
 
@@ -38,6 +38,7 @@ class _Stop(IntEnum):
     LEFT = 3
     ACTION = 4
     END = 5
+    BREAK = 7
 
 
 class _Matter(IntEnum):
@@ -177,6 +178,11 @@ class _NativeCode:
             return operation
         if why == _Stop.FAULT:
             raise fault(_SLUGS[stop >> 3])
+        if why == _Stop.BREAK:
+            counter = self._services.counter
+            if self._state.reader is None:
+                counter.ask_at(counter.begun)
+            return self._stopped(stop & ~7 | _Stop.LINE)
         if why == _Stop.ACTION:
             return self._services.leave_action
         return self._services.finish if why == _Stop.END else None
@@ -254,6 +260,18 @@ class Machine(vm.Machine):
     @property
     def _core(self) -> _State:
         return cast("_State", self._state)
+
+    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+        """Ask for time before statements that begin in these lines; whether it can do so."""
+        if self._told & _TOLD["line"]:
+            return False
+        steps = [
+            self._core.step(number, place)
+            for number, code in enumerate(self._program.codes)
+            for place, one in enumerate(code.instructions)
+            if one.op is Op.LINE and (code.file, one.operands[0]) in places
+        ]
+        return self._core.break_at(steps) == len(steps)
 
     def _push_frame(self, number: int, serial: int, _after: Operation) -> None:
         core = self._core

@@ -363,6 +363,37 @@ static PyObject *core_arrays(PyObject *self, PyObject *Py_UNUSED(ignored))
     return found;
 }
 
+static void enter_compiled(struct krl_machine *machine)
+{
+    for (const int32_t *entry = machine->entries; entry != NULL && *entry >= 0; entry++)
+        if (*entry < machine->step_count)
+            krl_stop_at(&machine->steps[*entry], KRL_STOP_COMPILED);
+}
+
+/* Stops before these steps from now on, and no others, as long as there are any in place of entering what was
+ * compiled. */
+static PyObject *core_break_at(PyObject *self, PyObject *arguments)
+{
+    struct krl_machine *machine = &((struct core *)self)->machine;
+    PyObject *places;
+    if (!PyArg_ParseTuple(arguments, "O!", &PyList_Type, &places))
+        return NULL;
+    krl_thread(machine->steps, machine->step_count);
+    machine->breaks = 0;
+    for (Py_ssize_t i = 0; i < PyList_Size(places); i++) {
+        long number = PyLong_AsLong(PyList_GetItem(places, i));
+        if (number < 0 || number >= machine->step_count || machine->steps[number].statement < 0)
+            continue;
+        krl_stop_at(&machine->steps[number], KRL_STOP_BREAK);
+        machine->breaks++;
+    }
+    if (machine->breaks == 0)
+        enter_compiled(machine);
+    if (PyErr_Occurred())
+        return NULL;
+    return PyLong_FromLong(machine->breaks);
+}
+
 /* Runs from now on what was compiled from these very steps. The library stays. */
 static PyObject *core_load(PyObject *self, PyObject *arguments)
 {
@@ -381,9 +412,8 @@ static PyObject *core_load(PyObject *self, PyObject *arguments)
     }
     *(void **)&machine->compiled = dlsym(library, "krl_go");
     machine->outside = &outside;
-    for (; *entries >= 0; entries++)
-        if (*entries < machine->step_count)
-            krl_thread_entry(&machine->steps[*entries]);
+    machine->entries = entries;
+    enter_compiled(machine);
     Py_RETURN_NONE;
 #else
     (void)outside, (void)machine;
@@ -405,6 +435,7 @@ static PyMethodDef core_methods[] = {
     {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): its first cell, or None."},
     {"steps", core_steps, METH_NOARGS, "steps(): name, a, b, c, d, tag, LINE and e of each step."},
     {"arrays", core_arrays, METH_NOARGS, "arrays(): base, width, dimensions, three sizes, register of the third index of each."},
+    {"break_at", core_break_at, METH_VARARGS, "break_at(steps): how many of them can be stopped before."},
     {"load", core_load, METH_VARARGS, "load(library): run what was compiled from these steps."},
     {NULL, NULL, 0, NULL},
 };

@@ -6,13 +6,15 @@
  */
 #include "dispatch.h"
 
+static const void *krl_handler(enum krl_stop why);
+
 static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, int is_begun,
                                     const void *const **handlers)
 {
     struct krl_stopped stopped = {KRL_STOP_STEP, 0};
 #if KRL_THREADED
 #define LABELS(name) &&do_##name, &&begin_##name,
-    static const void *const labels[] = {KRL_STEPS(LABELS) &&enter};
+    static const void *const labels[] = {KRL_STEPS(LABELS) &&enter, &&broken};
     if (handlers != NULL) {
         *handlers = labels;
         return stopped;
@@ -26,6 +28,8 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     int32_t left = machine->left, statement = machine->statement;
     int fault = KRL_FINE;
 
+    if (machine->breaks && !is_begun && pc->handler == krl_handler(KRL_STOP_BREAK))
+        goto broken;
 #if KRL_THREADED
     goto *labels[2 * pc->op + (pc->statement >= 0 && !is_begun)];
     {
@@ -107,6 +111,8 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     default:
         goto finished; /* there is no such step */
     dispatch:
+        if (pc->handler == krl_handler(KRL_STOP_BREAK))
+            goto broken;
         if (pc->handler != NULL)
             goto enter;
         number_of_case = 2 * pc->op + (pc->statement >= 0);
@@ -123,9 +129,13 @@ enter:
 finished:
     stopped.why = KRL_STOP_END;
     goto stop;
-wait: /* where a statement begins its frame has no operands */
-    machine->top = (int32_t)(fp - cells) + machine->routines[machine->code].frame;
+broken: /* where a statement begins its frame has no operands */
+    stopped.why = KRL_STOP_BREAK;
+    goto before;
+wait:
     stopped.why = KRL_STOP_LINE;
+before:
+    machine->top = (int32_t)(fp - cells) + machine->routines[machine->code].frame;
     stopped.at = (int32_t)(pc - machine->steps);
     goto stop;
 failed:
@@ -136,6 +146,20 @@ stop:
     machine->left = left;
     machine->statement = statement;
     return stopped;
+}
+
+/* Of a step at which the machine stops: where a compiled program is entered, or at a breakpoint. */
+static const void *krl_handler(enum krl_stop why)
+{
+    int is_break = why == KRL_STOP_BREAK;
+#if KRL_THREADED
+    const void *const *labels;
+    interpret(NULL, 0, 0, &labels);
+    return labels[2 * KRL_STEP_COUNT + is_break];
+#else
+    static const char places[2];
+    return &places[is_break];
+#endif
 }
 
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun)
@@ -156,18 +180,12 @@ void krl_thread(struct krl_step *steps, int32_t count)
     for (int32_t i = 0; i < count; i++)
         steps[i].handler = labels[2 * steps[i].op + (steps[i].statement >= 0)];
 #else
-    (void)steps;
-    (void)count;
+    for (int32_t i = 0; i < count; i++)
+        steps[i].handler = NULL;
 #endif
 }
 
-void krl_thread_entry(struct krl_step *step)
+void krl_stop_at(struct krl_step *step, enum krl_stop why)
 {
-#if KRL_THREADED
-    const void *const *labels;
-    interpret(NULL, 0, 0, &labels);
-    step->handler = labels[2 * KRL_STEP_COUNT];
-#else
-    step->handler = step;
-#endif
+    step->handler = krl_handler(why);
 }

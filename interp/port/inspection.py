@@ -6,6 +6,7 @@ an executor that has ended.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Protocol
 
 from grammar.semantics.types import Type
@@ -49,6 +50,13 @@ class Inspectable(Executor, Protocol):
         """Ask for time before the next statement once so many have begun, instead of later.
 
         It holds until the next request: then a slice is as long as the limits have it.
+        """
+        ...
+
+    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+        """Ask for time before each statement that begins in one of these lines, and in no others.
+
+        They are files and lines. Whether it does: else it has to be asked at every statement.
         """
         ...
 

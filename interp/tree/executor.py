@@ -6,7 +6,7 @@ own stack is only as deep as blocks and expressions nest within one routine.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -196,6 +196,10 @@ class TreeExecutor:
     def ask_at(self, count: int) -> None:
         """The slice that has begun ends once so many statements have begun altogether."""
         self._run.due = count
+
+    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+        """Ask for time before statements that begin in these lines: not this interpreter."""
+        return not places
 
     def frames(self) -> tuple[StackFrame, ...]:
         """What is open; see `interp.port.inspection`."""

@@ -10,7 +10,7 @@ behind the one that RESUME comes back to.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
@@ -239,6 +239,10 @@ class Machine:
     def ask_at(self, count: int) -> None:
         """The slice that has begun ends once so many statements have begun altogether."""
         self._services.counter.ask_at(count)
+
+    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+        """Ask for time before statements that begin in these lines: not this machine."""
+        return not places
 
     def frames(self) -> tuple[StackFrame, ...]:
         """What is open; see `interp.port.inspection`."""

@@ -121,6 +121,39 @@ def plain() -> list[str]:
     return trace(run_program(PREPARED, RunSetup(submit="SPS", script=SCRIPT)))
 
 
+@pytest.mark.skipif(available()[-1] != "native", reason="the machine in C was not built")
+@pytest.mark.parametrize("executor", ["native", "compiled"])
+def test_only_lines_with_breakpoints_are_looked_at(
+    executor: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Forwards and back, the machine in C stops at them and at the ends of slices alone."""
+    text = "DEF MAIN()\nINT I\nFOR I=1 TO 9000\nIF I==50 THEN\nI=51\nENDIF\nENDFOR\nI=7\nEND\n"
+    program = load([Source(text, "main.src")], "main.src")
+    stops: list[tuple[str, int]] = []
+    looks = 0
+
+    def client(debugger: Debugger, stop: Stop) -> Command:
+        stops.append((stop.reason, stop.at.line))
+        debugger.set_breakpoints([Breakpoint("main.src", line) for line in (5, 8)])
+        if len(stops) == 3:
+            return Back("go")
+        return Go() if len(stops) < 6 else Quit()
+
+    begins = Debugger.begins
+
+    def counted(self: Debugger, executor: Any) -> int | None:
+        nonlocal looks
+        looks += 1
+        return begins(self, executor)
+
+    monkeypatch.setattr(Debugger, "begins", counted)
+    debugger, setup = Debugger(program, client), RunSetup(executor=executor)
+    debugger.run(lambda: run_program(program, setup, debugger=debugger))
+    breakpoints = [("breakpoint", 5), ("breakpoint", 8)]
+    assert [("entry", 3), *breakpoints, ("back", 5), breakpoints[1], ("ended", 8)] == stops
+    assert looks < 150
+
+
 @settings(max_examples=5)
 @given(there=st.integers(0, 40), back=st.integers(1, 4), executor=st.sampled_from(available()))
 def test_back_and_forward_is_nowhere(
