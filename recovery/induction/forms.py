@@ -9,7 +9,7 @@ is written as the narrowest rules that read all examples of it.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -95,8 +95,15 @@ class FormWriter:
             for line in lines
             for left, right in pairwise(line)
             if left.is_operand and right.inside is not None
-        }
+        } | {f"'{sign}'" for line in lines for s in line for sign in self._bracketed_words(s)}
         return [tuple(p for s in line for p in self._parts(s, signs)) for line in lines]
+
+    def _bracketed_words(self, symbol: Symbol) -> Iterator[str]:
+        """The bracket at the end of an operand, where what is in it has a word of no operand."""
+        kinds = symbol.operand.kinds if symbol.operand else ()
+        for start, kind in enumerate(kinds):
+            if not self.rules.words_in_brackets(kind).isdisjoint(kinds[start + 1 :]):
+                yield self.rules.lexer.display[kind]
 
     def _parts(self, symbol: Symbol, signs: set[str]) -> tuple[Symbol, ...]:
         kinds = symbol.operand.kinds if symbol.operand else ()

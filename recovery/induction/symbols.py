@@ -6,6 +6,7 @@ says. What no rule reads yet stays words, signs and groups in brackets.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -248,6 +249,27 @@ class OperandRules:
             if rule in self.matcher.rules_for(example.kinds[1:]):
                 found |= {rule: example, f"'{sign}'": example}
         return found
+
+    def words_in_brackets(self, opening: int) -> frozenset[int]:
+        """Reserved words that rules of no operands write in brackets, by the opening token.
+
+        What they have as names, or in operands, is left out.
+        """
+        return self._words_in_brackets.get(opening, frozenset())
+
+    @cached_property
+    def _words_in_brackets(self) -> Mapping[int, frozenset[int]]:
+        skipped = {*self.recursive, *self.ladder, self.names, *self.word_choices}
+        called = {name: some for name, some in self._called.items() if name not in skipped}
+        kind_of, found = self.lexer.kind_of, defaultdict[int, set[int]](set)
+        for _, sequence in (s for r in called for s in sequences(self.grammar.by_name[r])):
+            for sign, start, end in bracket_pairs(sequence):
+                inner = [e for part in sequence.elements[start + 1 : end] for e in walk(part)]
+                names = {e.name for e in inner if isinstance(e, Reference)} - skipped
+                names.update(*(reached(called, name) for name in names))
+                words = {kind_of[name] for name in names & kind_of.keys()}
+                found[self.lexer.display.index(sign)] |= set(filter(self.lexer.is_keyword, words))
+        return {opening: frozenset(kinds) for opening, kinds in found.items()}
 
     def is_part(self, rule: str) -> bool:
         """Whether a rule is a part of one other rule and of nothing else."""

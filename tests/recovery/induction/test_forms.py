@@ -168,3 +168,15 @@ def test_types_in_brackets(text: str, form: str) -> None:
     grammar = read(typed.replace("LIST : 'LIST' ;\n", f"LIST : 'LIST' ;\n{words}"))
     writer = FormWriter(SymbolReader(OperandRules(Recognizer(grammar))), [])
     assert (writer.form([_symbols(writer, text)]) or "").startswith(form)
+
+
+def test_what_is_no_call() -> None:
+    """A word that only other rules write in brackets tells that these brackets are of no call."""
+    text = _GRAMMAR.replace("':' NAME ')'", "':' ON ')'").replace("| '(' expr", "| NAME? '(' expr")
+    rules = OperandRules(Recognizer(read(text)))
+    writer = FormWriter(SymbolReader(rules), [])
+    forms = [
+        writer.form([_symbols(writer, f"PAIR A({inside})") for inside in (first, "1")])
+        for first in ("C", "ON")
+    ]
+    assert ["PAIR expression", "PAIR NAME '(' (ON | NUMBER) ')'"] == forms
