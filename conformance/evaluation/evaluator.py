@@ -20,7 +20,7 @@ from conformance.evaluation.motions import ended
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_laws import deviations
-from conformance.evaluation.place_laws import misplaced
+from conformance.evaluation.place_laws import misplaced, mistimed
 from conformance.evaluation.run_laws import violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
@@ -74,7 +74,9 @@ def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
     slow = any("OV_PRO" in text.upper() for text in texts)
     motions = tuple(ended(seen))
     broken = [deviations(seen), violations(seen), misdeeds(seen, motions), misplaced(motions)]
-    for one in chain(*broken, () if slow else delays(motions)):
+    if not slow:
+        broken += [delays(motions), mistimed(seen, motions)]
+    for one in chain(*broken):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail
         yield Check(file or case.main, line, one.law, "unmet", one.actual, is_sure, one.rule)

@@ -20,7 +20,13 @@ from conformance.evaluation.motions import (
     flanges_of,
 )
 from conformance.evaluation.observation import Observation
-from conformance.evaluation.path_geometry import RATE_MARGIN, change_rates, from_circle
+from conformance.evaluation.path_geometry import (
+    RATE_MARGIN,
+    change_rates,
+    from_circle,
+    nearest,
+    refined,
+)
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.chain import Chain
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
@@ -39,7 +45,7 @@ def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
     if path is not None and machine is not None:
         yield from _displaced(path, machine)
     for one in motions:
-        for law in (_arrives, _has_posture, _keeps_speed, _passes_auxiliary):
+        for law in (_arrives, _has_posture, _keeps_speed, _passes_auxiliary, _passes_points):
             yield from law(one)
 
 
@@ -155,10 +161,26 @@ def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
         yield one.broken(law, f"{off:.4f} mm off", "MOT-20")
 
 
+def _passes_points(one: EndedMotion) -> Iterator[Violation]:
+    """A spline block that passes one of its points aside [SPL-03]."""
+    motion, parts = one.motion, one.motion.parts
+    if motion.kind != "SPLINE" or motion.settings.placement.mode is not IpoMode.BASE:
+        return
+    targets = [target for part in parts for target in (part.auxiliary, part.target) if target]
+    rows = refined(one.path.times, one.path.axes, one.start, one.end, 8 * len(one.tools) + 2)
+    points = one.poses(rows)[:, :3, 3]
+    for target in targets if one.stops else targets[:-1]:
+        if all(name in target for name in _POINT):
+            point = np.array([target[name] for name in _POINT])
+            off = float(nearest(points[:-1], points[1:], point).min())
+            if off > NEAR_MM:
+                yield one.broken("a spline passes its points", f"{off:.4f} mm beside one", "SPL-03")
+
+
 def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
     """Faster than programmed: the tool on its path [MOT-04], an axis in a PTP [MOT-02]."""
     motion, settings = one.motion, one.motion.settings
-    if motion.parts or one.rows.stop - one.rows.start < 3:
+    if motion.kind == "PTP_SPLINE" or one.rows.stop - one.rows.start < 3:
         return
     times = one.path.times[one.rows]
     if motion.kind in ("PTP", "SPTP"):
@@ -171,12 +193,13 @@ def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
             yield one.broken("axes keep $VEL_AXIS", f"{share[axis]:.1%} of it", "MOT-02")
         return
     speeds = np.linalg.norm(change_rates(times, one.tools[:, :3, 3]), axis=1) / 1000.0
-    most_path = min(settings.velocity, one.machine.velocity.path)
+    every = [settings, *(part.settings for part in motion.parts if part.settings is not None)]
+    most_path = min(max(each.velocity for each in every), one.machine.velocity.path)
     if settings.is_reduced:
         most_path = min(most_path, one.machine.t1_speed)
     if speeds.max() > most_path * RATE_MARGIN:
         yield one.broken("the tool keeps $VEL.CP", f"{speeds.max():.4f} m/s", "MOT-04")
     gains = np.abs(np.diff(speeds) / (np.diff(times)[1:] / 1e6))
-    most_gain = min(settings.acceleration, one.machine.acceleration.path)
+    most_gain = min(max(each.acceleration for each in every), one.machine.acceleration.path)
     if gains.max() > most_gain * RATE_MARGIN:
         yield one.broken("the tool keeps $ACC.CP", f"{gains.max():.4f} m/s²", "MOT-04")

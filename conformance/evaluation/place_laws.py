@@ -1,4 +1,4 @@
-"""Where blends begin and end, held against what docs/motion.md says of their zones.
+"""Where blends begin and end and triggers switch, held against what docs/motion.md says of them.
 
 Ways are those that were programmed, from point to point, not those that were gone: what a blend
 takes of both follows from targets, criteria and machine data alone.
@@ -15,9 +15,10 @@ from typing import Final
 import numpy as np
 
 from conformance.evaluation.motions import Array, EndedMotion
-from conformance.evaluation.path_geometry import drawn
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.path_geometry import between, drawn
 from conformance.evaluation.run_laws import Violation
-from interp.robot.arm import Target
+from interp.robot.arm import Place, Target
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import IpoMode
 
@@ -25,6 +26,8 @@ _SHARES: Final = np.linspace(0.0, 1.0, 501)[:, None]
 _POINT: Final = ("X", "Y", "Z")
 #: mm and degrees by which a zone may be off.
 _NEAR_MM, _NEAR_DEGREES = 0.05, 0.01
+#: µs that times may be off: they are rounded, and so are the ends of motions.
+_NEAR_TIME: Final = 3
 #: At most so much of a way is blended.
 _HALF: Final = 0.5
 
@@ -41,6 +44,11 @@ class _Way:
         """The way of the tool up to each point, mm."""
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate(([0.0], np.cumsum(steps)))
+
+    @property
+    def middle(self) -> float:
+        """The way up to half of its parameter, mm."""
+        return float(np.interp(_HALF, np.linspace(0.0, 1.0, len(self.sums)), self.sums))
 
     def gone(self, point: Array) -> float:
         """The way up to what of it is nearest to a point, mm."""
@@ -82,28 +90,22 @@ def _excess(
     """
     cdis = max(first.motion.settings.approximation.cdis, 0.0)
     is_both = one.motion.kind == "SPTP" and cdis > 0.0
-    if way is None or (criterion == "C_PTP" and way.axes is None):
+    if way is None or (way.axes is None and criterion == "C_PTP"):
         return None
-    zones = []
+    found = []
     place = one.ends[int(at_end)]
     if criterion in ("C_DIS", "C_SPL") or is_both:
-        zones.append(cdis / way.sums[-1])
-        gone = way.gone(one.poses(place[None])[0, :3, 3])
-        taken, size = (way.sums[-1] - gone if at_end else gone), way.sums[-1] / _NEAR_MM
-        taken /= way.sums[-1]
-    if criterion == "C_PTP" or one.motion.kind == "SPTP":
-        if way.axes is None:
-            return None
+        gone, middle, whole = way.gone(one.poses(place[None])[0, :3, 3]), way.middle, way.sums[-1]
+        taken, most = (whole - gone, whole - middle) if at_end else (gone, middle)
+        found.append((taken - min(cdis, most)) / _NEAR_MM)
+    if way.axes is not None and (criterion == "C_PTP" or one.motion.kind == "SPTP"):
         travel = np.abs(way.axes[-1] - way.axes[0])
         share = min(max(one.motion.settings.approximation.cptp, 0.0), 100.0) / 100.0
         axes = (*one.machine.axes, *one.machine.externals)
         reach = share * np.array([axis.approximation for axis in axes])
-        zones.append(float((reach / np.maximum(travel, 1e-9)).min()))
-        taken = np.abs(place - way.axes[-int(at_end)]).max() / travel.max()
-        size = travel.max() / _NEAR_DEGREES
-    if not zones:
-        return None
-    return float((taken - min(*zones, _HALF)) * size)
+        most = min(float((reach / np.maximum(travel, 1e-9)).min()), _HALF) * travel.max()
+        found.append((np.abs(place - way.axes[-int(at_end)]).max() - most) / _NEAR_DEGREES)
+    return float(max(found)) if found else None
 
 
 def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | None]]:
@@ -174,3 +176,57 @@ def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Arr
     if before is None:
         before = np.zeros(3)
     return np.array([target.get(name, old) for name, old in zip(_POINT, before, strict=True)])
+
+
+# -------------------------------------------------------------------------------------- triggers
+
+
+def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Triggers that switch at another moment than what was gone tells [TRG-02, TRG-04, TRG-08].
+
+    Nothing where not all of their motions came to their end, or some are of a spline block.
+    """
+    moving = [motion for _, motion in seen.path.motions] if seen.path else []
+    if any(part.places for motion in moving for part in motion.parts):
+        return
+    if sum(len(motion.places) for motion in moving) > sum(
+        len(one.motion.places) for one in motions
+    ):
+        return
+    neighbours = zip((None, *motions), motions, (*motions[1:], None), strict=False)
+    spans = sorted(
+        _moments(place, one, before if not one.begins else None, after if not one.stops else None)
+        for before, one, after in neighbours
+        for place in one.motion.places
+    )
+    switched = seen.of_kind("trigger")
+    for event, (first, last) in zip(switched, spans, strict=False):
+        time = event.time or 0
+        if not first - _NEAR_TIME <= time <= last + _NEAR_TIME:
+            law = "a trigger switches where the path passes its place"
+            yield Violation(event, law, f"{time} us, not {first:.0f} to {last:.0f}")
+            return
+
+
+def _moments(
+    place: Place, one: EndedMotion, before: EndedMotion | None, after: EndedMotion | None
+) -> tuple[float, float]:
+    """Between which times in µs a place is passed, its delay included."""
+    earliest = one.start if before is None else before.end
+    latest = one.end if after is None else after.start
+    end = one.end if after is None else after.event.time or 0
+    if place.kind == "PATH":
+        times = np.linspace(earliest, latest, 8 * (one.rows.stop - one.rows.start) + 64)
+        rows = between(one.path.times, one.path.axes, times)
+        sums = _Way(None, _tool(one, rows)).sums
+        wanted = float(np.interp(end, times, sums)) + place.position
+        near = np.clip([wanted - _NEAR_MM, wanted + _NEAR_MM], 0.0, sums[-1])
+        moments = np.interp(near, np.maximum.accumulate(sums), times)
+    else:
+        moments = np.full(2, one.start if place.position == 0.0 else end)
+        if place.position == 0.0:
+            latest = end
+        elif after is not None:
+            earliest = one.end
+    first, last = np.clip(moments + place.delay, earliest, latest).tolist()
+    return first, last

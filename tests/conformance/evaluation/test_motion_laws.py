@@ -13,10 +13,10 @@ from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.motion_laws import misdeeds
 from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
-from conformance.evaluation.place_laws import misplaced
+from conformance.evaluation.place_laws import misplaced, mistimed
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
-from interp.robot.arm import Approximation
+from interp.robot.arm import Approximation, Place, SplinePart
 from interp.robot.models import default_machine
 from interp.robot.simulation.tracking import PathRecord
 
@@ -105,7 +105,12 @@ def settings_of(line: int, **changed: object) -> Observation:
 def broken(run: Observation) -> list[tuple[str, int]]:
     """Rules and lines of what is broken."""
     motions = tuple(ended(run))
-    found = (*misdeeds(run, motions), *misplaced(motions), *delays(motions))
+    found = (
+        *misdeeds(run, motions),
+        *misplaced(motions),
+        *delays(motions),
+        *mistimed(run, motions),
+    )
     return [(one.rule, one.event.line if one.event else 0) for one in found]
 
 
@@ -186,6 +191,58 @@ def test_a_blend_takes_what_its_criterion_says(line: int, changed: dict[str, flo
     """Neither more nor less, of PTP, LIN and CIRC."""
     values = replace(Approximation(3.0, 50.0, 100.0, 5.0), **changed)
     assert [("", line)] == broken(settings_of(line, approximation=values))
+
+
+_TRIGGERS: Final = """DEF a()
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[1]=TRUE
+  TRIGGER WHEN PATH=-10 DELAY=0 DO $OUT[2]=TRUE
+  LIN {X 545} C_DIS
+  TRIGGER WHEN DISTANCE=1 DELAY=-5 DO $OUT[3]=TRUE
+  LIN {X 545, Y 100}
+  SPLINE
+    SPL {X 500, Y 50}
+    SLIN {X 445, Y 0}
+  ENDSPLINE
+END
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [
+        (7, Place(0, "DISTANCE", 0.0, delay=19_000)),
+        (7, Place(0, "PATH", -10.1)),
+        (9, Place(0, "DISTANCE", 1.0, delay=-6_000)),
+        (9, Place(0, "DISTANCE", 0.0, delay=5_000)),
+    ],
+)
+def test_a_trigger_switches_where_its_place_is_passed(line: int, place: Place) -> None:
+    """At the start, the end, or so many mm before it."""
+    run = seen(_TRIGGERS)
+    assert run.path is not None
+    motions = [
+        (time, replace(motion, places=(place,) * len(motion.places)))
+        if motion.at.line == line
+        else (time, motion)
+        for time, motion in run.path.motions
+    ]
+    changed = replace(run, path=replace(run.path, motions=tuple(motions)))
+    assert [] == broken(run)
+    assert [""] == [rule for rule, _ in broken(changed)]
+
+
+def test_a_spline_passes_its_points() -> None:
+    """One that it does not is told."""
+    run = seen(_TRIGGERS)
+    assert run.path is not None
+    *others, (time, block) = run.path.motions
+    parts = SplinePart("SPL", {"X": 501.0, "Y": 50.0, "Z": 890.0}), *block.parts[1:]
+    motions = *others, (time, replace(block, parts=parts))
+    changed = replace(run, path=replace(run.path, motions=motions))
+    assert [("SPL-03", block.at.line)] == broken(changed)
 
 
 def test_a_motion_that_ends_the_run_is_judged_too() -> None:
