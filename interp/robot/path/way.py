@@ -30,7 +30,7 @@ class Way:
 
     def at(self, u: Array) -> Array:
         """Lengths ``(n,)`` from 0 to u."""
-        place = np.clip(np.searchsorted(self._knots, u, side="right") - 1, 0, len(self._sums) - 2)
+        place = np.searchsorted(self._knots[1:-1], u, side="right")
         lengths: Array = self._sums[place] + self._between(self._knots[place], u)
         return lengths
 
