@@ -243,7 +243,7 @@ GENERATED_NEGATIVES = 250
 NEGATIVES_SEED = 1
 
 # -------------------------------------------------------------------------------- merging causes
-# `recovery.clustering.cause_merging`, `edit_merging`, `title`.
+# `recovery.clustering.causes`, `edit_merging`, `title`.
 
 #: Causes that a later one is compared with: the first ones hold back most. Bound on time.
 MOST_COMPARED = 40

@@ -1,4 +1,4 @@
-"""What somebody may have meant: names that are near, or that begin with what was written."""
+"""What a misspelt name may mean: names that are near, or that begin with what was written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The motion queue: motions planned as transactions of the control core, until they have ended.
+"""The motion queue: motions as transactions of the control core, and blends that fail [ADV-12].
 
 Each KRL motion is one transaction: the motion, for each trigger that switches an output an
 `OutputCommand` at its place, for each other trigger a `CallCommand` [TRG-01 to TRG-08]. So outputs

@@ -1,4 +1,4 @@
-"""The operator: START, STOP and CONFIRM, and what a program must not do meanwhile [ADV-12]."""
+"""The operator: START, STOP and CONFIRM, and what waits for them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Requests to read and to write system variables, some of which stop the advance run."""
+"""Requests to read and write system variables: the advance stop, limits of ANOUT, and $ERR."""
 
 from __future__ import annotations
 

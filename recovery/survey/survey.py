@@ -91,7 +91,7 @@ def survey(
     been dealt with.
 
     Raises `support.files.discovery.IngestError` where there is nothing to survey, and
-    `support.parallel.executor.WorkersError` where there are no workers.
+    `support.parallel.workers.WorkersError` where there are no workers.
     """
     began = time.perf_counter()
     candidates = list(discover(roots))

@@ -1,4 +1,4 @@
-"""From a motion instruction to its own piece of path: a curve, and how fast it may be travelled."""
+"""From a motion instruction to its path: a curve, its speed, and what is told of it [MOT-11]."""
 
 from __future__ import annotations
 
