@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import pytest
 
@@ -12,14 +13,11 @@ from grammar.semantics.types import Array
 from grammar.syntax.source import Source
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.program import Program
-from interp.bytecode.verifier.verify import verify
-from interp.bytecode.vm.executor import Machine
-from interp.native import AVAILABLE
+from interp.executors import Prepared, available
 from interp.port.events import ExecutorEvent, Sink
 from interp.port.executor import Executor
 from interp.port.requests import DeclareInterrupt, End, Fail
-from interp.program.load import CheckedProgram, load
-from interp.tree import TreeExecutor
+from interp.program.load import CheckedProgram, Limits, load
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 
@@ -32,17 +30,8 @@ def _loaded(text: str) -> CheckedProgram:
 
 def _makers(program: CheckedProgram) -> list[Maker]:
     """The tree interpreter first, then the machines."""
-    verified = verify(compile_program(program).program)
-    name = program.start().name
-    makers: list[Maker] = [
-        lambda sink: TreeExecutor(program, name, sink=sink),
-        lambda sink: Machine(verified, name, sink=sink),
-    ]
-    if AVAILABLE:
-        from interp.native.machine import Machine as Native
-
-        makers.append(lambda sink: Native(verified, name, sink=sink))
-    return makers
+    prepared = Prepared(program)
+    return [partial(prepared.executor, name, Limits()) for name in available()]
 
 
 def _run(text: str) -> Observed:

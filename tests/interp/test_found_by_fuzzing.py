@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import pytest
 
 from conformance.differential.observation import Observed, difference, observe
 from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.bytecode.compiler import compile_program
-from interp.bytecode.verifier.verify import verify
-from interp.bytecode.vm.executor import Machine
-from interp.executors import COMPILED, EXECUTORS, Prepared, is_available
-from interp.native import AVAILABLE
+from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_available
 from interp.port.events import ExecutorEvent, Sink
 from interp.port.executor import Executor
 from interp.port.requests import (
@@ -27,7 +24,6 @@ from interp.port.requests import (
     Write,
 )
 from interp.program.load import Limits, load
-from interp.tree import TreeExecutor
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 
@@ -39,16 +35,8 @@ def _makers(main: str, *, strict: bool = True, **others: str) -> list[Maker]:
     sources = [Source(main, "main.src")]
     sources += [Source(text, path.replace("_", ".")) for path, text in others.items()]
     program = load(sources, "main.src", strict=strict)
-    verified = verify(compile_program(program).program)
-    makers: list[Maker] = [
-        lambda sink: TreeExecutor(program, "MAIN", sink=sink),
-        lambda sink: Machine(verified, "MAIN", sink=sink),
-    ]
-    if AVAILABLE:
-        from interp.native.machine import Machine as Native
-
-        makers.append(lambda sink: Native(verified, "MAIN", sink=sink))
-    return makers
+    prepared = Prepared(program)
+    return [partial(prepared.executor, name, Limits()) for name in available()]
 
 
 def _run(main: str, *, strict: bool = True, **others: str) -> Observed:

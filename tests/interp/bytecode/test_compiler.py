@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import get_args
 
@@ -23,11 +24,11 @@ from interp.bytecode.image.reader import read_image
 from interp.bytecode.image.writer import write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
+from interp.executors import Prepared
 from interp.port.events import ExecutorEvent, Sink
 from interp.port.executor import Executor
 from interp.port.requests import At, Fail, Invoke, SetCyclicFlag, StopAdvance, Write
 from interp.program.load import CheckedProgram, Limits, load
-from interp.tree import TreeExecutor
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 from support.files.decode import decode
 
@@ -43,11 +44,8 @@ def _loaded(text: str, **more: str) -> CheckedProgram:
 
 def _makers(program: CheckedProgram) -> list[Callable[[Sink], Executor]]:
     """The tree interpreter and the machine."""
-    verified = verify(compile_program(program).program)
-    return [
-        lambda sink: TreeExecutor(program, None, _LIMITS, sink),
-        lambda sink: Machine(verified, program.start().name, _LIMITS, sink),
-    ]
+    prepared = Prepared(program)
+    return [partial(prepared.executor, name, _LIMITS) for name in ("tree", "vm")]
 
 
 def _observed(program: CheckedProgram) -> list[Observed]:

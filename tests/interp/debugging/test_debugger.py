@@ -4,26 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from conformance.differential.random_world import QuietWorld
 from grammar.semantics.types import UNKNOWN
 from grammar.syntax.source import Source
-from interp.bytecode.compiler import compile_program
-from interp.bytecode.verifier.verify import verify
-from interp.bytecode.vm.executor import Machine
 from interp.controller.controller import ArmState
 from interp.debugging.client import Breakpoint, Command, Go, Select, StepCommand, Stop, Watch
 from interp.debugging.debugger import Debugger
+from interp.executors import Prepared
 from interp.native import AVAILABLE
 from interp.port.events import Recorder, Sink
 from interp.port.inspection import Inspectable
 from interp.port.requests import DeclareInterrupt, End, Fail, Request, Slice, Wait, Write
 from interp.program.load import CheckedProgram, Limits, load
-from interp.tree import TreeExecutor
 from interp.values.faults import LinkError
 
 EXECUTORS = ("tree", "vm", *(["native"] if AVAILABLE else []))
@@ -125,19 +123,8 @@ class World:
 
 
 def make_of(name: str, program: CheckedProgram) -> Callable[[Limits, Sink | None], Inspectable]:
-    """The executors, each under its name."""
-
-    def made(limits: Limits, sink: Sink | None) -> Inspectable:
-        if name == "tree":
-            return TreeExecutor(program, limits=limits, sink=sink)
-        verified = verify(compile_program(program).program)
-        if name == "vm":
-            return Machine(verified, "MAIN", limits, sink)
-        from interp.native.machine import Machine as MachineInC
-
-        return MachineInC(verified, "MAIN", limits, sink)
-
-    return made
+    """Makes an executor of a program."""
+    return cast("Callable[..., Inspectable]", partial(Prepared(program).executor, name))
 
 
 def program_of(text: str, data: str = "") -> CheckedProgram:

@@ -8,16 +8,12 @@ import pytest
 
 from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.bytecode.compiler import compile_program
-from interp.bytecode.verifier.verify import Verified, verify
-from interp.bytecode.vm.executor import Machine
 from interp.controller import Trace
-from interp.native import AVAILABLE
+from interp.executors import Prepared, available
 from interp.port.events import EVERY_KIND, ExecutorEvent, Kind, Recorder
 from interp.port.executor import Executor
 from interp.port.requests import End, Request
-from interp.program.load import CheckedProgram, load
-from interp.tree import TreeExecutor
+from interp.program.load import Limits, load
 
 _TEXT = """DEF main()
   DECL INT I,A[2,2],G
@@ -55,27 +51,9 @@ _SOME: list[frozenset[Kind]] = [
 
 
 @pytest.fixture(scope="module")
-def program() -> CheckedProgram:
+def prepared() -> Prepared:
     """A program that tells events of every kind."""
-    return load([Source(_TEXT, "main.src")], "main.src")
-
-
-@pytest.fixture(scope="module")
-def verified(program: CheckedProgram) -> Verified:
-    """The same as bytecode."""
-    return verify(compile_program(program).program)
-
-
-def _executor(name: str, program: CheckedProgram, verified: Verified, sink: Recorder) -> Executor:
-    if name == "tree":
-        return TreeExecutor(program, sink=sink)
-    if name == "vm":
-        return Machine(verified, "MAIN", sink=sink)
-    if not AVAILABLE:
-        pytest.skip("the machine in C was not built")
-    from interp.native.machine import Machine as Native
-
-    return Native(verified, "MAIN", sink=sink)
+    return Prepared(load([Source(_TEXT, "main.src")], "main.src"))
 
 
 def _run(executor: Executor, recorder: Recorder) -> tuple[list[ExecutorEvent], list[Request]]:
@@ -85,17 +63,15 @@ def _run(executor: Executor, recorder: Recorder) -> tuple[list[ExecutorEvent], l
     return recorder.events, requests
 
 
-@pytest.mark.parametrize("name", ["tree", "vm", "native"])
-def test_only_what_is_wanted_is_told(
-    program: CheckedProgram, verified: Verified, name: str
-) -> None:
+@pytest.mark.parametrize("name", available())
+def test_only_what_is_wanted_is_told(prepared: Prepared, name: str) -> None:
     """Each choice of kinds gives the events of these kinds, and the same requests."""
     everything = Recorder()
-    events, requests = _run(TreeExecutor(program, sink=everything), everything)
+    events, requests = _run(prepared.executor("tree", Limits(), everything), everything)
     assert EVERY_KIND == {one.kind for one in events}
     for kinds in [*_SOME, EVERY_KIND]:
         recorder = Recorder(kinds=kinds)
-        told, asked = _run(_executor(name, program, verified, recorder), recorder)
+        told, asked = _run(prepared.executor(name, Limits(), recorder), recorder)
         assert [one for one in events if one.kind in kinds] == told
         assert requests == asked
 
