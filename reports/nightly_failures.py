@@ -16,6 +16,8 @@ OF_THE_RUN = "the nightly run "
 _FINE = ("ok", "findings")
 #: The steps that run cases; their pages lie in folders of the same names.
 _CONFORM = ("conform", "conform-arm")
+#: What the name of a step ends with that runs the failed cases of such a step once more.
+AGAIN = "-again"
 _ROBOTS = ("none", "kinematic", "mujoco")
 _LONGEST = 200
 
@@ -37,7 +39,7 @@ def failures(
     """
     return [
         *_steps(steps),
-        *(one for name in _CONFORM if name in made for one in _cases(name, made[name])),
+        *(one for name in _CONFORM if name in made for one in _cases(name, made)),
         *_no_longer_passing(made.get("conform", {}), before or {}),
         *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
         *_programs(made.get("fuzz", {})),
@@ -51,14 +53,27 @@ def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
             yield Failure(what=f"step {name}: {status}", page="", command="")
 
 
-def _cases(step: str, record: Record) -> Iterator[Failure]:
-    for case in records(record, "cases"):
-        failed = [one for one in records(case, "results") if text(one, "verdict") == "fail"]
-        if not failed:
-            continue
-        where = ", ".join(f"{text(one, 'executor')}/{text(one, 'robot')}" for one in failed)
-        reason = shown(text(failed[0], "reason"), _LONGEST)
-        yield _of_case(step, case, f"failed on {where}: {reason}", failed[0])
+def failed_cases(step: str, record: Record) -> list[str]:
+    """The names of the cases that failed in a step that runs cases, from its record."""
+    cases = records(record, "cases") if step in _CONFORM else ()
+    return [text(case, "name") for case in cases if _failed(case)]
+
+
+def _failed(case: Record) -> list[Record]:
+    return [one for one in records(case, "results") if text(one, "verdict") == "fail"]
+
+
+def _cases(step: str, made: Mapping[str, Record]) -> Iterator[Failure]:
+    """The cases that failed; flaky is what did not when it was run once more."""
+    again = {text(case, "name"): case for case in records(made.get(step + AGAIN, {}), "cases")}
+    for case in records(made[step], "cases"):
+        if failed := _failed(case):
+            name = text(case, "name")
+            is_flaky = name in again and not _failed(again[name])
+            where = ", ".join(f"{text(one, 'executor')}/{text(one, 'robot')}" for one in failed)
+            how = f"{'is flaky: it ' if is_flaky else ''}failed on {where}"
+            reason = shown(text(failed[0], "reason"), _LONGEST)
+            yield _of_case(step, case, f"{how}: {reason}", failed[0])
 
 
 def _no_longer_passing(record: Record, before: Record) -> Iterator[Failure]:

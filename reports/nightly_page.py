@@ -19,7 +19,8 @@ _MAX_CHANGES = 300
 _BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
 _FINE = ("ok", "findings")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d")
-_MOST_EARLIER = 30
+#: So many earlier runs are linked.
+MOST_EARLIER = 30
 #: Where the pages of failed cases lie.
 _PAGES = ("conform/index.html#", "conform-arm/index.html#")
 _GOOD = ("fixed", "survey: gone cluster")
@@ -152,7 +153,7 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record]) -> _NightlyView:
             date
             for run in reversed(runs[:-1])
             if _DATE.fullmatch(date := text(run, "date")) and date != text(record, "date")
-        )[:_MOST_EARLIER],
+        )[:MOST_EARLIER],
     )
 
 

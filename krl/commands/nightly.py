@@ -5,6 +5,7 @@ import re
 import shutil
 import sys
 import time
+from collections import deque
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.output_files import write_json
+from krl.output_files import check_files, write_json
 
 if TYPE_CHECKING:
     from reports.nightly_failures import Failure
@@ -27,16 +28,22 @@ _PROGRAMS = 12_000
 #: What moves the cursor and colours text on a terminal.
 _CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _TAIL = 4_000
+#: More cases that fail at once are no chance.
+_MOST_AGAIN = 50
 
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A command; ``share`` is the largest part of the whole time that it may take."""
+    """A command; ``share`` is the largest part of the whole time that it may take.
+
+    ``again`` are the options with which cases that failed in it are run once more.
+    """
 
     name: str
     arguments: tuple[str, ...]
     share: float
     page: str = ""
+    again: tuple[str, ...] = ()
 
 
 def nightly(
@@ -67,13 +74,15 @@ def nightly(
     """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
 
     A run that was broken off goes on where it was: steps whose record is there are not done again.
-    A step that fails is tried once more. DIR/DATE/summary.md sums the run up for an issue or a
-    mail. On a terminal each step shows how far it is. Exit status 1 where a step failed, a case
-    failed or no longer passes, a law was broken, or executors diverge.
+    A step or case that fails is tried once more. DIR/DATE/summary.md sums the run up for an issue
+    or a mail, DIR/index.html leads to the last run. Pages of the last 30 runs are kept, records a
+    year, results to begin with once. On a terminal each step shows how far it is. Exit status 1
+    where a step failed, a case failed or no longer passes, a law was broken, or executors diverge.
     """
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
         raise InputError(f"--date: {name!r} is not fit for the name of a folder")
+    check_files(history)
     folder = out / name
     folder.mkdir(parents=True, exist_ok=True)
     steps = [one for one in _steps(paths or [Path("corpus")], folder, minutes) if _is_in(one, only)]
@@ -106,6 +115,7 @@ def _reported(
     from reports.history import append_run, changes, known_before, nightly_record, read_history
     from reports.nightly_failures import failures
     from reports.nightly_page import write_nightly_page
+    from reports.nightly_store import bound_store, write_entry_page
     from reports.nightly_summary import nightly_summary
     from support.files.atomic_write import write_atomic
 
@@ -123,6 +133,8 @@ def _reported(
     pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
     run = {**run, "steps": {**run["steps"], **pages}}
     page = write_nightly_page({**run, "changes": told, "history": [*runs, run]}, folder)
+    write_entry_page(out, name, datetime.now(UTC))
+    bound_store(folder)
     write_atomic(folder / "summary.md", nightly_summary({**run, "changes": told}))
     for one in failed:
         typer.echo(one_line(f"failed: {one['what']}"))
@@ -169,9 +181,9 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     yield _Step(
         "conform", ("conform", "--html", str(folder / "conform")), 0.25, "conform/index.html"
     )
-    arm = ("motion", "blending", "program", "--executor", "native", "--robot", "mujoco")
-    html = ("--html", str(folder / "conform-arm"))
-    yield _Step("conform-arm", ("conform", *arm, *html), 0.15, "conform-arm/index.html")
+    arm = ("--executor", "native", "--robot", "mujoco")
+    motions = ("motion", "blending", "program", *arm, "--html", str(folder / "conform-arm"))
+    yield _Step("conform-arm", ("conform", *motions), 0.15, "conform-arm/index.html", arm)
     yield _Step("conform-laws", ("conform", "--metamorphic", "10"), 0.1)
     yield _Step("fuzz", ("fuzz", "--programs", programs, "--seed", seed), 0.35)
     yield _Step(
@@ -197,10 +209,14 @@ def _performed(
     """Each step with how it went: ok, findings, failed with its last line, or cut off.
 
     A step that is done already took no time; one that failed is tried once more, and is flaky where
-    it does not fail then.
+    it does not fail then. Cases that failed are a step of their own, behind theirs.
     """
+    from reports.nightly_failures import AGAIN, failed_cases
+
     begun = time.monotonic()
-    for number, step in enumerate(steps, 1):
+    left_to_do = deque(enumerate(steps, 1))
+    while left_to_do:
+        number, step = left_to_do.popleft()
         began = time.monotonic()
         target = folder / f"{step.name}.json"
         if target.is_file():
@@ -219,6 +235,9 @@ def _performed(
             ended = time.monotonic()
             _say(ended - begun, f"{step.name}: {how}, {(ended - began) / 60:.1f} min")
             yield step, how, ended - began
+        if cases := failed_cases(step.name, _record(folder, step.name) or {})[:_MOST_AGAIN]:
+            again = ("conform", *cases, *step.again)
+            left_to_do.appendleft((number, _Step(step.name + AGAIN, again, step.share / 2)))
 
 
 def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:

@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from krl.cli import main
 from krl.commands import nightly
 
 DATE = "2026-01-02"
+_ON = {"executor": "vm", "robot": "none", "reason": "why"}
 
 
 def run(folder: Path, capsys: pytest.CaptureFixture[str], *steps: str) -> tuple[int, list[str]]:
@@ -168,6 +170,72 @@ def test_the_summary_mentions_and_links_nothing(
     assert 1 == run(tmp_path, capsys, "conform")[0]
     summary = (tmp_path / DATE / "summary.md").read_text(encoding="utf-8")
     assert "vm/none: a 'b' ¦ @c`, again with `krl conform io/one --executor vm" in summary
+
+
+@pytest.mark.parametrize(
+    ("then", "told"), [("pass", "is flaky: it failed on vm/none"), ("fail", "failed on vm/none")]
+)
+def test_a_case_that_fails_is_run_once_more(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    then: str,
+    told: str,
+) -> None:
+    """What passes then is flaky, and a failure all the same; it runs as it did."""
+    records = [
+        {"cases": [{"name": "io/one", "results": [{**_ON, "verdict": verdict}]}]}
+        for verdict in ("fail", then)
+    ]
+    asked = _step(monkeypatch, (1, json.dumps(records[0])), (1, json.dumps(records[1])))
+    status, out = run(tmp_path, capsys, "conform-arm")
+    assert (1, f"failed: case io/one {told}: why") == (status, out[0])
+    repeated = ["conform", "io/one", "--executor", "native", "--robot", "mujoco", "--json"]
+    assert repeated == asked[1][3:-1]
+    assert run(tmp_path, capsys, "conform-arm")[0] == 1  # when it goes on, nothing is done again
+    assert 2 == len(asked)
+
+
+def test_what_is_kept_is_bounded(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pages of old runs go, their records later, results but once; what is no run stays."""
+    runs = [f"2024-{day:04}" for day in range(400)]
+    for name in (*runs, "mine"):
+        (tmp_path / name).mkdir()
+        for file in ("index.html", "summary.md", "night.json"):
+            (tmp_path / name / file).write_text("{}", encoding="utf-8")
+    (tmp_path / "mine" / "night.json").unlink()
+    for name in (DATE, runs[-1]):
+        (tmp_path / name / "recover" / "cache").mkdir(parents=True)
+    _step(monkeypatch, (0, ""))
+    assert 0 == run(tmp_path, capsys, "recover")[0]
+    pages = sorted(one.parent.name for one in tmp_path.glob("*/index.html"))
+    assert [*runs[-30:], DATE, "mine"] == pages
+    assert [*runs[-366:], DATE] == sorted(one.parent.name for one in tmp_path.glob("*/night.json"))
+    assert [DATE] == [one.parents[1].name for one in tmp_path.glob("*/recover/cache")]
+
+
+def test_one_page_leads_to_the_last_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It knows when that was made, as no later run may be left to say that none came."""
+    _step(monkeypatch, (0, ""))
+    run(tmp_path, capsys, "recover")
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert f'href="{DATE}/index.html"' in page
+    assert re.search(r'"made": ?"20\d\d-\d\d-\d\dT', page)
+    assert "has told nothing for" in page
+
+
+def test_a_history_that_cannot_be_kept_is_refused_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody wants to know that after an hour."""
+    (tmp_path / "h.jsonl").mkdir()
+    asked = _step(monkeypatch, (0, ""))
+    assert (2, []) == run(tmp_path, capsys, "recover")
+    assert not asked
 
 
 def test_a_run_that_broke_off_is_the_first_failure_of_the_next(

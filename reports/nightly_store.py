@@ -1,0 +1,60 @@
+"""The folder of all nightly runs: the page that one opens, and what is kept of older runs.
+
+The page leads to the last run. Where that is too long ago, which no run is left to say, it is red.
+"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from shutil import rmtree
+
+from reports.embedding import embedded_json
+from reports.nightly_page import MOST_EARLIER
+from reports.page import render, source
+from support.files.atomic_write import write_atomic
+
+#: What is kept of a run when its pages are no longer linked, and of how many runs.
+_SUMS = ("night.json", "summary.md")
+_MOST_RUNS = 366
+
+
+def write_entry_page(out: Path, date: str, made: datetime) -> Path:
+    """Write ``out``/index.html, which leads to the run ``date``, made at that time.
+
+    Raises OSError.
+    """
+    script = f'"use strict";\n{{\n{source("page.js")}\n{source("nights.js")}}}\n'
+    data = embedded_json({"made": made.isoformat()})
+    styles = ["page.css", "conform.css", "nightly.css"]
+    page = render("nights.html.j2", script=script, styles=styles, data=data, view=date)
+    return write_atomic(out / "index.html", page)
+
+
+def bound_store(folder: Path) -> None:
+    """Remove what nobody needs beside the last run, that of ``folder``.
+
+    Results that it keeps itself are kept once; of runs whose pages it no longer links summary and
+    record are kept, for a year. Only folders that have a record of a run are touched; what cannot
+    be removed stays.
+    """
+    earlier = sorted(filter(_is_run, folder.parent.iterdir()), reverse=True)
+    for number, run in enumerate((one for one in earlier if one.name != folder.name), 1):
+        for cache in folder.glob("*/cache"):
+            rmtree(run / cache.relative_to(folder), ignore_errors=True)
+        if number > _MOST_RUNS:
+            rmtree(run, ignore_errors=True)
+        elif number > MOST_EARLIER:
+            for one in _pages(run):
+                rmtree(one, ignore_errors=True)
+                with suppress(OSError):  # a folder that stays
+                    one.unlink(missing_ok=True)
+
+
+def _is_run(folder: Path) -> bool:
+    is_ours = any((folder / name).is_file() for name in ("night.json", "steps.json"))
+    return is_ours and not folder.is_symlink()
+
+
+def _pages(run: Path) -> Iterator[Path]:
+    return (one for one in [*run.iterdir()] if one.name not in _SUMS)

@@ -1,0 +1,7 @@
+// Tells on the page that leads to the last nightly run when there was none for too long.
+
+const hours = (Date.now() - Date.parse(page.made)) / 3600000;
+const told = document.getElementById("told");
+if (hours < -24) told.textContent = "This run is of the future: the clock of the nightly run is wrong.";
+else if (hours > 48) told.textContent = `The nightly run has told nothing for ${Math.floor(hours / 24)} days.`;
+else location.replace(document.getElementById("last").href);
