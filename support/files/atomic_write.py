@@ -10,6 +10,7 @@ what the process did not come to.
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
@@ -18,6 +19,19 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from support.files.untrusted import json_of, read_bytes
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+@contextlib.contextmanager
+def naming(file: Path) -> Iterator[None]:
+    """Let a full disk say which file it was full for, as the system does not."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno in _FULL:
+            error.filename = str(file)
+        raise
 
 
 @contextlib.contextmanager
@@ -34,7 +48,8 @@ def atomic_path(target: Path) -> Iterator[Path]:
     target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_name(f".part-{os.urandom(4).hex()}-{target.name}")
     try:
-        yield part
+        with naming(target):
+            yield part
         if target.exists() and (mode := target.stat().st_mode) != part.stat().st_mode:
             part.chmod(stat.S_IMODE(mode))
         part.replace(target)
@@ -107,7 +122,7 @@ def _note(journal: Path, changes: Mapping[Path, bytes | None]) -> None:
 
 def _write_through(file: Path, content: bytes) -> None:
     """Write a file, and wait until the disk has it: the journal may not stand before its parts."""
-    with file.open("wb") as stream:
+    with naming(file), file.open("wb") as stream:
         stream.write(content)
         stream.flush()
         os.fsync(stream.fileno())

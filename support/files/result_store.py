@@ -17,14 +17,16 @@ from typing import Any, Self
 
 # What a damaged file raises: Python cannot read an error message of SQLite that quotes the damage.
 _DAMAGE = (sqlite3.Error, UnicodeDecodeError)
+#: What is wrong with a file itself; it is not where a disk is full or the file is in use.
+_DAMAGED = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 
 
 class ResultStore:
     """JSON values, or bytes, by digest, below one key; a context manager.
 
     The key says what all of them depend on besides what the digest is of: code, tables, a grammar.
-    What another key holds is not seen. Without a folder nothing is kept; a store that cannot be
-    written to any more forgets.
+    What another key holds is not seen. Without a folder nothing is kept, nor in a store that
+    cannot be opened or written to; a damaged one is put aside.
     """
 
     def __init__(self, folder: Path | None, key: str) -> None:
@@ -34,12 +36,14 @@ class ResultStore:
             return
         folder.mkdir(parents=True, exist_ok=True)
         file = folder / "results.sqlite"
-        try:
-            self._base = self._opened(file)
-        except _DAMAGE:
-            with contextlib.suppress(OSError):
-                file.replace(file.with_suffix(".damaged"))
-            self._base = self._opened(file)
+        with contextlib.suppress(*_DAMAGE):
+            try:
+                self._base = self._opened(file)
+            except _DAMAGE as error:
+                if getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) in _DAMAGED:
+                    with contextlib.suppress(OSError):
+                        file.replace(file.with_suffix(".damaged"))
+                    self._base = self._opened(file)
 
     def _opened(self, file: Path) -> sqlite3.Connection:
         base = sqlite3.connect(file, timeout=30)

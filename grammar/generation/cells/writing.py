@@ -7,6 +7,7 @@ from itertools import count
 from pathlib import Path
 
 from grammar.generation.cells.cells import files
+from support.files.atomic_write import naming
 from support.parallel.progress import Progress, no_progress
 
 
@@ -33,7 +34,8 @@ def write_cells(
         for file in files(seed, cell):
             place = folder / file.path
             place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_bytes(file.data)
+            with naming(place):
+                place.write_bytes(file.data)
             number_of_files += 1
             written += len(file.data)
             on_bytes(len(file.data))
