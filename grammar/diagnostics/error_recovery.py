@@ -26,6 +26,8 @@ _LARGEST = 2_000_000
 _ROUTINES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 #: How a routine begins that ends so.
 _HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
+#: Heads and ends in whose place a block is gone through once, with the counter of a loop.
+_ONCE = {"CASE": "CASE 0", "IF": "IF TRUE THEN", "FOR": "FOR {}=1 TO 1", "UNTIL": "UNTIL TRUE"}
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
 #: A type that loses its last members is still one, and known to have others.
 _TYPE = re.compile(r"[ \t]*(?:(?:DECL|GLOBAL)[ \t]+)*(?:ENUM|STRUC)\b", re.IGNORECASE)
@@ -88,7 +90,7 @@ class _Recovery:
         self._dropped: set[int] = set()
         self._exchanged: dict[int, str] = {}
         self._failures: list[SyntaxFailure] = []
-        self._shortened: set[int] = set()
+        self._readings: dict[int, Iterator[str]] = {}
         self._is_cut = False
 
     def run(self) -> Recovered | None:
@@ -105,14 +107,13 @@ class _Recovery:
             source = Source(self._text, self._path)
             block = open_blocks(source, [tree.line])[tree.line]
             cause = _unclosed(source.line(tree.line), tree.text, block)
-            is_structural = cause is not None or block is None or self._is_orphan(tree.line)
+            is_orphan = self._is_orphan(tree.line, tree.text)
+            is_structural = cause is not None or block is None or is_orphan
             follows = bool(self._failures) and is_structural
             is_case = "CASE" in context.expected and cause is None
-            if tree.line in self._shortened:  # its beginning alone cannot be read either
-                self._shortened.remove(tree.line)
-                self._dropped.remove(tree.line)
-                del self._exchanged[tree.line]
-                is_case |= lead(self._written.line(tree.line)) == "CASE"
+            if tree.line in self._readings:
+                if self._read_otherwise(tree.line):
+                    continue
             else:
                 self._failures.append(
                     SyntaxFailure(
@@ -126,8 +127,10 @@ class _Recovery:
                         follows,
                     )
                 )
-                if cause is None and self._shorten(tree.line, tree.column):
-                    continue
+                if cause is None:
+                    self._readings[tree.line] = self._readings_of(tree.line, tree.column, block)
+                    if self._read_otherwise(tree.line):
+                        continue
             if not (
                 (is_case and self._write(tree.line, "CASE 0"))
                 or self._open(tree.line, block)
@@ -149,23 +152,31 @@ class _Recovery:
             self._is_cut,
         )
 
-    def _is_orphan(self, line: int) -> bool:
-        """Whether a line closes or continues a block."""
+    def _is_orphan(self, line: int, token: str) -> bool:
+        """Whether a line that fails at a token closes or continues a block with it."""
         word = lead(self._written.line(line))
-        return word in CLOSERS or word in BRANCHES
+        return word == token.upper() and (word in CLOSERS or word in BRANCHES)
 
-    def _shorten(self, line: int, column: int) -> bool:
-        """Read a line that opens or divides a block, or declares a type, up to where it fails."""
-        beginning = self._written.line(line)[: column - 1].rstrip()
-        word = lead(beginning)
+    def _readings_of(self, line: int, column: int, block: OpenBlock | None) -> Iterator[str]:
+        """As what a line that opens or divides a block, or declares a type, can be read.
+
+        Up to where it fails, else with its word and what goes through the block once.
+        """
+        written = self._written.line(line)
+        beginning = written[: column - 1].rstrip()
+        word = lead(written)
         if _TYPE.match(beginning):
-            beginning = beginning.rpartition(",")[0]
-        elif word not in BLOCKS and word not in BRANCHES:
-            return False
-        if not beginning or not self._write(line, beginning):
-            return False
-        self._shortened.add(line)
-        return True
+            yield beginning.rpartition(",")[0]
+        elif lead(beginning) in BLOCKS or lead(beginning) in BRANCHES:
+            yield beginning
+        if word in _ONCE and (word != "UNTIL" or (block is not None and block.closer == word)):
+            yield _ONCE[word].format((*_NAME.findall(written), "")[1])
+
+    def _read_otherwise(self, line: int) -> bool:
+        """Read a line as the next that it may be; as it was where there is none."""
+        if self._exchanged.pop(line, None) is not None:
+            self._dropped.discard(line)
+        return any(text and self._write(line, text) for text in self._readings[line])
 
     def _open(self, line: int, block: OpenBlock | None) -> bool:
         """Read a line outside all routines as the beginning of the one that ends below it."""

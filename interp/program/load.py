@@ -24,6 +24,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
+from interp.standins.missing_returns import with_returns
 from interp.standins.unreadable_lines import readable
 from interp.values.faults import BudgetExhausted, LinkError
 from support.lazy_dataclass import dataclass
@@ -291,7 +292,7 @@ def _checked(
     stand_ins: tuple[StandIn, ...] = ()
     if stands_in:
         whole = complete(project, sources)
-        project, stand_ins = whole.project, tuple(whole.stand_ins)
+        project, stand_ins = with_returns(whole.project), tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}
     units = _units(project, sources, typed_module if stands_in and not strict else check_module)
     files = {unit.module.path: (unit.module.table, unit.source) for unit in units.values()}
@@ -304,8 +305,8 @@ def _checked(
 
 
 def with_main(program: CheckedProgram, source: Source) -> CheckedProgram:
-    """A program that is not strict with another text of its first file."""
-    project = extended(program.project, [File(source.path, _read(source))])
+    """A program in which things stand in, with another text of its first file."""
+    project = with_returns(extended(program.project, [File(source.path, _read(source))]))
     sources = {unit.source.path: unit.source for unit in program.units.values()}
     units = _units(project, sources | {source.path: source}, typed_module)
     main = next(unit for unit in units.values() if unit.source is source)

@@ -2,8 +2,9 @@
 
 A controller selects no such program. Offline most of it can be run all the same: a statement that
 cannot be read becomes a call of `UNREADABLE`, a routine that no file has and for which one stands
-in that does nothing, so that the trace tells when the line was passed. A declaration that cannot be
-read is left out: stand-ins take its place.
+in that does nothing, so that the trace tells when the line was passed; so does a condition, which
+counts as TRUE. A loop that counts is gone through once. A declaration that cannot be read is left
+out: stand-ins take its place.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ _DECLARES: Final = frozenset(
     "DECL GLOBAL CONST INT REAL BOOL CHAR STRUC ENUM SIGNAL CHANNEL EXT EXTP EXTFCT EXTFCTP IMPORT "
     "FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
 )
+_TRUE: Final = re.compile(r"^\s*((?:IF|UNTIL) )TRUE\b")
 _WORD: Final = re.compile(r"\s*(\w*)")
 #: So many are tried one by one where not all can stand together.
 _MOST: Final = 20
@@ -50,6 +52,9 @@ def readable(source: Source) -> Readable | None:
     if isinstance(found.syntax.content, ast.Program):
         blank = {number for number, line in enumerate(lines, start=1) if not line.strip()}
         _put_calls(lines, sorted(found.left_out & blank), source)
+        for number, line in enumerate(lines, start=1):
+            if number in found.left_out:  # a condition in place of one that cannot be read
+                lines[number - 1] = _TRUE.sub(rf"\1{UNREADABLE}()", line)
     text = "\n".join(lines)
     syntax = read_module(text, source.path)
     assert isinstance(syntax, ast.Module), "what was recovered can be read"

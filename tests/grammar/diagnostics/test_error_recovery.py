@@ -131,3 +131,19 @@ def test_any_line_may_be_lost(data: st.DataObject) -> None:
     if isinstance(read_module(text), list):
         found = recover(text)
         assert any(not failure.follows for failure in found.failures)
+
+
+@pytest.mark.parametrize(
+    ("head", "end", "read"),
+    [
+        ("IF A = = 3 THEN", "ENDIF", "IF TRUE THEN"),
+        ("FOR I=1 TOO 3", "ENDFOR", "FOR I=1 TO 1"),
+        ("REPEAT", "UNTIL A > > 3", "UNTIL TRUE"),
+    ],
+)
+def test_blocks_with_a_line_that_cannot_be_read(head: str, end: str, read: str) -> None:
+    """Such a block is gone through once, and only the line is told."""
+    found = recover(f"DEF WORK()\n{head}\nB=1\n{end}\nEND\n")
+    assert found.syntax is not None
+    assert read in [line.rstrip() for line in found.text.splitlines()]
+    assert [False] == [failure.follows for failure in found.failures]
