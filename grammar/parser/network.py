@@ -8,7 +8,7 @@ that a candidate edit costs one rule.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 
 from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
@@ -110,10 +110,10 @@ class Network:
 
     lexer: Lexer
     automata: Mapping[str, RuleAutomaton]
-    shifts: tuple[Mapping[int, int], ...]
-    calls: tuple[tuple[tuple[int, int], ...], ...]
-    final: tuple[bool, ...]
-    rule: tuple[str, ...]
+    shifts: Sequence[Mapping[int, int]]
+    calls: Sequence[Sequence[tuple[int, int]]]
+    final: Sequence[bool]
+    rule: Sequence[str]
     entry: Mapping[str, int]
     start: int
     known: dict[int, Reach] = field(default_factory=dict, compare=False, repr=False)
@@ -212,15 +212,42 @@ _automata: dict[tuple[str, tuple[tuple[str, str], ...]], RuleAutomaton] = {}
 
 def rule_automaton(grammar: Grammar, rule: Rule) -> RuleAutomaton:
     """The minimal automaton of one parser rule over the names of tokens and rules."""
-    quoted = {e.text for e in _elements(rule) if isinstance(e, Literal)}
-    names = {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
+    names = _names(grammar, rule)
     key = (rule.text, tuple(sorted(names.items())))
     found = _automata.get(key)
     if found is None:
         if len(_automata) >= 4_000:
             _automata.clear()
-        found = _automata[key] = _build(rule, names)
+        fragments = _Fragments(names)
+        end = fragments.choice((a.elements for a in rule.alternatives), 0)
+        found = _automata[key] = _minimal(*_subsets(fragments, 0, end))
     return found
+
+
+def exact_automata(grammar: Grammar, rule: Rule) -> Callable[[tuple[int, ...]], RuleAutomaton]:
+    """A rule from an address on, and from its start for the address of nothing.
+
+    Unlike in the minimal automaton, a state stands before an element only where the rule, as it is
+    written, can be there with what has been read; and nothing leads back to the start. The address
+    of a repetition and 0 is where another of its items may begin, with -1 it is behind one.
+    """
+    fragments = _Fragments(_names(grammar, rule), is_split=True)
+    end = fragments.choice((a.elements for a in rule.alternatives), 0)
+    state_of = {at: state for state, found in fragments.places.items() for at in found}
+
+    def automaton(at: tuple[int, ...]) -> RuleAutomaton:
+        start = state_of[at] if at else 0
+        table, final, places = _subsets(fragments, start, end, is_apart=True)
+        ends = frozenset(state for state, is_final in enumerate(final) if is_final)
+        return RuleAutomaton(tuple(table), ends, tuple(map(frozenset, places)))
+
+    return automaton
+
+
+def _names(grammar: Grammar, rule: Rule) -> dict[str, str]:
+    """The tokens that the quoted texts of a rule stand for."""
+    quoted = {e.text for e in _elements(rule) if isinstance(e, Literal)}
+    return {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
 
 
 def _elements(rule: Rule) -> Iterable[Element]:
@@ -235,12 +262,17 @@ def _elements(rule: Rule) -> Iterable[Element]:
 
 
 class _Fragments:
-    """Thompson's construction over symbols; ``None`` is an empty step."""
+    """Thompson's construction over symbols; ``None`` is an empty step.
 
-    def __init__(self, names: Mapping[str, str]) -> None:
+    Alternatives begin in one state, or each in one of its own where they are to be ``is_split``.
+    """
+
+    def __init__(self, names: Mapping[str, str], *, is_split: bool = False) -> None:
         self.names = names
+        self.is_split = is_split
         self.edges: list[list[tuple[Symbol | None, int]]] = [[]]
         self.places: dict[int, list[tuple[int, ...]]] = {}
+        self._reachable: dict[int, frozenset[int]] = {}
 
     def state(self) -> int:
         self.edges.append([])
@@ -252,6 +284,9 @@ class _Fragments:
         end = self.state()
         for number, elements in enumerate(sequences, 1):
             last = start
+            if self.is_split:
+                last = self.state()
+                self.edges[start].append((None, last))
             for place, element in enumerate(elements, 1):
                 self.places.setdefault(last, []).append((*address, number, place))
                 last = self.element(element, last, (*address, number, place))
@@ -271,6 +306,9 @@ class _Fragments:
                 before, after = self.state(), self.state()
                 self.edges[start].append((None, before))
                 end = self.element(item, before, address)
+                if self.is_split:  # where another item may begin, and behind one
+                    self.places.setdefault(before, []).append((*address, 0))
+                    self.places.setdefault(end, []).append((*address, -1))
                 self.edges[end].append((None, after))
                 if operator != "+":
                     self.edges[before].append((None, after))
@@ -285,23 +323,38 @@ class _Fragments:
         self.edges[start].append((symbol, end))
         return end
 
+    def reachable(self, state: int) -> frozenset[int]:
+        """The states reached by empty steps; only for when all steps are there."""
+        found = self._reachable.get(state)
+        if found is None:
+            seen = {state}
+            todo = [state]
+            while todo:
+                for symbol, target in self.edges[todo.pop()]:
+                    if symbol is None and target not in seen:
+                        seen.add(target)
+                        todo.append(target)
+            found = self._reachable[state] = frozenset(seen)
+        return found
 
-def _build(rule: Rule, names: Mapping[str, str]) -> RuleAutomaton:
-    fragments = _Fragments(names)
-    end = fragments.choice((a.elements for a in rule.alternatives), 0)
+
+def _subsets(
+    fragments: _Fragments,
+    start: int,
+    end: int,
+    *,
+    is_apart: bool = False,
+) -> tuple[list[dict[Symbol, int]], list[bool], list[set[tuple[int, ...]]]]:
+    """States with one way on for each symbol: their edges, whether each is final, their places.
+
+    The start ``is_apart`` where nothing is to lead back to it.
+    """
 
     def closure(states: Iterable[int]) -> frozenset[int]:
-        seen = set(states)
-        todo = list(seen)
-        while todo:
-            for symbol, target in fragments.edges[todo.pop()]:
-                if symbol is None and target not in seen:
-                    seen.add(target)
-                    todo.append(target)
-        return frozenset(seen)
+        return frozenset[int]().union(*map(fragments.reachable, states))
 
-    index = {closure([0]): 0}
-    order = list(index)
+    order = [fragments.reachable(start)]
+    index = {} if is_apart else {order[0]: 0}
     table: list[dict[Symbol, int]] = []
     for states in order:  # grows while it is walked
         targets: dict[Symbol, set[int]] = {}
@@ -318,7 +371,7 @@ def _build(rule: Rule, names: Mapping[str, str]) -> RuleAutomaton:
             row[symbol] = index[closed]
         table.append(row)
     places = [{a for s in states for a in fragments.places.get(s, ())} for states in order]
-    return _minimal(table, [end in states for states in order], places)
+    return table, [end in states for states in order], places
 
 
 def _minimal(

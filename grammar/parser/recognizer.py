@@ -10,9 +10,9 @@ expected set.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from operator import length_hint
+from typing import NamedTuple
 
 from grammar.notation.model import Grammar
 from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack, Tail
@@ -24,8 +24,7 @@ from grammar.parser.network import Network, Reach, may_be_empty, network_of
 Frames = tuple[tuple[int, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class State:
+class State(NamedTuple):
     """Where the recogniser stands: a core and the frames below it."""
 
     core: Core
@@ -116,6 +115,15 @@ class Recognizer(Automaton):
         _, tail = self._settled(state.core, state.tail)
         return State(self._core(frozenset([configuration])), tail)
 
+    def settled(self, state: State) -> State:
+        """The state with all frames in its core that it can return to before it reads on."""
+        core, tail = self._settled(state.core, state.tail)
+        return state if core is state.core else State(core, tail)
+
+    def state_of(self, configurations: Iterable[Configuration]) -> State:
+        """The state of some configurations, with nothing below them."""
+        return State(self._core(frozenset(configurations)), self._no_tail)
+
     def at_rule(self, rule: str) -> State:
         """The state at the start of a rule, nothing around it."""
         kernel = frozenset([(self.network.entry[rule], self._bottom)])
@@ -124,6 +132,10 @@ class Recognizer(Automaton):
     def ends(self, state: State) -> bool:
         """Whether what was read from ``state`` on can end there, nothing more being needed."""
         return self._settled(state.core, state.tail)[0].is_open
+
+    def ways(self, core: Core) -> Sequence[tuple[Reach, Stack]]:
+        """What can be done from each configuration of a core, returns followed, and its stack."""
+        return self._ways[core]
 
     # ---------------------------------------------------------------------- the automaton
 

@@ -16,6 +16,7 @@ from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
+from recovery.clustering.detours import DetourReader, Path
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import (
     LINES_READ_TWICE,
@@ -83,6 +84,8 @@ class EditTrial:
         paths = Paths(recognizer.network)
         self._prefix: dict[Frames, list[int]] = {}
         self._wider: dict[tuple[Edit, ...], Recognizer | None] = {}
+        self._reader = DetourReader(recognizer.grammar, recognizer.network)
+        self._forget_paths()
         self._by_rule: dict[str, list[int]] = defaultdict(list)
         self._by_keyword: dict[str, set[int]] = defaultdict(set)
         for number, line in enumerate(lines):
@@ -165,21 +168,56 @@ class EditTrial:
 
     def result(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> TrialResult:
         """Try the edits on the lines ``among`` those they might mend, by default on all of them."""
-        wider = self.wider(edits)
-        if wider is None:
-            return TrialResult(frozenset(), frozenset())
         chosen = self.relevant(edits)
         if among is not None:
             wanted = frozenset(among)
             chosen = [n for n in chosen if n in wanted]
         mended, advanced = [], []
-        for number, start, kinds in self._read_by(wider, edits, chosen):
-            _, failed = wider.run(start, kinds)
+        for number, failed in self._failures(edits, chosen):
             if failed is None:
                 mended.append(number)
             elif failed > self.lines[number].form.index:
                 advanced.append(number)
         return TrialResult(frozenset(mended), frozenset(advanced))
+
+    def _failures(
+        self, edits: Sequence[Edit], numbers: Iterable[int]
+    ) -> Iterator[tuple[int, int | None]]:
+        """Lines with the token at which each fails under the edits; none where they do not fit."""
+        if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
+            self._forget_paths()
+        try:
+            detours = self._reader.detours(edits)
+        except GrammarError:
+            return
+        if detours is not None:
+            chosen = list(numbers)
+            paths = [self._path(number, detours.words) for number in chosen]
+            for number, failed in zip(chosen, self._reader.read(detours, paths), strict=True):
+                begun = len(self._prefix[self.lines[number].form.before])
+                yield number, None if failed is None else failed - begun
+        elif (wider := self.wider(edits)) is not None:
+            for number, start, kinds in self.read_by(wider, edits, numbers):
+                yield number, wider.run(start, kinds)[1]
+
+    def _path(self, number: int, words: frozenset[str]) -> Path:
+        """What leads to a line and what it reads before it fails, with these words reserved."""
+        line = self.lines[number]
+        meant = tuple((place, word) for place, word in line.keywords if word in words)
+        known = self._paths.get((number, meant))
+        if known is None:
+            prefix = self._prefix[line.form.before]
+            kinds = [*prefix, *line.form.kinds]
+            for place, word in meant:
+                kinds[len(prefix) + place] = self._reader.kind(word)
+            known = self._paths[number, meant] = self._reader.path(kinds)
+        return known
+
+    def _forget_paths(self) -> None:
+        """Begin with another reader: what lines have been read with so far takes too much room."""
+        self._reader.recognizer.release()
+        self._reader = DetourReader(self.recognizer.grammar, self.recognizer.network)
+        self._paths: dict[tuple[int, tuple[tuple[int, str], ...]], Path] = {}
 
     def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
         """Whether one of the lines has two readings with the edits; the shortest few are read."""
@@ -189,10 +227,10 @@ class EditTrial:
         short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[:LINES_READ_TWICE]
         return any(
             is_ambiguous(wider, start, kinds)
-            for _, start, kinds in self._read_by(wider, edits, short)
+            for _, start, kinds in self.read_by(wider, edits, short)
         )
 
-    def _read_by(
+    def read_by(
         self, wider: Recognizer, edits: Sequence[Edit], numbers: Iterable[int]
     ) -> Iterator[tuple[int, State, Sequence[int]]]:
         """Lines with the states they begin in and their tokens, as ``wider`` has them."""

@@ -101,7 +101,8 @@ class FileTrial:
             length += len(text)
             if length > MOST_REREAD_TEXT or wider.size > MOST_CORES:
                 break
-            if not text:  # it is gone since the survey
+            # it is gone since the survey, or there is nothing left to be learnt from it
+            if not text or left.issuperset(line for _, line in wanted[place]):
                 continue
             failing = {failure.line for failure in finder.find(text)}
             for at, line in wanted[place]:

@@ -11,13 +11,23 @@ from functools import cache
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from grammar.notation.g4 import read_rule
-from grammar.notation.model import Alternative, Element, Grammar, Group, Literal, Reference, Repeat
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Grammar,
+    GrammarError,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+)
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import NegativeCounter
-from recovery.clustering.edit_trial import edited
+from recovery.clustering.detours import DetourReader, Path
+from recovery.clustering.edit_trial import changed_rules, edited
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
-from recovery.tuning import GENERATED_NEGATIVES, NEGATIVES_SEED
+from recovery.tuning import GENERATED_NEGATIVES, MOST_CONFIGURATIONS_KEPT, NEGATIVES_SEED
 
 
 def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> NegativeCounter:
@@ -27,18 +37,82 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
     """
     recognizer = Recognizer(grammar)
     rejected = NegativeSet((*negatives, *_generated())).rejected_by(recognizer)
+    programs = _Programs(recognizer, rejected)
     known: dict[tuple[Edit, ...], int] = {}
 
     def count_negatives(edits: Sequence[Edit]) -> int:
         key = tuple(edits)
         if key not in known:
-            wider = edited(recognizer, edits)
-            known[key] = (
-                0 if wider is None else len(rejected.accepted(wider, required_tokens(edits, wider)))
-            )
+            try:
+                count = programs.accepted(edits)
+            except GrammarError:
+                count = 0
+            if count is None:
+                wider = edited(recognizer, edits)
+                tokens = wider and required_tokens(edits, grammar, wider.lexer.kind_of)
+                count = len(rejected.accepted(wider, tokens)) if wider and tokens else 0
+            known[key] = count
         return known[key]
 
     return count_negatives
+
+
+class _Programs:
+    """Negatives ready to be read with edits of a grammar that rejects them."""
+
+    def __init__(self, recognizer: Recognizer, negatives: NegativeSet) -> None:
+        self._recognizer = recognizer
+        self._negatives = negatives
+        self._begin()
+
+    def _begin(self) -> None:
+        self._reader = DetourReader(self._recognizer.grammar, self._recognizer.network)
+        self._paths: dict[tuple[int, ...], Path] = {}
+        self._kinds: dict[frozenset[str], list[tuple[tuple[int, ...], frozenset[int]]]] = {}
+        self._having: dict[tuple[frozenset[str], frozenset[int]], dict[int, Path]] = {}
+
+    def accepted(self, edits: Sequence[Edit]) -> int | None:
+        """How many the edits accept; ``None`` where they are no detours (`DetourReader`)."""
+        if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
+            self._reader.recognizer.release()
+            self._begin()
+        reader = self._reader
+        detours = reader.detours(edits)
+        if detours is None:
+            return None
+        kind_of = {**self._recognizer.lexer.kind_of, **{w: reader.kind(w) for w in detours.words}}
+        paths: dict[int, Path] = {}
+        for tokens in required_tokens(edits, self._recognizer.grammar, kind_of):
+            key = detours.words, tokens
+            if key not in self._having:
+                self._having[key] = {
+                    number: self._path(kinds)
+                    for number, (kinds, met) in enumerate(self._cut(detours.words, kind_of))
+                    if tokens <= met
+                }
+            paths |= self._having[key]
+        return sum(read is None for read in reader.read(detours, paths.values()))
+
+    def _path(self, kinds: tuple[int, ...]) -> Path:
+        if kinds not in self._paths:
+            self._paths[kinds] = self._reader.path(kinds)
+        return self._paths[kinds]
+
+    def _cut(
+        self, words: frozenset[str], kind_of: Mapping[str, int]
+    ) -> list[tuple[tuple[int, ...], frozenset[int]]]:
+        """The kinds of each program, all and as a set, with these words reserved."""
+        if words not in self._kinds:
+            lexer = self._recognizer.lexer
+            for word in sorted(words):
+                lexer = lexer.with_keyword(word)
+            kind_here = [kind_of[name] for name in lexer.names]
+            programs = [
+                tuple(kind_here[kind] if kind > 0 else kind for kind in program)
+                for program in self._negatives.kinds(lexer)
+            ]
+            self._kinds[words] = [(program, frozenset(program)) for program in programs]
+        return self._kinds[words]
 
 
 @cache
@@ -49,12 +123,14 @@ def _generated() -> tuple[Negative, ...]:
 # ------------------------------------------------------------------------------ required tokens
 
 
-def required_tokens(edits: Sequence[Edit], wider: Recognizer) -> list[frozenset[int]]:
-    """For each place the edits change, the kinds of the tokens in all that it newly accepts.
+def required_tokens(
+    edits: Sequence[Edit], grammar: Grammar, kind_of: Mapping[str, int]
+) -> list[frozenset[int]]:
+    """For each place the edits change, kinds of tokens in all that it newly accepts.
 
-    ``wider`` is a recogniser of the edited grammar.
+    ``grammar`` is the one that is edited, ``kind_of`` has the kinds of words they reserve too.
     """
-    tokens = _Tokens(wider.grammar, wider.lexer.kind_of)
+    tokens = _Tokens(grammar, kind_of, changed_rules(edits))
     changes = [edit for edit in edits if not isinstance(edit, AddToken)]
     return list(dict.fromkeys(_of_edit(edit, tokens) for edit in changes))
 
@@ -68,10 +144,13 @@ def _of_edit(edit: Edit, tokens: _Tokens) -> frozenset[int]:
 class _Tokens:
     """Tokens that every sentence of something has."""
 
-    def __init__(self, grammar: Grammar, kind_of: Mapping[str, int]) -> None:
+    def __init__(
+        self, grammar: Grammar, kind_of: Mapping[str, int], changed: Iterable[str]
+    ) -> None:
         self._grammar = grammar
         self._kind_of = kind_of
-        self._of_rule: dict[str, frozenset[int]] = {}
+        #: What a rule that is ``changed`` goes without is not known.
+        self._of_rule: dict[str, frozenset[int]] = dict.fromkeys(changed, frozenset())
 
     def of_text(self, text: str) -> frozenset[int]:
         """Tokens of all that a text reads; where it may be left out, of all but nothing."""

@@ -16,6 +16,7 @@ from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.tuning import (
     MOST_ALIGNED,
+    MOST_ALIGNMENTS_KEPT,
     MOST_CHOICES,
     MOST_COLUMNS,
     MOST_LINE_SHAPES,
@@ -23,6 +24,7 @@ from recovery.tuning import (
 )
 
 _Span = tuple[Word, ...]
+_Phrases = tuple[tuple[Word, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,29 +47,50 @@ class _Column:
     cells: dict[int, _Part] = field(default_factory=dict)
 
 
-def common_phrases(
-    phraser: Phraser, phrases: Sequence[Sequence[Word]], near: frozenset[str] = frozenset()
-) -> Iterator[tuple[str, ...]]:
-    """Phrases as symbols, some of them in brackets, that read all of ``phrases``.
+class Aligner:
+    """Aligns phrases under one grammar; remembers what it has worked out."""
 
-    The most restrictive first; none where the phrases have too little in common to be one.
-    """
-    rows = sorted({tuple(_row(phraser, p)) for p in phrases} - {()}, key=_by_length)[:MOST_ALIGNED]
-    if not rows:
-        return
-    columns = _columns(phraser, rows)
-    if len(columns) > MOST_COLUMNS or not _belong_together(columns, len(rows)):
-        return
-    seen = set()
-    for level in range(PHRASE_LEVELS):
-        narrow = [_written(phraser, column, level, near) for column in columns]
-        if not all(narrow):
-            continue
-        for written in (_as_usual(phraser, columns, narrow, len(rows)), narrow):
-            symbols = tuple(_grouped(columns, written, len(rows)))
-            if symbols not in seen:
-                seen.add(symbols)
-                yield symbols
+    def __init__(self, phraser: Phraser) -> None:
+        self._phraser = phraser
+        self._columns: dict[_Phrases, tuple[Sequence[_Column], int]] = {}
+        self._known: dict[tuple[_Phrases, frozenset[str]], list[tuple[str, ...]]] = {}
+
+    def common_phrases(
+        self, phrases: Sequence[Sequence[Word]], near: frozenset[str] = frozenset()
+    ) -> list[tuple[str, ...]]:
+        """Phrases as symbols, some of them in brackets, that read all of ``phrases``.
+
+        The most restrictive first; none where the phrases have too little in common to be one.
+        """
+        key = tuple(map(tuple, phrases))
+        found = self._known.get((key, near))
+        if found is None:
+            if len(self._known) >= MOST_ALIGNMENTS_KEPT:
+                self._known.clear()
+                self._columns.clear()
+            if key not in self._columns:
+                self._columns[key] = self._aligned(phrases)
+            found = list(dict.fromkeys(self._spelled(*self._columns[key], near)))
+            self._known[key, near] = found
+        return found
+
+    def _spelled(
+        self, columns: Sequence[_Column], rows: int, near: frozenset[str]
+    ) -> Iterator[tuple[str, ...]]:
+        for level in range(PHRASE_LEVELS if columns else 0):
+            narrow = [_written(self._phraser, column, level, near) for column in columns]
+            if all(narrow):
+                for written in (_as_usual(self._phraser, columns, narrow, rows), narrow):
+                    yield tuple(_grouped(columns, written, rows))
+
+    def _aligned(self, phrases: Sequence[Sequence[Word]]) -> tuple[Sequence[_Column], int]:
+        """The columns of the phrases, and of how many rows; none where they are no one phrase."""
+        cut = {tuple(_row(self._phraser, p)) for p in phrases} - {()}
+        rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
+        columns = _columns(self._phraser, rows)
+        if len(columns) > MOST_COLUMNS or not (columns and _belong_together(columns, len(rows))):
+            return (), 0
+        return columns, len(rows)
 
 
 def _belong_together(columns: Sequence[_Column], rows: int) -> bool:

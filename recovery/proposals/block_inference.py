@@ -16,9 +16,8 @@ from dataclasses import dataclass, field
 from grammar.blocks import BLOCKS
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.alignment import common_phrases
+from recovery.proposals.alignment import Aligner
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES, MOST_MIDDLES
 
@@ -48,11 +47,11 @@ class _BlockLines:
 class BlockFinder:
     """Finds blocks in texts, for one grammar."""
 
-    def __init__(self, recognizer: Recognizer, profile: GrammarProfile, phraser: Phraser) -> None:
+    def __init__(self, recognizer: Recognizer, profile: GrammarProfile, aligner: Aligner) -> None:
         self.recognizer = recognizer
         self.profile = profile
         self.vocabulary = profile.vocabulary
-        self.phraser = phraser
+        self.aligner = aligner
 
     def find(self, opener: str, texts: Sequence[str], meant: frozenset[str]) -> list[Block]:
         """Forms of the block that a word opens, the most restrictive first; none if it opens none.
@@ -173,7 +172,7 @@ class BlockFinder:
                 yield (*symbols, *closers[min(level, len(closers) - 1)])
 
     def _phrases(self, lines: Sequence[tuple[Word, ...]]) -> list[tuple[str, ...]]:
-        return list(common_phrases(self.phraser, list(dict.fromkeys(lines))))
+        return self.aligner.common_phrases(list(dict.fromkeys(lines)))
 
 
 _BLOCK_WORDS = frozenset(BLOCKS).union(*(block.words for block in BLOCKS.values()))

@@ -18,7 +18,7 @@ from typing import TypeVar
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Edit, Insert, Widen
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.alignment import common_phrases
+from recovery.proposals.alignment import Aligner
 from recovery.proposals.block_inference import Block, BlockFinder
 from recovery.proposals.edit_site import EditSite, LinePattern, RankedEdits
 from recovery.proposals.grammar_profile import GrammarProfile
@@ -29,6 +29,7 @@ from recovery.proposals.site_finder import EditSiteFinder
 from recovery.tuning import (
     BLOCK_PART_BONUS,
     BREADTH_FACTOR,
+    MOST_SITED_LINES_KEPT,
     NO_LINE_RULE_COST,
     SAME_RULE_FACTOR,
     UNLIKELY_COST,
@@ -60,9 +61,11 @@ class CandidateFinder:
         self.recognizer = recognizer
         self.profile = GrammarProfile(recognizer)
         self.phraser = Phraser(recognizer)
-        self._blocks = BlockFinder(recognizer, self.profile, self.phraser)
+        self._aligner = Aligner(self.phraser)
+        self._blocks = BlockFinder(recognizer, self.profile, self._aligner)
         self.similarity = Similarity(self.profile)
         self._site_finder = EditSiteFinder(self.profile, self.similarity, self.phraser)
+        self._sites: dict[LinePattern, list[EditSite | RankedEdits]] = {}
 
     def find_common(
         self, lines: Sequence[LinePattern], most: int, core: int = 0
@@ -77,7 +80,7 @@ class CandidateFinder:
         support: dict[tuple[Edit, ...], set[int]] = defaultdict(set)
         ranks: dict[tuple[Edit, ...], int] = {}
         for number, line in enumerate(lines):
-            for found in self._site_finder.find(line):
+            for found in self._sites_of(line):
                 if isinstance(found, EditSite):
                     first = self.phraser.sign(found.words[:1]) or ""
                     slots[found.kind, found.rule, found.place, first][number].append(found)
@@ -104,13 +107,21 @@ class CandidateFinder:
         expected = {edits: _gain_expected(len(support[edits]), ranks[edits]) for edits in ranks}
         in_rule: Counter[str] = Counter()
         varied: dict[tuple[Edit, ...], float] = {}
-        for edits in sorted(ranks, key=lambda e: (-expected[e], str(e))):
+        spelled = {edits: str(edits) for edits in ranks}
+        for edits in sorted(ranks, key=lambda e: (-expected[e], spelled[e])):
             if not self.profile.is_left_recursive(edits[-1]):
                 rule = getattr(edits[-1], "rule", "")
                 varied[edits] = expected[edits] * SAME_RULE_FACTOR ** in_rule[rule]
                 in_rule[rule] += 1
-        ordered = sorted(varied, key=lambda e: (-varied[e], str(e)))
+        ordered = sorted(varied, key=lambda e: (-varied[e], spelled[e]))
         return [Candidate(edits, ranks[edits]) for edits in ordered]
+
+    def _sites_of(self, line: LinePattern) -> list[EditSite | RankedEdits]:
+        if line not in self._sites:
+            if len(self._sites) >= MOST_SITED_LINES_KEPT:
+                self._sites.clear()
+            self._sites[line] = list(self._site_finder.find(line))
+        return self._sites[line]
 
     def find_blocks(
         self, line: LinePattern, opener: str, texts: Sequence[str], meant: frozenset[str]
@@ -159,7 +170,7 @@ class CandidateFinder:
         words = [word for phrase in phrases for word in phrase]
         near = self.profile.near(some.rule)
         units = [_unit(phrase) or phrase for phrase in phrases]
-        for symbols in common_phrases(self.phraser, units, near):
+        for symbols in self._aligner.common_phrases(units, near):
             yield from self._written(some, words, symbols, looped=units != phrases)
 
     # ------------------------------------------------------------------------------ the edits

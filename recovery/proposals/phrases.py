@@ -35,6 +35,8 @@ class Phraser:
         self.collocations = Collocations(recognizer)
         self.matcher = RuleMatcher(recognizer)
         self.segmenter = Segmenter(self.matcher)
+        self._breadths: dict[tuple[str, ...], int] = {}
+        self._known_levels: dict[tuple[frozenset[str], frozenset[str]], tuple[str, ...]] = {}
 
     @cached_property
     def _callers(self) -> dict[str, frozenset[str]]:
@@ -109,7 +111,12 @@ class Phraser:
         What the grammar usually writes in such a place (`recovery.proposals.collocations`) counts
         little; what is narrower than that counts as unlikely to be all that is meant.
         """
-        return sum(self._cost(before, symbol) for before, symbol in symbols_in(symbols))
+        key = tuple(symbols)
+        found = self._breadths.get(key)
+        if found is None:
+            found = sum(self._cost(before, symbol) for before, symbol in symbols_in(symbols))
+            self._breadths[key] = found
+        return found
 
     def _cost(self, before: Before, symbol: str) -> int:
         rule = self.collocations.written_by.get(symbol, symbol)
@@ -241,6 +248,12 @@ class Phraser:
         return self._levels_of(rules, near)
 
     def _levels_of(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
+        found = self._known_levels.get((rules, near))
+        if found is None:
+            found = self._known_levels[rules, near] = self._narrow_to_wide(rules, near)
+        return found
+
+    def _narrow_to_wide(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
         close = sorted(rules & near)[:MOST_NEAR_RULES]
         rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
         # a rule that nothing uses was written to be used: it comes first

@@ -170,6 +170,26 @@ def test_candidates_mend_what_they_say() -> None:
             assert expected & relevant <= trial().result(candidate.edits).mended
 
 
+@pytest.mark.parametrize("number", range(0, len(FAILING), 3))
+def test_a_detour_is_what_the_edited_grammar_reads(number: int) -> None:
+    """Candidates read as detours do to lines what a recogniser of the edited grammar does."""
+    finder = CandidateFinder(RECOGNIZER)
+    tried = trial()
+    found = finder.find_common([tried.lines[number]], MOST_TRIED)
+    for candidate in Random(number).sample(found, min(30, len(found))):
+        wider, places = edited(RECOGNIZER, candidate.edits), tried.relevant(candidate.edits)
+        mended, advanced = set(), set()
+        for place, start, kinds in tried.read_by(wider, candidate.edits, places) if wider else ():
+            assert wider is not None
+            read = wider.run(start, kinds)[1]
+            if read is None:
+                mended.add(place)
+            elif read > tried.lines[place].form.index:
+                advanced.add(place)
+        expected = TrialResult(frozenset(mended), frozenset(advanced))
+        assert expected == tried.result(candidate.edits), candidate
+
+
 def words_of(line: LinePattern) -> set[str]:
     return {word for _, word in line.keywords}
 

@@ -16,7 +16,8 @@ RECOGNIZER = Recognizer(read_file(GRAMMAR))
 def used(*edits: Edit) -> list[set[str]]:
     wider = edited(RECOGNIZER, edits)
     assert wider is not None
-    return [{wider.lexer.names[kind] for kind in kinds} for kinds in required_tokens(edits, wider)]
+    found = required_tokens(edits, RECOGNIZER.grammar, wider.lexer.kind_of)
+    return [{wider.lexer.names[kind] for kind in kinds} for kinds in found]
 
 
 @pytest.mark.parametrize(

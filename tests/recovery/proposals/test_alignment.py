@@ -5,7 +5,7 @@ import pytest
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.alignment import common_phrases
+from recovery.proposals.alignment import Aligner
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.segmentation import Word
 
@@ -21,7 +21,9 @@ def words_of(text: str) -> list[Word]:
 
 
 def common(*texts: str) -> list[str]:
-    return [" ".join(symbols) for symbols in common_phrases(PHRASER, list(map(words_of, texts)))]
+    return [
+        " ".join(symbols) for symbols in Aligner(PHRASER).common_phrases(list(map(words_of, texts)))
+    ]
 
 
 @pytest.mark.parametrize(
@@ -61,5 +63,5 @@ def test_a_word_that_is_a_name_elsewhere_is_a_word_between_operands() -> None:
     kinds = [[(k, None) for k in grammar.kinds(t)[:-1]] for t in ("HALT A DELAY=1", "HALT B")]
     assert ("HALT", "variable", "(DELAY '=' number)?") in [
         tuple("variable" if s in ("name", "variable", "expression") else s for s in symbols)
-        for symbols in common_phrases(phraser, kinds)
+        for symbols in Aligner(phraser).common_phrases(kinds)
     ]

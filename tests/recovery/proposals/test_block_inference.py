@@ -4,6 +4,7 @@ from grammar.notation.edits import RemoveAlternative, RemoveRule, apply
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
+from recovery.proposals.alignment import Aligner
 from recovery.proposals.block_inference import BlockFinder
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
@@ -14,7 +15,7 @@ NO_WHILE = apply(PRELIMINARY, [RemoveAlternative("statement", 4), RemoveRule("wh
 
 def blocks(opener: str, *bodies: str, meant: frozenset[str] = frozenset()) -> list[str]:
     recognizer = Recognizer(NO_WHILE)
-    finder = BlockFinder(recognizer, GrammarProfile(recognizer), Phraser(recognizer))
+    finder = BlockFinder(recognizer, GrammarProfile(recognizer), Aligner(Phraser(recognizer)))
     texts = [f"DEF A()\n{body}\nEND\n" for body in bodies]
     return [" ".join(block.symbols) for block in finder.find(opener, texts, meant)]
 

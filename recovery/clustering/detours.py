@@ -1,0 +1,342 @@
+"""Edits as detours: ways around, all on one recogniser.
+
+An edit that only adds lets a rule be left at a place, another text be read, and the rule be taken
+up again at a place behind. The texts and the rests of rules become more positions of one network,
+which nothing in the grammar leads to. So all edits share one automaton: a line is read up to where
+an edit can be used, over its detour, and from there on as the grammar reads it, mostly in states
+that are known. That costs far less than a recogniser for each edit.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+
+from grammar.notation.addresses import Address, element_at, sequence_at
+from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, MakeOptional, Widen
+from grammar.notation.g4 import read_rule
+from grammar.notation.model import Alternative, Grammar, GrammarError, Repeat, Rule
+from grammar.parser.lazy_automaton import Configuration, Core, Tail
+from grammar.parser.network import Network, Reach, RuleAutomaton, exact_automata
+from grammar.parser.recognizer import Recognizer, State
+from recovery.tuning import MOST_READINGS
+
+#: Where a detour begins, and the position to return to behind it, where it is a text.
+_Detour = tuple[int, int | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Detours:
+    """What edits add: the detours from each position, the words they reserve.
+
+    ``starts`` remembers what they lead to from a core, for a kind of token.
+    """
+
+    at: dict[int, list[_Detour]]
+    words: frozenset[str]
+    starts: dict[tuple[Core, int], Core | None] = field(default_factory=dict, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """Tokens that cannot all be read, and the states before each until then.
+
+    ``met`` are these states with the number of the token.
+    """
+
+    kinds: Sequence[int]
+    states: Sequence[State]
+    cores: frozenset[Core]
+    met: frozenset[tuple[Core, Tail, int]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """The detour of one edit, and the place of its rule where it begins, its start where none.
+
+    ``rest`` are the positions of the rest of the rule behind it, of which it does not begin at
+    the one that is ``never`` to be left by it again.
+    """
+
+    rule: str
+    place: Address | None
+    detour: _Detour
+    rest: range = range(0)
+    never: int = -1
+
+
+_ADDING = AddToken | AddAlternative | Insert | Widen | MakeOptional
+_NOTHING = RuleAutomaton(({},), frozenset([0]), (frozenset(),))
+
+
+class DetourReader:
+    """Reads under edits of one grammar."""
+
+    def __init__(self, grammar: Grammar, network: Network) -> None:
+        self._grammar = grammar
+        self._lexer = network.lexer
+        self._shifts: list[Mapping[int, int]] = []
+        self._calls: list[Sequence[tuple[int, int]]] = []
+        self._final: list[bool] = []
+        self._rule: list[str] = []
+        self._entry: dict[str, int] = {}
+        self._places: list[frozenset[Address]] = []
+        self._kinds: dict[str, int] = {}  # of words that no rule has
+        self._exact = cache(lambda name: exact_automata(grammar, grammar.by_name[name]))
+        self._texts: dict[str, tuple[int, bool, bool, frozenset[str]]] = {}
+        self._rests: dict[tuple[str, Address], range] = {}
+        self._ends: dict[str, int] = {}
+        self._indexed: set[Core] = set()
+        self._cores_at: dict[int, set[Core]] = defaultdict(set)
+        self._standing: dict[Reach, dict[int, list[tuple[int, ...]]]] = {}
+        automata = {name: self._exact(name)(()) for name in network.entry}
+        size = 0
+        for name, automaton in automata.items():
+            self._entry[name] = size
+            size += len(automaton.edges)
+        self._whole = {name: self._added(name, automaton) for name, automaton in automata.items()}
+        entry = self._entry
+        self.recognizer = Recognizer(
+            grammar,
+            Network(
+                network.lexer,
+                automata,
+                self._shifts,
+                self._calls,
+                self._final,
+                self._rule,
+                entry,
+                entry[grammar.start],
+            ),
+        )
+        self.recognizer.most_ways = MOST_READINGS
+
+    def kind(self, word: str) -> int:
+        """The kind of a word that edits reserve."""
+        return self._kinds.setdefault(word, len(self._lexer.names) + len(self._kinds))
+
+    # ------------------------------------------------------------------------------- edits
+
+    def detours(self, edits: Sequence[Edit]) -> Detours | None:
+        """The edits as detours; ``None`` where they are more than that.
+
+        Raises `GrammarError` where they do not fit the grammar.
+        """
+        if not all(isinstance(edit, _ADDING) for edit in edits):
+            return None
+        words = frozenset(edit.name for edit in edits if isinstance(edit, AddToken))
+        if not self._grammar.by_name.keys().isdisjoint(words):
+            raise GrammarError("a token exists already")
+        found = [self._detour(edit, words) for edit in edits if not isinstance(edit, AddToken)]
+        ways = [way for way in found if way is not None]
+        if len(ways) < len(found):
+            return None
+        at: dict[int, list[_Detour]] = {}
+        for way in ways:
+            for position in {
+                *self._whole[way.rule],
+                *(p for other in ways if other.rule == way.rule for p in other.rest),
+            }:
+                if way.place is None:
+                    begins = position == self._entry[way.rule]
+                else:
+                    begins = position != way.never and way.place in self._places[position]
+                if begins:
+                    at.setdefault(position, []).append(way.detour)
+        for target in {target for some in at.values() for target, _ in some}:
+            if any(p in at and back for p, back in self.recognizer.network.reach(target).sites):
+                raise GrammarError("a rule would begin with itself")
+        return Detours(at, words)
+
+    def _detour(self, edit: Edit, words: frozenset[str]) -> _Way | None:
+        """What an edit adds; ``None`` where it does more."""
+        assert isinstance(edit, AddAlternative | Insert | Widen | MakeOptional)
+        rule = self._grammar.by_name.get(edit.rule)
+        if rule is None or rule.is_lexer:
+            raise GrammarError(f"there is no rule {edit.rule}")
+        if isinstance(edit, AddAlternative):
+            return _Way(edit.rule, None, (self._text(edit.text, words)[0], self._end(edit.rule)))
+        place, sequence = edit.at, sequence_at(rule, edit.at[:-1])
+        behind = (*place[:-1], place[-1] + 1)
+        if isinstance(edit, Insert):
+            first, may_be_left_out, is_choice = self._text(edit.text, words)
+            if not may_be_left_out or is_choice or not sequence.elements:
+                return None
+            rest = self._rest(edit.rule, place)
+            return _Way(edit.rule, place, (first, rest[0]), rest, rest[0])
+        if isinstance(edit, Widen):
+            if isinstance(element_at(rule, place), Repeat):
+                place, behind = (*place, 0), (*place, -1)
+            rest = self._rest(edit.rule, behind)
+            return _Way(edit.rule, place, (self._text(edit.text, words)[0], rest[0]), rest)
+        behind = (*place[:-1], place[-1] + edit.count)
+        rest = self._rest(edit.rule, behind)
+        return _Way(edit.rule, place, (rest[0], None), rest)
+
+    def _text(self, text: str, words: frozenset[str]) -> tuple[int, bool, bool]:
+        """Where a text begins, whether it may be left out, whether it is a choice unbracketed."""
+        known = self._texts.get(text)
+        if known is None:
+            rule = _read(text)
+            automaton = exact_automata(self._grammar, rule)(())
+            used = {symbol for edges in automaton.edges for symbol in edges}
+            new = used - self._entry.keys() - self._lexer.kind_of.keys()
+            first = self._added("", automaton)[0]
+            known = (first, 0 in automaton.final, len(rule.alternatives) > 1, frozenset(new))
+            self._texts[text] = known
+        if not known[3] <= words:
+            raise GrammarError(f"there is no token in {text}")
+        return known[:3]
+
+    def _rest(self, rule: str, at: Address) -> range:
+        """The positions of a rule from an address on."""
+        found = self._rests.get((rule, at))
+        if found is None:
+            try:
+                automaton = self._exact(rule)(at)
+            except KeyError:
+                raise GrammarError(f"rule {rule} has no place {at}") from None
+            found = self._rests[rule, at] = self._added(rule, automaton)
+        return found
+
+    def _end(self, rule: str) -> int:
+        """A position at the end of a rule."""
+        if rule not in self._ends:
+            self._ends[rule] = self._added(rule, _NOTHING)[0]
+        return self._ends[rule]
+
+    def _added(self, rule: str, automaton: RuleAutomaton) -> range:
+        """The positions that an automaton gets, as part of a rule."""
+        base = len(self._rule)
+        for state, edges in enumerate(automaton.edges):
+            calls, shifts = [], {}
+            for symbol, target in edges.items():
+                if symbol in self._entry:
+                    calls.append((self._entry[symbol], base + target))
+                else:
+                    kind = self._lexer.kind_of.get(symbol)
+                    shifts[self.kind(symbol) if kind is None else kind] = base + target
+            self._shifts.append(shifts)
+            self._calls.append(calls)
+            self._final.append(state in automaton.final)
+            self._rule.append(rule)
+            self._places.append(automaton.places[state])
+        return range(base, len(self._rule))
+
+    # ----------------------------------------------------------------------------- reading
+
+    def read(self, detours: Detours, paths: Iterable[Path]) -> Iterator[int | None]:
+        """How many tokens of each path can be read with the edits; ``None`` where all can be."""
+        paths = list(paths)
+        cores = frozenset[Core]().union(*(self._cores_at[position] for position in detours.at))
+        for path in paths:
+            yield (
+                len(path.states) - 1
+                if cores.isdisjoint(path.cores)
+                else self._read(detours, path, cores)
+            )
+
+    def _read(self, detours: Detours, path: Path, cores: frozenset[Core]) -> int | None:
+        recognizer, kinds = self.recognizer, path.kinds
+        furthest = len(path.states) - 1
+        met: set[tuple[Core, Tail, int]] = set()
+        # from the failure backwards: what is missing is mostly missing there
+        todo = [(state, n) for n, state in enumerate(path.states) if state.core in cores]
+        while todo:
+            state, number = todo.pop()
+            start = self._start(detours, state.core, kinds[number])
+            if start is None:
+                continue
+            state = State(start, state.tail)
+            while (key := (state.core, state.tail, number)) not in met and key not in path.met:
+                met.add(key)
+                following = recognizer.step(state, kinds[number])
+                if following is None:
+                    furthest = max(furthest, number)
+                    break
+                number += 1
+                if number == len(kinds):
+                    return None
+                state = recognizer.settled(following)
+                todo.append((state, number))
+        return furthest
+
+    def path(self, kinds: Sequence[int]) -> Path:
+        """How far tokens can be read without edits."""
+        recognizer = self.recognizer
+        state: State | None = recognizer.start
+        states = []
+        for kind in kinds:
+            assert state is not None
+            states.append(recognizer.settled(state))
+            state = recognizer.step(state, kind)
+            if state is None:
+                break
+        cores = frozenset(state.core for state in states)
+        for core in cores - self._indexed:
+            for reach, _ in recognizer.ways(core):
+                for position in self._standing.get(reach) or self._stands(reach):
+                    self._cores_at[position].add(core)
+        self._indexed |= cores
+        met = frozenset((state.core, state.tail, n) for n, state in enumerate(states))
+        return Path(kinds, states, cores, met)
+
+    def _start(self, detours: Detours, core: Core, kind: int) -> Core | None:
+        """The core of all that detours from a core lead to, where it can read the kind of token."""
+        try:
+            return detours.starts[core, kind]
+        except KeyError:
+            start = self._started(detours, core)
+            if start is not None and not start.is_open:
+                ways = self.recognizer.ways(start)
+                start = start if any(reach[kind] for reach, _ in ways) else None
+            detours.starts[core, kind] = start
+            return start
+
+    def _stands(self, reach: Reach) -> dict[int, list[tuple[int, ...]]]:
+        """The positions of rules as they are that are reached, with those to return to."""
+        found: dict[int, list[tuple[int, ...]]] = {}
+        for position, returns in reach.sites:
+            found.setdefault(position, []).append(returns)
+        self._standing[reach] = found
+        return found
+
+    def _started(self, detours: Detours, core: Core) -> Core | None:
+        recognizer, at = self.recognizer, detours.at
+        found: set[Configuration] = set()
+        fresh: set[Configuration] = set()
+        ways = recognizer.ways(core)
+        while True:
+            for reach, stack in ways:
+                standing = self._standing.get(reach) or self._stands(reach)
+                for position in at.keys() & standing.keys():
+                    for returns in standing[position]:
+                        for target, back in at[position]:
+                            above = stack.pushed(returns)
+                            fresh.add((target, above if back is None else above.push(back)))
+            fresh -= found
+            if not fresh:
+                break
+            found |= fresh
+            if len(found) > MOST_READINGS:
+                return None
+            ways = recognizer.ways(recognizer.state_of(fresh).core)
+            fresh = set()
+        return recognizer.state_of(found).core if found else None
+
+
+#: What stands between blanks outside of brackets and quotes, brackets in brackets taken for one.
+_PARTS = re.compile(r"(?:'(?:[^'\\]|\\.)*'|\((?:[^()']|'(?:[^'\\]|\\.)*')*\)|[^\s'()])+")
+
+
+def _read(text: str) -> Rule:
+    """The text as a rule without a name of its own; most of its parts have been read before."""
+    parts = _PARTS.findall(text)
+    if " ".join(parts) != text or "|" in parts:
+        return read_rule(f"text : {text} ;")
+    read = [read_rule(f"text : {part} ;") for part in parts]
+    elements = tuple(e for rule in read for e in rule.alternatives[0].elements)
+    return Rule("text", (Alternative(elements, None, (0, 0)),))
