@@ -117,7 +117,8 @@ def _verdict(record: Record, mending: Sequence[MendingStep]) -> str:
     for target in _TARGETS:
         reached = next((step for step in mending if step.parsed >= target * files), None)
         if reached is not None and parsed < target * files:
-            share = "every file parses" if target == 1.0 else f"{target:.0%} of the files parse"
+            best = max(one for one in _TARGETS if reached.parsed >= one * files)
+            share = "every file parses" if best == 1.0 else f"{best:.0%} of the files parse"
             return f"Mend {_these(reached.place)} and {share}.".replace("%", " %")
     last = mending[-1]
     return f"Mend {_these(last.place)} and {last.share} of the files parse."

@@ -151,7 +151,8 @@ def _with_drivers(tests: tuple[ProgramTest, ...]) -> tuple[Prepared, Mapping[int
             with_drivers(program, [driver], stand_ins)
             drivers.append(driver)
         except (DriverError, LinkError) as error:
-            errors[place] = str(error)
+            hint = "" if test.call else '; call = "…" says what is called, with its arguments'
+            errors[place] = f"{error}{hint}"
     made = with_drivers(program, drivers, stand_ins if drivers else {})
     loaded = load(made, program.main.module.path, strict=False, stands_in=True)
     known = {one.name.upper() for one in program.stand_ins}

@@ -56,7 +56,9 @@ function program() {
 }
 
 const shown = new Set(["t", "task", "kind", "at"]);
-const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name)).map(([name, value]) => (name === "what" ? value : `${name} ${value}`)).join(", ");
+/** Fields whose values speak for themselves. */
+const bare = new Set(["what", "name", "text", "motion_kind"]);
+const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name)).map(([name, value]) => (bare.has(name) ? value : `${name.replaceAll("_", " ")} ${value}`)).join(", ");
 
 const MORE = 500; // rows at a time
 

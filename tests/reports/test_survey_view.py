@@ -52,6 +52,7 @@ def test_sizes_have_three_digits_and_a_decimal_unit(octets: float, text: str) ->
     [
         ((80, 96, 100), "Mend the first two clusters and 95 % of the files parse."),
         ((95, 96, 100), "Mend the first cluster and 95 % of the files parse."),
+        ((80, 100, 100), "Mend the first two clusters and every file parses."),
         ((80, 85, 90), "Mend the first three clusters and 90.0 % of the files parse."),
     ],
 )

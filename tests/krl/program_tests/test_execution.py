@@ -166,3 +166,12 @@ def test_a_recording_is_compared_and_told_as_a_diff(write: Write) -> None:
     tests = read_tests(path)
     outcome = run_test(tests[0], tests, executor=None, update=False)
     assert any("fault" in line and line.startswith("    +") for line in outcome.failures)
+
+
+def test_without_a_call_a_routine_with_parameters_says_what_to_write(write: Write) -> None:
+    """The line names the key that would mend it."""
+    path = write("[[test]]\nname = 'x'\nexpect = ['ends']\n")
+    path.with_name("work.src").write_text("DEF work(n:IN)\nINT n\nEND\n", encoding="utf-8")
+    tests = read_tests(path)
+    said = run_test(tests[0], tests, executor=None, update=False).failures
+    assert 'call = "…" says what is called' in said[0]
