@@ -173,5 +173,5 @@ def test_without_a_call_a_routine_with_parameters_says_what_to_write(write: Writ
     path = write("[[test]]\nname = 'x'\nexpect = ['ends']\n")
     path.with_name("work.src").write_text("DEF work(n:IN)\nINT n\nEND\n", encoding="utf-8")
     tests = read_tests(path)
-    said = run_test(tests[0], tests, executor=None, update=False).failures
-    assert 'call = "…" says what is called' in said[0]
+    with pytest.raises(TestFileError, match='call = "…" says what is called'):
+        run_test(tests[0], tests, executor=None, update=False)
