@@ -13,7 +13,7 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import count
 from pathlib import Path
@@ -42,6 +42,8 @@ _MOST_KEPT: Final = 500
 _SMALL: Final = 30
 #: And of one that is compiled twice, for calls and for the interpreter.
 _MOST_TWICE: Final = 150
+#: What is longer the interpreter runs: the C compiler takes time by the square of the steps.
+_MOST_STEPS: Final = 5_000
 #: What a cell of a type holds; of all others a number.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
 
@@ -121,10 +123,14 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
     steps, arrays = [Step(*one) for one in core.steps()], core.arrays()
     firsts = [core.step(number, 0) for number in range(len(program.codes))]
     bodies = map(range, firsts, [*firsts[1:], len(steps)])
-    routines = {
-        number: _Routine(program, number, steps, body, arrays)
+    compiled = {
+        number: body
         for number, (code, body) in enumerate(zip(program.codes, bodies, strict=True))
-        if code.kind is CodeKind.ROUTINE
+        if code.kind is CodeKind.ROUTINE and len(body) <= _MOST_STEPS
+    }
+    routines = {
+        number: _Routine(program, number, steps, body, arrays, compiled.keys())
+        for number, body in compiled.items()
     }
     deferred = set[int]().union(*(routine.deferred for routine in routines.values()))
     yield '#include "compiled.h"'
@@ -150,9 +156,9 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
 class _Routine:
     """Writes the function of a routine: the steps at the places of ``body``.
 
-    Steps work on copies of cells, which the compiler keeps in registers of the processor. The cells
-    themselves are what else looks at them: where the machine stops or calls, and in variables that
-    are reached by an address.
+    ``compiled`` are the routines that have a function. Steps work on copies of cells, which the
+    compiler keeps in registers of the processor. The cells themselves are what else looks at them:
+    where the machine stops or calls, and in variables that are reached by an address.
     """
 
     def __init__(
@@ -162,8 +168,10 @@ class _Routine:
         steps: Sequence[Step],
         body: range,
         arrays: Sequence[Sequence[int]],
+        compiled: Container[int],
     ) -> None:
         self._program = program
+        self._compiled = compiled
         self._number = number
         self._steps = steps
         self._body = body
@@ -291,9 +299,9 @@ class _Routine:
     def _step(self, place: int) -> Iterator[str]:
         step, out = self._steps[place], self._restarts[place - self._body.start]
         name, roles = step.name, roles_of(step.name)
-        if name in CALLS:
+        if name in CALLS and step.b in self._compiled:
             yield self._call(place, out)
-        elif name in INTERPRETED:
+        elif name in CALLS or name in INTERPRETED:
             yield f"goto out_{out};"
         elif name == "STOP":
             yield f"STOP({out})"

@@ -2,9 +2,8 @@
  *
  * What an assignment may refuse, a text that is read and written at once, and values of structures are for
  * Python: then nothing has been done here. */
-#include "texts.h"
+#include "formats.h"
 
-#include <locale.h>
 #include <stdio.h>
 
 /* Widths and precisions; the variables of a call; and the longest number: digits before the point, and behind. */
@@ -260,12 +259,9 @@ static int32_t digits_of(const struct piece *piece, int32_t type, krl_cell value
         char format[] = {'%', '#', '.', '*', strchr("efg", letter) ? letter : 'f', 0};
         if (!piece->is_full)
             memmove(format + 1, format + 2, sizeof format - 2);
-        int32_t length = snprintf(digits, LONGEST_NUMBER, format, precision < 0 ? 6 : precision, fabs(number));
-        char point = *localeconv()->decimal_point;
-        for (int32_t i = 0; i < length; i++)
-            if (digits[i] == point)
-                digits[i] = '.';
-        return length;
+        snprintf(digits, LONGEST_NUMBER, format, precision < 0 ? 6 : precision, fabs(number));
+        krl_show_point(digits);
+        return (int32_t)strlen(digits);
     }
     if (!strchr("diux", letter) || type == KRL_TYPE_REAL)
         return -1;

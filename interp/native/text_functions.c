@@ -1,9 +1,6 @@
 /* The functions on texts, as interp/values/texts.py has them; what gives structures is carried out in
  * Python. */
-#include "texts.h"
-
-#include <locale.h>
-#include <stdlib.h>
+#include "formats.h"
 
 struct known {
     const char *name;
@@ -30,24 +27,6 @@ static const struct known known[KRL_TEXT_FUNCTIONS] = {
 };
 
 /* ---------------------------------------------------------------------------- which it is */
-
-int krl_is_text_array(const struct krl_program *program, const struct krl_part *part)
-{
-    const struct krl_type *type = &program->types[part->handed.type];
-    if (part->handed.mode == KRL_BY_VIEW)
-        return part->handed.dimensions == 1 && part->handed.type == KRL_TYPE_CHAR;
-    return part->handed.mode == KRL_BY_REFERENCE && type->form == KRL_ARRAY && type->count == 1 &&
-           type->element == KRL_TYPE_CHAR;
-}
-
-int32_t krl_constant_named(const struct krl_type *type, const char *name)
-{
-    for (int32_t i = 0; type->form == KRL_ENUMERATION && i < type->count; i++)
-        if (type->constants[i].length == strlen(name) &&
-            memcmp(type->constants[i].bytes, name, strlen(name)) == 0)
-            return i;
-    return -1;
-}
 
 /* The place of the constant that distinguishes letters by their case; -1 where there is none. */
 static int32_t sensitive(const struct krl_program *program, int32_t type)
@@ -113,59 +92,12 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program,
     return KRL_TEXT_FUNCTIONS;
 }
 
-/* ---------------------------------------------------------------------------- texts */
-
-static struct krl_letters used(struct krl_letters all)
-{
-    struct krl_letters found = {all.cells, 0};
-    while (found.count < all.count && (uint32_t)all.cells[found.count] != 0)
-        found.count++;
-    return found;
-}
-
-struct krl_letters krl_array_letters(const struct krl_text_call *call, int32_t argument)
-{
-    const struct krl_part *part = &call->entry->parts[argument];
-    const krl_cell *given = call->inputs + part->place;
-    const struct krl_type *type = &call->machine->program.types[part->handed.type];
-    int32_t count = part->handed.mode == KRL_BY_VIEW ? krl_int_in(given[1]) : type->sizes[0];
-    return (struct krl_letters){krl_referred(call, argument), count};
-}
-
-krl_cell *krl_cells_of(const struct krl_text_call *call, struct krl_letters array)
-{
-    return call->machine->cells + (array.cells - call->machine->cells);
-}
-
-struct krl_letters krl_text_argument(const struct krl_text_call *call, int32_t argument)
-{
-    const struct krl_part *part = &call->entry->parts[argument];
-    return used(part->kind == KRL_PART_STRING ? part->letters : krl_array_letters(call, argument));
-}
-
-int krl_put_text(const struct krl_text_call *call, struct krl_letters array, int32_t behind,
-                 struct krl_letters text)
-{
-    krl_cell *target = krl_cells_of(call, array);
-    int32_t count = behind + text.count;
-    if (count > array.count)
-        return 0;
-    memmove(target + behind, text.cells, (size_t)text.count * sizeof *target);
-    memset(target + count, 0, (size_t)(array.count - count) * sizeof *target);
-    return 1;
-}
-
-/* The letter to compare: the case of A to Z only. */
-static uint32_t cased(krl_cell letter, int is_sensitive)
-{
-    uint32_t code = (uint32_t)letter;
-    return !is_sensitive && code >= 'a' && code <= 'z' ? code - 'a' + 'A' : code;
-}
+/* ---------------------------------------------------------------------------- searching */
 
 static int begins_with(const krl_cell *text, struct krl_letters what, int is_sensitive)
 {
     for (int32_t i = 0; i < what.count; i++)
-        if (cased(text[i], is_sensitive) != cased(what.cells[i], is_sensitive))
+        if (krl_cased(text[i], is_sensitive) != krl_cased(what.cells[i], is_sensitive))
             return 0;
     return 1;
 }
@@ -187,103 +119,14 @@ static int is_sensitive(const struct krl_text_call *call, int32_t argument)
     return place == sensitive(&call->machine->program, part->handed.type);
 }
 
-/* ---------------------------------------------------------------------------- numbers */
-
-/* Longer ones are refused, as by interp/values/texts.py. */
-enum { MOST_DIGITS = 64 };
-
-static int is_digit(struct krl_letters text, int32_t place)
-{
-    return place < text.count && (uint32_t)text.cells[place] - '0' < 10;
-}
-
-static int is_one_of(struct krl_letters text, int32_t place, char one, char other)
-{
-    return place >= 0 && place < text.count &&
-           ((uint32_t)text.cells[place] == (uint32_t)one || (uint32_t)text.cells[place] == (uint32_t)other);
-}
-
-static int32_t behind_digits(struct krl_letters text, int32_t place)
-{
-    while (is_digit(text, place))
-        place++;
-    return place;
-}
-
-int32_t krl_int_length(struct krl_letters text, int32_t place)
-{
-    int32_t first = place + is_one_of(text, place, '+', '-');
-    int32_t end = behind_digits(text, first);
-    return end > first ? end - place : 0;
-}
-
-int32_t krl_real_length(struct krl_letters text, int32_t place)
-{
-    int32_t first = place + is_one_of(text, place, '+', '-');
-    int32_t point = behind_digits(text, first), end = point;
-    if (is_one_of(text, point, '.', '.'))
-        end = point > first || is_digit(text, point + 1) ? behind_digits(text, point + 1) : first;
-    if (end == first)
-        return 0;
-    int32_t exponent = is_one_of(text, end, 'e', 'E') ? krl_int_length(text, end + 1) : 0;
-    return end - place + (exponent > 0 ? 1 + exponent : 0);
-}
-
-int krl_read_bool(struct krl_letters text, krl_cell *value)
-{
-    static const char *const words[] = {"FALSE", "TRUE"};
-    for (int truth = 0; truth < 2; truth++) {
-        int32_t i = 0;
-        while (i < text.count && words[truth][i] != 0 &&
-               cased(text.cells[i], 0) == (uint32_t)words[truth][i])
-            i++;
-        if (i == text.count && words[truth][i] == 0) {
-            *value = krl_of_bool(truth);
-            return 1;
-        }
-    }
-    return 0;
-}
-
-int krl_read_int(struct krl_letters text, krl_cell *value)
-{
-    int64_t number = 0;
-    if (text.count > MOST_DIGITS || text.count == 0 || krl_int_length(text, 0) != text.count)
-        return 0;
-    int is_negative = is_one_of(text, 0, '-', '-');
-    for (int32_t i = is_one_of(text, 0, '+', '-'); i < text.count; i++) {
-        number = number * 10 + (int64_t)((uint32_t)text.cells[i] - '0');
-        if (number > (int64_t)INT32_MAX + is_negative)
-            return 0;
-    }
-    *value = krl_of_int((int32_t)(is_negative ? -number : number));
-    return 1;
-}
-
-int krl_read_real(struct krl_letters text, krl_cell *value)
-{
-    char digits[MOST_DIGITS + 1];
-    if (text.count > MOST_DIGITS || text.count == 0 || krl_real_length(text, 0) != text.count)
-        return 0;
-    for (int32_t i = 0; i < text.count; i++) {
-        digits[i] = (char)(uint32_t)text.cells[i];
-        if (digits[i] == '.')
-            digits[i] = *localeconv()->decimal_point;
-    }
-    digits[text.count] = 0;
-    float number = (float)strtod(digits, NULL);
-    *value = krl_of_real(number);
-    return krl_is_finite(number);
-}
-
 /* Reads a value, blanks around it left out, into the second argument; whether there was one. */
 static krl_cell taken(const struct krl_text_call *call, int (*read)(struct krl_letters, krl_cell *))
 {
     struct krl_letters text = krl_text_argument(call, 0);
     krl_cell value;
-    for (; is_one_of(text, 0, ' ', ' '); text.count--)
+    for (; krl_is_one_of(text, 0, ' ', ' '); text.count--)
         text.cells++;
-    while (is_one_of(text, text.count - 1, ' ', ' '))
+    while (krl_is_one_of(text, text.count - 1, ' ', ' '))
         text.count--;
     if (!read(text, &value))
         return krl_of_bool(0);
@@ -311,7 +154,7 @@ int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
         inputs[0] = krl_of_bool(krl_put_text(&call, array, 0, (struct krl_letters){array.cells, 0}));
         break;
     case KRL_STRADD:
-        text = used(array);
+        text = krl_used(array);
         other = krl_text_argument(&call, 1);
         inputs[0] = krl_of_int(krl_put_text(&call, array, text.count, other) ? text.count + other.count : 0);
         break;

@@ -1,4 +1,4 @@
-/* What text_functions.c and formats.c share: the texts among the inputs of a call. */
+/* Texts among the inputs of a call, and the numbers in them. */
 #ifndef KRL_TEXTS_H
 #define KRL_TEXTS_H
 
@@ -15,7 +15,9 @@ struct krl_text_call {
 struct krl_letters krl_array_letters(const struct krl_text_call *call, int32_t argument);
 krl_cell *krl_cells_of(const struct krl_text_call *call, struct krl_letters array);
 
-/* The used part of an array or a text: it ends before the first letter that is none, or has the code 0. */
+/* The used part of letters, and that of an array or a text: it ends before the first letter that is none, or has the
+ * code 0. */
+struct krl_letters krl_used(struct krl_letters all);
 struct krl_letters krl_text_argument(const struct krl_text_call *call, int32_t argument);
 
 static inline int krl_is_value(const struct krl_part *part)
@@ -32,6 +34,19 @@ static inline krl_cell *krl_referred(const struct krl_text_call *call, int32_t a
 
 /* Whether it is an array of CHAR with one dimension, by reference or as a view. */
 int krl_is_text_array(const struct krl_program *program, const struct krl_part *part);
+
+/* The letter to compare: the case of A to Z only. */
+static inline uint32_t krl_cased(krl_cell letter, int is_sensitive)
+{
+    uint32_t code = (uint32_t)letter;
+    return !is_sensitive && code >= 'a' && code <= 'z' ? code - 'a' + 'A' : code;
+}
+
+static inline int krl_is_one_of(struct krl_letters text, int32_t place, char one, char other)
+{
+    return place >= 0 && place < text.count &&
+           ((uint32_t)text.cells[place] == (uint32_t)one || (uint32_t)text.cells[place] == (uint32_t)other);
+}
 
 /* Puts a text behind the first letters of an array, whose rest has no value then; 0 where it does
  * not fit. */
@@ -51,15 +66,7 @@ int krl_read_real(struct krl_letters text, krl_cell *value);
 int32_t krl_int_length(struct krl_letters text, int32_t place);
 int32_t krl_real_length(struct krl_letters text, int32_t place);
 
-/* ---------------------------------------------------------------------------- formats.c */
-
-/* Whether this machine has what SWRITE writes, or SREAD changes; STATE is the second argument of both. */
-int krl_can_format(const struct krl_program *program, const struct krl_part *part);
-int krl_can_scan(const struct krl_program *program, const struct krl_part *part);
-int krl_is_state(const struct krl_program *program, const struct krl_part *part);
-
-/* 0 where nothing was done, and Python has to do it. */
-int krl_swrite(const struct krl_text_call *call);
-int krl_sread(const struct krl_text_call *call);
+/* Makes a dot of the decimal point that C has written, which is that of the locale. */
+void krl_show_point(char *digits);
 
 #endif

@@ -121,6 +121,21 @@ def _requests(program: Prepared, executor: str, limits: Limits) -> list[Request]
     return found
 
 
+@pytest.mark.parametrize("text", [COPIES, DEEP], ids=["the caller", "what is called"])
+def test_long_routines_are_not_compiled(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The interpreter runs them, whether they call what is compiled or are called by it."""
+    from interp.native import compiled
+    from interp.native._core import Core
+
+    monkeypatch.setattr(compiled, "_MOST_STEPS", 10)
+    program = Prepared(load([Source(text, "run.src")], "run.src"))
+    image = program.verified.image
+    source = compiled.source_of(program.verified.program, Core(image, 0, 0, None))
+    assert 1 == sum(f"void enter_{number}(" in source for number in range(2))
+    limits = Limits(depth=1100)
+    assert _requests(program, "vm", limits) == _requests(program, "compiled", limits)
+
+
 @pytest.mark.parametrize("number", range(6))
 def test_as_the_machine(number: int) -> None:
     """In a world that interferes, at random programs, every request and event is the same.

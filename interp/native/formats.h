@@ -1,0 +1,16 @@
+/* SWRITE and SREAD. */
+#ifndef KRL_FORMATS_H
+#define KRL_FORMATS_H
+
+#include "texts.h"
+
+/* Whether this machine has what SWRITE writes, or SREAD changes; STATE is the second argument of both. */
+int krl_can_format(const struct krl_program *program, const struct krl_part *part);
+int krl_can_scan(const struct krl_program *program, const struct krl_part *part);
+int krl_is_state(const struct krl_program *program, const struct krl_part *part);
+
+/* 0 where nothing was done, and Python has to do it. */
+int krl_swrite(const struct krl_text_call *call);
+int krl_sread(const struct krl_text_call *call);
+
+#endif
