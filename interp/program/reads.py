@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from grammar.semantics.symbols import Kind, SignalSymbol
+from grammar.semantics.types import UNKNOWN, Aggregate, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 from interp.program.load import Unit
+from interp.values.values import position_type
 
 _CONSTANT = (
     ast.IntegerLiteral,
@@ -43,6 +45,22 @@ def is_variable(unit: Unit, node: ast.Expression) -> bool:
         return False
     found = unit.found(root.name)
     return found is None or found.symbol.kind is not Kind.CONSTANT
+
+
+#: Why an aggregate has no value where `structure_of` gives none.
+UNTOLD_STRUCTURE = "nothing tells which structure an aggregate is"
+
+
+def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | None:
+    """The structure that an aggregate makes in a place of type ``wanted`` [TYP-19]."""
+    type_: Type | None = unit.checked.types.get(node, UNKNOWN)
+    if isinstance(type_, Aggregate):
+        type_ = type_.structure
+    if isinstance(type_, Structure):
+        return type_
+    if isinstance(wanted, Structure):
+        return wanted
+    return position_type(frozenset(component.name.key for component in node.components))
 
 
 def signal_name(unit: Unit, node: ast.Expression) -> str | None:

@@ -15,13 +15,12 @@ from grammar.semantics.types import (
     INT,
     REAL,
     UNKNOWN,
-    Aggregate,
     Enumeration,
-    Structure,
     Type,
 )
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain
+from interp.program.reads import UNTOLD_STRUCTURE, structure_of
 from interp.tree.designators import Designators
 from interp.tree.places import LocalPlace, member
 from interp.tree.run import Steps
@@ -36,7 +35,6 @@ from interp.values.values import (
     integer,
     known,
     letters,
-    position_type,
     single,
 )
 
@@ -99,7 +97,9 @@ class Expressions(Designators):
         return left
 
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Steps[Value]:
-        type_ = self._structure(node, wanted)
+        type_ = structure_of(self.frame.unit, node, wanted)
+        if type_ is None:
+            raise LinkError(UNTOLD_STRUCTURE)
         made = empty(type_)
         whole = LocalPlace([made], type_, ())
         for component in node.components:
@@ -109,17 +109,6 @@ class Expressions(Designators):
             assert isinstance(place, LocalPlace), "a part of what was made here"
             place.set((yield from self.value(component.value, place.type)))
         return known(made)
-
-    def _structure(self, node: ast.Aggregate, wanted: Type) -> Structure:
-        type_: Type | None = self.frame.unit.checked.types.get(node, UNKNOWN)
-        if isinstance(type_, Aggregate):
-            type_ = type_.structure
-        if not isinstance(type_, Structure):
-            names = frozenset(component.name.key for component in node.components)
-            type_ = wanted if isinstance(wanted, Structure) else position_type(names)
-        if type_ is None:
-            raise LinkError("nothing tells which structure an aggregate is")
-        return type_
 
     @abstractmethod
     def called(self, node: ast.Call) -> Steps[Value]:

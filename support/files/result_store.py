@@ -12,7 +12,6 @@ import sqlite3
 import zlib
 from collections.abc import Iterable
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 # What a damaged file raises: Python cannot read an error message of SQLite that quotes the damage.
@@ -62,12 +61,7 @@ class ResultStore:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         if self._base is not None:
             self._base.close()
 

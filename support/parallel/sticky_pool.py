@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from types import TracebackType
 from typing import ParamSpec, Self, TypeVar
 
 from support.parallel.processes import process_pool
@@ -31,12 +30,7 @@ class StickyPool:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, _kind: object, error: object, _trace: object) -> None:
         for pool in self._pools:
             pool.shutdown(wait=error is None, cancel_futures=True)
 

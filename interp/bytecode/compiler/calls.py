@@ -21,7 +21,7 @@ from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.array_bounds import Bound
 from interp.bytecode.compiler.context import Binding
 from interp.bytecode.compiler.emitter import Emitter
-from interp.bytecode.compiler.expressions import Expressions
+from interp.bytecode.compiler.expressions import CodeMaker, Expressions
 from interp.bytecode.compiler.locations import (
     FrameCells,
     IndexCell,
@@ -71,19 +71,13 @@ def formals_of(routine: Routine, type_of: Callable[[Found], Type]) -> Formals:
     return Formals(tuple(found), types, is_in)
 
 
-class Calls:
+class Calls(CodeMaker):
     """Makes the code of calls; its ``expressions`` that of expressions with calls in them."""
 
     def __init__(self, emitter: Emitter) -> None:
-        self.expressions = expressions = Expressions(emitter, self.call)
-        self._predefined = PredefinedCalls(expressions)
-        self._expressions = expressions
-        self._emitter = expressions.emitter
-        self._context = expressions.emitter.context
-        self._writer = expressions.emitter.writer
-        self._emit = expressions.emitter.emit
-        self._memory = expressions.memory
-        self._designators = expressions.designators
+        super().__init__(Expressions(emitter, self.call))
+        self.expressions = self._expressions
+        self._predefined = PredefinedCalls(self.expressions)
 
     def call(self, node: ast.Call) -> Value:
         """The value of a function."""

@@ -14,7 +14,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.emitter import Ended
-from interp.bytecode.compiler.expressions import Expressions
+from interp.bytecode.compiler.expressions import CodeMaker, Expressions
 from interp.bytecode.compiler.locations import (
     DataCells,
     FrameCells,
@@ -25,7 +25,7 @@ from interp.bytecode.compiler.locations import (
 from interp.values.values import letters
 
 
-class ControlFlow:
+class ControlFlow(CodeMaker):
     """Makes the code of statements that hold others, and of those that leave them.
 
     ``statement`` makes that of any statement.
@@ -34,13 +34,7 @@ class ControlFlow:
     def __init__(
         self, expressions: Expressions, statement: Callable[[ast.Statement], None]
     ) -> None:
-        self._expressions = expressions
-        self._emitter = expressions.emitter
-        self._context = expressions.emitter.context
-        self._writer = expressions.emitter.writer
-        self._emit = expressions.emitter.emit
-        self._memory = expressions.memory
-        self._designators = expressions.designators
+        super().__init__(expressions)
         self._statement = statement
         self._labels: list[dict[str, Label]] = []
         self._exits: list[Label] = []

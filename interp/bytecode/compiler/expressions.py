@@ -18,9 +18,7 @@ from grammar.semantics.types import (
     INT_MIN,
     REAL,
     UNKNOWN,
-    Aggregate,
     Enumeration,
-    Structure,
     Type,
 )
 from grammar.syntax import ast
@@ -41,9 +39,10 @@ from interp.bytecode.compiler.locations import (
     ViewParameter,
 )
 from interp.bytecode.compiler.memory import Memory
+from interp.program.reads import UNTOLD_STRUCTURE, structure_of
 from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
-from interp.values.values import constant, letters, position_type, single
+from interp.values.values import constant, letters, single
 
 #: Calls a function and gives its value.
 Call = Callable[[ast.Call], Value]
@@ -263,7 +262,10 @@ class Expressions:
     # ----------------------------------------------------------------------- aggregates
 
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Value:
-        type_ = self._emitter.closed(self._structure(node, wanted))
+        structure = structure_of(self._context.unit, node, wanted)
+        if structure is None:
+            raise self._emitter.unlinked(UNTOLD_STRUCTURE)
+        type_ = self._emitter.closed(structure)
         whole = FrameCells(self._writer.temporary(type_), type_)
         self._memory.refer(whole)
         self._emit(Op.CLEAR, self._emitter.number(type_))
@@ -274,17 +276,6 @@ class Expressions:
             self.assign(place, component.value)
         self._memory.refer(whole)
         return Reference(type_)
-
-    def _structure(self, node: ast.Aggregate, wanted: Type) -> Structure:
-        type_: Type | None = self._context.unit.checked.types.get(node, UNKNOWN)
-        if isinstance(type_, Aggregate):
-            type_ = type_.structure
-        if not isinstance(type_, Structure):
-            names = frozenset(component.name.key for component in node.components)
-            type_ = wanted if isinstance(wanted, Structure) else position_type(names)
-        if type_ is None:
-            raise self._emitter.unlinked("nothing tells which structure an aggregate is")
-        return type_
 
     def assign(self, place: Location, node: ast.Expression) -> Location:
         """Store the value of an expression; gives the location to trace."""
@@ -299,6 +290,21 @@ _SIGNS = {"add_int": 1, "sub_int": -1}
 
 
 _Rule = Callable[[Expressions, Any, Type], Value]
+
+
+class CodeMaker:
+    """What makers of code other than expressions work with: expressions and what these have."""
+
+    def __init__(self, expressions: Expressions) -> None:
+        self._expressions = expressions
+        self._emitter = expressions.emitter
+        self._context = expressions.emitter.context
+        self._writer = expressions.emitter.writer
+        self._emit = expressions.emitter.emit
+        self._memory = expressions.memory
+        self._designators = expressions.designators
+
+
 _VALUES: Mapping[type[Any], _Rule] = {
     ast.IntegerLiteral: Expressions._integer,
     ast.BitLiteral: Expressions._integer,

@@ -10,7 +10,7 @@ from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.context import Deferred
-from interp.bytecode.compiler.expressions import Expressions
+from interp.bytecode.compiler.expressions import CodeMaker
 from interp.bytecode.compiler.locations import (
     FrameCells,
     Location,
@@ -42,17 +42,8 @@ from interp.values.values import Value as Known
 _Item = ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
 
 
-class Motions:
+class Motions(CodeMaker):
     """Makes the code of statements that ask the world to do something."""
-
-    def __init__(self, expressions: Expressions) -> None:
-        self._expressions = expressions
-        self._emitter = expressions.emitter
-        self._context = expressions.emitter.context
-        self._writer = expressions.emitter.writer
-        self._emit = expressions.emitter.emit
-        self._memory = expressions.memory
-        self._designators = expressions.designators
 
     # ----------------------------------------------------------------------- motions
 

@@ -18,7 +18,7 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
-from interp.bytecode.compiler.expressions import Expressions
+from interp.bytecode.compiler.expressions import CodeMaker
 from interp.bytecode.compiler.locations import (
     FrameCells,
     Location,
@@ -55,17 +55,8 @@ from interp.values.values import letters
 BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
 
 
-class PredefinedCalls:
+class PredefinedCalls(CodeMaker):
     """Makes the code of calls of predefined functions."""
-
-    def __init__(self, expressions: Expressions) -> None:
-        self._expressions = expressions
-        self._emitter = expressions.emitter
-        self._context = expressions.emitter.context
-        self._writer = expressions.emitter.writer
-        self._emit = expressions.emitter.emit
-        self._memory = expressions.memory
-        self._designators = expressions.designators
 
     def predefined(self, node: ast.Call, *, is_value: bool) -> Value | None:
         """Call a function; gives its result, ``None`` where it has none."""

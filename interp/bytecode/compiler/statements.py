@@ -17,6 +17,7 @@ from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.context import Context
 from interp.bytecode.compiler.control_flow import ControlFlow
 from interp.bytecode.compiler.emitter import Emitter, Ended
+from interp.bytecode.compiler.expressions import CodeMaker
 from interp.bytecode.compiler.locations import (
     FrameCells,
     IndexCell,
@@ -30,22 +31,14 @@ from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.values.faults import FAULTS
 
 
-class Statements:
+class Statements(CodeMaker):
     """Makes the code of statements, and of whole code objects."""
 
     def __init__(self, context: Context) -> None:
-        emitter = Emitter(context)
-        self._calls = Calls(emitter)
-        expressions = self._calls.expressions
-        self.motions = Motions(expressions)
-        self.flow = ControlFlow(expressions, self.statement)
-        self._expressions = expressions
-        self._emitter = expressions.emitter
-        self._context = expressions.emitter.context
-        self._writer = expressions.emitter.writer
-        self._emit = expressions.emitter.emit
-        self._memory = expressions.memory
-        self._designators = expressions.designators
+        self._calls = Calls(Emitter(context))
+        super().__init__(self._calls.expressions)
+        self.motions = Motions(self._expressions)
+        self.flow = ControlFlow(self._expressions, self.statement)
 
     # ----------------------------------------------------------------------- routines
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import cells_of, size, value_at
-from interp.bytecode.vm.context import Rule, Runtime, Site
+from interp.bytecode.vm.context import Rule, Runtime, Site, computed
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
 from interp.values.geometric_operator import composed
@@ -50,21 +50,7 @@ class ArithmeticRules:
         }
 
     def _primitive(self, primitive: Primitive, site: Site) -> Operation:
-        compute, stack, after = primitive.function, self._stack, site.after
-        if len(primitive.operands) == 1:
-
-            def of_one() -> Operation:
-                stack[-1] = compute(stack[-1])
-                return after
-
-            return of_one
-
-        def of_two() -> Operation:
-            right = stack.pop()
-            stack[-1] = compute(stack[-1], right)
-            return after
-
-        return of_two
+        return computed(primitive.function, len(primitive.operands), self._stack, site.after)
 
     def _unless(self, compare: Callable[[Any, Any], bool], site: Site, target: int) -> Operation:
         pop, after, body = self._stack.pop, site.after, site.body

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from interp.bytecode.program import Instruction, Program
 from interp.bytecode.vm.state import Operation, State
@@ -74,3 +74,23 @@ class Runtime:
     entries: list[Operation]
     frames: Sequence[int]
     owners: frozenset[int | None]
+
+
+def computed(
+    compute: Callable[..., Any], count: int, stack: list[Any], after: Operation
+) -> Operation:
+    """An operation that puts the value of a function in place of its one or two operands."""
+    if count == 1:
+
+        def of_one() -> Operation:
+            stack[-1] = compute(stack[-1])
+            return after
+
+        return of_one
+
+    def of_two() -> Operation:
+        right = stack.pop()
+        stack[-1] = compute(stack[-1], right)
+        return after
+
+    return of_two

@@ -10,6 +10,7 @@ from grammar.semantics.types import REAL
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import shown
 from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
+from interp.bytecode.vm.context import computed
 from interp.bytecode.vm.names import Names
 from interp.bytecode.vm.request_marshalling import RequestBuilder
 from interp.bytecode.vm.state import Operation, State
@@ -198,7 +199,7 @@ class Services:
         builtin, state = self._program.builtins[number], self._state
         function = FUNCTIONS.get(builtin.name.upper())
         if function is not None and all(self._is_real(part) for part in builtin.parts):
-            return _computed(function.function, len(builtin.parts), state.stack, after)
+            return computed(function.function, len(builtin.parts), state.stack, after)
         entry = Entry(self._program, state, builtin.parts, builtin.parts, builtin.result)
         make, name = self._makers.parts(builtin.parts), builtin.name
 
@@ -335,23 +336,3 @@ def _finished(request: Request) -> Request:
         device, action = text_of(request.device), text_of(request.action)
         return replace(request, device=device, action=action)
     return request
-
-
-def _computed(
-    compute: Callable[..., float], count: int, stack: list[Any], after: Operation
-) -> Operation:
-    """A function of one or two REAL."""
-    if count == 1:
-
-        def of_one() -> Operation:
-            stack[-1] = compute(stack[-1])
-            return after
-
-        return of_one
-
-    def of_two() -> Operation:
-        right = stack.pop()
-        stack[-1] = compute(stack[-1], right)
-        return after
-
-    return of_two
