@@ -1,5 +1,6 @@
 """A run under a debugger."""
 
+from collections import Counter
 from collections.abc import Callable
 
 from interp.controller.trace import TraceEvent
@@ -8,18 +9,29 @@ from interp.executors import Prepared
 from interp.program.load import CheckedProgram
 from interp.session import RunResult, RunSetup, run_program
 
+# So often a message of one line is shown each time; a loop may repeat it ten thousand times.
+_EACH = 10
+
 
 def debugged_run(
     program: CheckedProgram, setup: RunSetup, debugger: Debugger, on_message: Callable[[str], None]
 ) -> RunResult | None:
     """What came of the run; ``None`` where the client of the debugger left it.
 
-    ``on_message`` takes each message of the program once, though going back runs it again.
+    ``on_message`` takes each message of the program with its line once, though going back runs it
+    again. One that comes again and again is told the first times, the 100th, the 1,000th.
     """
     prepared = Prepared(program, setup.routine, is_kept=True)
+    counts: Counter[str] = Counter()
 
     def take(event: TraceEvent) -> None:
         if event.kind == "message" and not debugger.is_repeating:
-            on_message(str(event.fields.get("text")))
+            text = ": ".join(filter(None, (event.place, str(event.fields.get("text")))))
+            counts[text] += 1
+            count = counts[text]
+            if count <= _EACH:
+                on_message(text)
+            elif count == 10 ** (len(str(count)) - 1):
+                on_message(f"{text} ({count:,} times)")
 
     return debugger.run(lambda: run_program(prepared, setup, take=take, debugger=debugger))

@@ -154,3 +154,17 @@ def test_wrong_usage(arguments: list[str], text: str, capsys: pytest.CaptureFixt
     """One line, and status 2."""
     assert 2 == main(["debug", *arguments])
     assert text == capsys.readouterr().err.strip()
+
+
+def test_a_message_that_comes_again_and_again_is_told_seldom(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The first ten times with its line, then the 100th."""
+    file = tmp_path / "main.src"
+    point = "PTP {A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 0.0,A6 0.0}"
+    loop = f"FOR I=1 TO 105\n{point}\nENDFOR\n"
+    file.write_text(f"DEF MAIN()\nINT I\n{point}\n{loop}END\n", encoding="utf-8")
+    _, lines = said(file, monkeypatch, capsys, "c", "c")
+    told = [line for line in lines if "length of zero" in line]
+    assert ["message: main.src:5: a motion has a length of zero"] * 10 == told[-11:-1]
+    assert told[-1].endswith("(100 times)")
