@@ -263,6 +263,7 @@ class PredefinedRoutines:
             found = solve(
                 kinematics,
                 placement.at(externals).flange(point),
+                tool=placement.tool,
                 status=None if status is None else int(status),
                 turn=None if turn is None else int(turn),
                 start=origin,

@@ -68,6 +68,10 @@ class CentralWrist:
         """All axes are free."""
         return np.asarray(axes, dtype=np.float64)
 
+    def about_tips(self, poses: Array, _tool: Array, /) -> Array:
+        """Every orientation can be had."""
+        return poses
+
     def forward(self, axes: npt.ArrayLike) -> Array:
         """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
         given = np.asarray(axes, dtype=np.float64)

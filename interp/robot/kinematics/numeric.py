@@ -76,6 +76,10 @@ class NumericKinematics:
         found[..., self._free] = np.asarray(axes, dtype=np.float64)[..., self._free]
         return found
 
+    def about_tips(self, poses: Array, _tool: Array, /) -> Array:
+        """Poses as they are: what the chain cannot have is sought about the flange."""
+        return poses
+
     def forward(self, axes: npt.ArrayLike) -> Array:
         """See `interp.robot.kinematics.solver.Kinematics.forward`."""
         given = self.coupled(axes)

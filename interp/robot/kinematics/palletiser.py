@@ -1,10 +1,10 @@
 """Palletisers: arms of five or four axes, whose axis 4 is fixed at 0 [$DEF_A4FIX, $DEF_A5LINK].
 
-The flange then lies in the upright plane of the arm, so a pose is reached as far as it can be: its
-position exactly, its orientation turned by the least angle that brings the axis of the flange into
-that plane. With $DEF_A5LINK a parallelogram keeps the flange level, and A5 follows from A2 and A3.
-That a controller takes orientations so is unconfirmed; $ORI_CHECK, which would have it look at
-them, is delivered as 0.
+The flange then lies in the upright plane of the arm, so a pose is reached as far as it can be: the
+tip of the tool exactly, its orientation turned by the least angle that brings the axis of the
+flange into that plane. With $DEF_A5LINK a parallelogram keeps the flange level, and A5 follows from
+A2 and A3. That a controller takes orientations so is unconfirmed; $ORI_CHECK, which would have it
+look at them, is delivered as 0.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ _WAYS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
 _FLAT = 1e-6
 """Length of the axis of the flange within the plane of the arm, below which it has no direction."""
+_ROUNDS = 100  # of which few are needed but close to axis 1
+_BESIDE = 1e-6  # mm that a tip may be off
 _SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
 
 
@@ -70,6 +72,27 @@ class Palletiser:
             pitch = found[..., 1:3] @ self._pitch
             found[..., 4] = (self._level + pitch) * self._senses[0]
         return found
+
+    def about_tips(self, poses: Array, tool: Array, /) -> Array:
+        """See `interp.robot.kinematics.solver.Kinematics.about_tips`.
+
+        Which plane the flange lies in depends on where it is, and that on how it is turned. NaN
+        where that comes to no end, above axis 1.
+        """
+        tip = tool[:3, 3]
+        reached = self._reachable(poses)
+        if not tip.any():
+            return reached
+        tips = poses[..., :3, :3] @ tip + poses[..., :3, 3]
+        for _ in range(_ROUNDS):
+            moved = poses.copy()
+            moved[..., :3, 3] = tips - reached[..., :3, :3] @ tip
+            off = np.linalg.norm(moved[..., :3, 3] - reached[..., :3, 3], axis=-1)
+            reached = self._reachable(moved)
+            if not (off > _TOLERANCE).any():
+                break
+        reached[off > _BESIDE] = math.nan
+        return reached
 
     def forward(self, axes: npt.ArrayLike) -> Array:
         """See `interp.robot.kinematics.solver.Kinematics.forward`."""

@@ -42,6 +42,10 @@ class Kinematics(Protocol):
         """Axes ``(..., 6)`` with those that the mechanics set set: of a palletiser A4 and A5."""
         ...
 
+    def about_tips(self, poses: Array, tool: Array, /) -> Array:
+        """Poses ``(..., 4, 4)`` turned to what the arm can have, about the tip of a tool (4, 4)."""
+        ...
+
     def forward(self, axes: npt.ArrayLike) -> Array:
         """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
         ...

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from interp.robot.kinematics.machine_data import Axis
 from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.values.faults import Fault
-from interp.values.poses import Pose
+from interp.values.poses import IDENTITY, Pose
 
 Axes = tuple[float, ...]
 
@@ -102,12 +102,15 @@ def solve(
     arm: Kinematics,
     flange: Pose,
     *,
+    tool: Pose = IDENTITY,
     status: int | None = None,
     turn: int | None = None,
     start: Sequence[float] | None = None,
     preference: TargetStatus = TargetStatus.SOURCE,
 ) -> Solution:
     """The axes for a pose of the flange in front of the robot's foot.
+
+    An orientation that the arm cannot have is turned about the tip of ``tool``.
 
     ``status`` selects the way; bits 3 and 4 of it mean nothing [POS-06]. Without it the way is that
     of ``start``, or with ``preference`` `TargetStatus.BEST` the one whose leading axis gets there
@@ -118,7 +121,9 @@ def solve(
     Raises `Fault` 1366 where the pose cannot be reached in that way, 1447 where it can but not
     within the software limits [MOT-15].
     """
-    ways = arm.inverse(matrix_of(flange)) if flange.is_finite else np.empty((0, 6))
+    ways = np.empty((0, 6))
+    if flange.is_finite:
+        ways = arm.inverse(arm.about_tips(matrix_of(flange), matrix_of(tool)))
     return _choose(arm, ways, status, turn, start, preference)
 
 
@@ -127,6 +132,7 @@ def ptp_target(
     flange: Pose,
     start: Sequence[float],
     *,
+    tool: Pose = IDENTITY,
     status: int | None = None,
     turn: int | None = None,
     preference: TargetStatus = TargetStatus.SOURCE,
@@ -136,11 +142,14 @@ def ptp_target(
     Axis 1 or axis 4 goes to 0, or stays where it is at the start. Near a straight wrist that leaves
     the orientation off by up to 0.018 degrees. With the arm extended nothing is undetermined.
     """
-    found = solve(arm, flange, status=status, turn=turn, start=start, preference=preference)
+    found = solve(
+        arm, flange, tool=tool, status=status, turn=turn, start=start, preference=preference
+    )
     keeps = arm.machine.singul_pos
     if Singularity.OVERHEAD in found.singularities and keeps[0]:
         zero, turned = arm.forward(((0.0,) * 6, (-start[0], *(0.0,) * 5)))
-        ways = arm.inverse(turned @ np.linalg.inv(zero) @ matrix_of(flange))
+        moved = turned @ np.linalg.inv(zero) @ matrix_of(flange)
+        ways = arm.inverse(arm.about_tips(moved, matrix_of(tool)))
         ways[:, 0] += start[0]
         found = _choose(arm, ways, status, turn, start, preference)
     if Singularity.WRIST in found.singularities:

@@ -289,6 +289,7 @@ class PosePathCurve:
         self.tool_path = pose_path
         self._before = matrix_of(placement.before)
         self._after = matrix_of(placement.after)
+        self._tool = matrix_of(placement.tool)
         self.others = others
         self.grid, axes = self._points(start)
         self._table = Table(axes)
@@ -334,7 +335,7 @@ class PosePathCurve:
         is_turned = self.placement.mode is IpoMode.TCP
         tools = np.linalg.inv(poses) if is_turned else poses
         flanges: Array = self._befores(u) @ tools @ self._after
-        return flanges
+        return flanges if is_turned else self.arm.about_tips(flanges, self._tool)
 
     def _points(self, start: Array) -> tuple[Array, Array]:
         """Parameters and axes of so many points that a spline through them is the curve."""

@@ -118,6 +118,7 @@ class Programmed:
             self.arm,
             placement.at(externals.tolist()).flange(Pose.of(*components)),
             self.axes[:ROBOT_AXES].tolist(),
+            tool=placement.tool,
             status=_bits(target, "S") if not motion.is_relative else None,
             turn=_bits(target, "T") if not motion.is_relative else None,
             preference=TargetStatus(motion.settings.target_status),

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
+from interp.robot.kinematics.solver import Array, Kinematics
 from interp.robot.kinematics.targets import ptp_target
 from interp.robot.path.axis_path import Others, PosePathCurve
 from interp.robot.path.pose_path import PosePath, poses_of
@@ -41,12 +41,12 @@ class WristCurve(PosePathCurve):
         (end,) = poses_of(pose_path, np.ones(1))
         try:
             there = placement.at(others.at(np.ones(1))[0].tolist())
-            goal = ptp_target(arm, there.flange(Pose.from_matrix(end.tolist())), start.tolist())
+            flange = there.flange(Pose.from_matrix(end.tolist()))
+            goal = ptp_target(arm, flange, start.tolist(), tool=placement.tool)
         except Fault as error:
             text = "start and end have different configurations, which #JOINT does not allow"
             raise Fault("configuration", text, number=2829, rules=("ORI-03",)) from error
         self._from, self._to = start, np.array(goal.axes)
-        self._tool = matrix_of(placement.tool)
         super().__init__(arm, placement, pose_path, start, others)
         #: The orientation is not that of the path, so that only the axes can be blended.
         self.pose_path = None

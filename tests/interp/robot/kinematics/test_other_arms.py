@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from interp.robot.kinematics.arms import kinematics_of
@@ -21,7 +21,7 @@ from interp.robot.kinematics.machine_data import (
 )
 from interp.robot.kinematics.numeric import NumericKinematics
 from interp.robot.kinematics.palletiser import Palletiser
-from interp.robot.kinematics.solver import Array, Kinematics
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.kinematics.targets import ptp_target, solve
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -113,6 +113,23 @@ def test_five_axes_reach_every_place(
     reached = arm.forward(ways[~np.isnan(ways[:, 0])])
     places = np.broadcast_to(pose[:3, 3], (len(reached), 3))
     np.testing.assert_allclose(reached[:, :3, 3], places, atol=1e-6)
+
+
+@pytest.mark.parametrize("held", Palletising)
+@given(axes=axes_at_random, turn=st.tuples(*(st.floats(-30, 30),) * 3))
+def test_the_tip_of_a_palletiser_is_where_it_was_told(
+    arm: Kinematics, held: Palletising, axes: Array, turn: tuple[float, float, float]
+) -> None:
+    """Whatever of the orientation it cannot have."""
+    arm = kinematics_of(replace(arm.machine, palletising=held))
+    tool = matrix_of(Pose.of(30.0, -20.0, 200.0))
+    poses = arm.forward(axes[None]) @ matrix_of(Pose.of(0.0, 0.0, 0.0, *turn))
+    reached = arm.about_tips(poses, tool)
+    (ways,) = arm.inverse(reached)
+    known = ways[~np.isnan(ways).any(axis=1)]
+    assume(len(known) > 0)
+    told = np.broadcast_to((poses[0] @ tool)[:3, 3], (len(known), 3))
+    assert (arm.forward(known) @ tool)[:, :3, 3] == pytest.approx(told, abs=1e-5)
 
 
 def test_axis_4_of_a_palletiser_stays(make_arm: MakeArm) -> None:
