@@ -33,11 +33,16 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
 
 
 def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
-    """Which routines of the file move the arm, where the one that the run began with does not."""
+    """Which routines of the file move the arm, where the one that the run began with does not.
+
+    Where it does itself, on what its first motion depends.
+    """
+    from grammar.check.context import placed
     from grammar.syntax import ast
     from grammar.syntax.references import calls_in
     from grammar.syntax.walk import walk
 
+    kinds = ast.Motion | ast.SplineBlock
     first, *others = program.routines_of(program.main)
     called = calls_in(first.node.body)
     moving = [
@@ -45,8 +50,15 @@ def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
         for one in others
         if one.node.name.key not in called
         and one.name not in program.callers.values()
-        and any(isinstance(node, ast.Motion | ast.SplineBlock) for node in walk(one.node))
+        and any(isinstance(node, kinds) for node in walk(one.node))
     ]
+    motions = (one for one in placed(first.node.body) if isinstance(one.statement, kinds))
+    for one in islice(motions, 1):
+        if one.inside is not None:
+            unit, line = program.main, program.main.line(one.inside.statement)
+            where = f"{unit.module.path.rpartition('/')[2]}:{line}"
+            yield f"no motion; the first one stands in {where}: {unit.source.line(line).strip()}"
+        return
     if moving:
         more = f" and {len(moving) - _MOST_TOLD} more" if len(moving) > _MOST_TOLD else ""
         names = ", ".join(moving[:_MOST_TOLD])

@@ -218,7 +218,9 @@ def prepared_run(
     for why in left[:_MOST_TOLD]:
         typer.echo(one_line(f"left out: {why}"), err=True)
     if len(left) > _MOST_TOLD:
-        typer.echo(f"left out: {len(left) - _MOST_TOLD} more files of the project", err=True)
+        typer.echo(
+            f"left out: {len(left) - _MOST_TOLD} more lines and files of the project", err=True
+        )
     return program, setup
 
 

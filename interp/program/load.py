@@ -26,6 +26,7 @@ from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
 from interp.standins.missing_returns import with_returns
 from interp.standins.unreadable_lines import readable
+from interp.standins.uses import FOLDER
 from interp.values.faults import BudgetExhausted, LinkError
 from support.lazy_dataclass import dataclass
 
@@ -151,12 +152,26 @@ class CheckedProgram:
         return [self.start(routine), *([self.start(submit)] if submit else [])]
 
     def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
-        """The stand-ins that files reached from some routines use, in their order."""
+        """The stand-ins that files reached from some routines use, in their order.
+
+        Each is told with its first use there, where a file of the project uses it.
+        """
         if not self.stand_ins:
             return ()
-        units = self.reached(*routines)
-        names = {name.key for unit in units for name in unit.checked.resolution.answers}
-        return tuple(one for one in self.stand_ins if one.name.upper() in names)
+        places: dict[str, tuple[Unit, ast.Name]] = {}
+        units = [one for one in self.reached(*routines) if not _declares_stand_ins(one)]
+        for unit in sorted(units, key=lambda one: one.module.folder == FOLDER):
+            for name in sorted(unit.checked.resolution.answers, key=lambda one: one.span):
+                places.setdefault(name.key, (unit, name))
+        used = [
+            (one, *places[key]) for one in self.stand_ins if (key := one.name.upper()) in places
+        ]
+        return tuple(
+            one
+            if unit.module.folder == FOLDER
+            else replace(one, path=unit.module.path, line=unit.line(name))
+            for one, unit, name in used
+        )
 
     def reached(self, *routines: Routine) -> tuple[Unit, ...]:
         """The files that some routines lie in, and all that these use, with their data lists."""
@@ -205,6 +220,11 @@ class CheckedProgram:
             seen.add(symbol)
             found = answer
         return found
+
+
+def _declares_stand_ins(unit: Unit) -> bool:
+    """Whether it is the list of all that stands in, of which most may be for other programs."""
+    return unit.module.folder == FOLDER and unit.module.suffix == ".dat"
 
 
 def _has_no_index(node: ast.Expression) -> bool:

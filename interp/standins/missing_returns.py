@@ -1,7 +1,7 @@
 """Results for functions that come to their ends without RETURN [CTL-09].
 
-On a controller that stops the program. Where things stand in, a line with the RETURN may be one of
-those that are missing. So two statements stand at the end of such a function: a RETURN without a
+On a controller that stops the program. Where things stand in, the RETURN may be a line that is
+missing or was skipped. So two statements stand at the end of each function: a RETURN without a
 value, which fails there, is told and skipped, and one with the first value of its type.
 """
 
@@ -33,11 +33,9 @@ def with_returns(project: Project) -> Project:
 def _routines(project: Project, module: Module, program: ast.Program) -> Iterator[ast.Routine]:
     assert module.table is not None, "what can be read has its table"
     for routine, table in zip(program.routines, module.table.routines, strict=True):
-        is_open = routine.result is not None and not any(
-            isinstance(one, ast.Return) for one in routine.body[-1:]
-        )
-        type_ = project.types.of(Found(table.routine, project.scope(module))) if is_open else None
         end = routine.span[1] - 1, routine.span[1]
+        is_open = routine.result is not None and not any(one.span == end for one in routine.body)
+        type_ = project.types.of(Found(table.routine, project.scope(module))) if is_open else None
         value = None if type_ is None else _first_value(type_, end)
         if value is None:
             yield routine

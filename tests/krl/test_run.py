@@ -390,6 +390,12 @@ def test_routines_that_move_are_named(run: Run) -> None:
     assert (0, "no motion in main; --routine begins elsewhere: go\n") == (status, err)
 
 
+def test_what_the_first_motion_depends_on_is_named(run: Run) -> None:
+    """Where no motion was made, the block around the first one is told."""
+    status, _, err = run("IF $IN[2] THEN\nPTP {A1 5}\nENDIF\n")
+    assert (0, "no motion; the first one stands in main.src:2: IF $IN[2] THEN\n") == (status, err)
+
+
 def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
     """What could be run in a folder or an archive is named in one line."""
     (tmp_path / "cell").mkdir()

@@ -23,8 +23,6 @@ from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from grammar.syntax.source import Source
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import DataListError
@@ -165,10 +163,13 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
 
     Points are aggregates of numbers with X, Y, Z in mm and A, B, C in degrees.
     """
-    every = [found.groups() for text in texts for found in _WHOLE.finditer(text)]
+    found = (one.groups() for text in texts for one in _WHOLE.finditer(text))
+    every = [one for one in found if any(map(float, one[:3]))]  # else a base, or a way
     some = every[:: len(every) // _MOST_POINTS + 1]
     if len(some) < _FEWEST:
         return machine
+    import numpy as np  # only where an arm stands in for one that is lost
+
     poses = np.array([Pose.of(*map(float, one)).matrix for one in some])
     arm, length = kinematics_of(machine), _length(machine)
     lower, upper = (
@@ -200,7 +201,7 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
         for (ahead, up), (a, c) in product(_AHEAD, _FEET)
     ]
     best = max(feet, key=reached)
-    if not reached(best):
+    if reached(best) <= reached(IDENTITY):
         return machine
     rounded = Pose.of(*(round(value) for value in best.components))
     where = ",".join(

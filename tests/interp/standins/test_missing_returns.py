@@ -1,4 +1,4 @@
-"""A function that comes to its end gives the first value of its type where things stand in."""
+"""A function without RETURN, or whose RETURN fails, gives a value where things stand in."""
 
 import pytest
 
@@ -29,6 +29,8 @@ RETURN N
 ENDIF
 ENDFCT
 DEFFCT STATE_T STATE()
+DECL STATE_T NEVER
+RETURN NEVER
 ENDFCT
 """
 LIST = "DEFDAT main\nENUM STATE_T IDLE,BUSY\nENDDAT\n"
@@ -43,7 +45,7 @@ def test_first_values(executor: str) -> None:
     run = run_program(program, setup)
     outputs = [event.fields["number"] for event in run.events if event.kind == "out"]
     assert ("end", [1, 2, 4, 5]) == (run.outcome.ending, outputs[:4])
-    assert [("main.src", line) for line in (15, 21, 23)] == list(run.controller.skipped)
+    assert [("main.src", line) for line in (15, 21, 24, 25)] == list(run.controller.skipped)
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
