@@ -13,7 +13,7 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import cells_of, size, value_at
-from interp.bytecode.vm.context import Rule, Runtime, Site, computed
+from interp.bytecode.vm.context import Rule, Rules, Site, computed
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
 from interp.values.geometric_operator import composed
@@ -21,13 +21,8 @@ from interp.values.operators import PRIMITIVES, Primitive
 from interp.values.values import StructureValue, single
 
 
-class ArithmeticRules:
+class ArithmeticRules(Rules):
     """Makes the operations that compute."""
-
-    def __init__(self, runtime: Runtime) -> None:
-        self._types = runtime.program.types
-        self._cells = runtime.state.cells
-        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""

@@ -1,4 +1,4 @@
-"""ArrayRules: what the instructions for elements, rows, views and whole arrays do."""
+"""What the instructions for elements, rows, views and whole arrays do."""
 
 from __future__ import annotations
 
@@ -9,21 +9,14 @@ from grammar.semantics.types import Array
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, size
 from interp.bytecode.program import Parameter
-from interp.bytecode.vm.context import Rule, Runtime, Site
+from interp.bytecode.vm.context import Rule, Rules, Site
 from interp.bytecode.vm.data_movement import load
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
 
 
-class ArrayRules:
+class ArrayRules(Rules):
     """Makes the operations that work on arrays."""
-
-    def __init__(self, runtime: Runtime) -> None:
-        self._program = runtime.program
-        self._types = runtime.program.types
-        self._state = runtime.state
-        self._cells = runtime.state.cells
-        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""

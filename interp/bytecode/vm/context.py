@@ -76,6 +76,18 @@ class Runtime:
     owners: frozenset[int | None]
 
 
+class Rules:
+    """Makes the operations of some instructions."""
+
+    def __init__(self, runtime: Runtime) -> None:
+        self._runtime = runtime
+        self._program = runtime.program
+        self._types = runtime.program.types
+        self._state = runtime.state
+        self._cells = runtime.state.cells
+        self._stack = runtime.state.stack
+
+
 def computed(
     compute: Callable[..., Any], count: int, stack: list[Any], after: Operation
 ) -> Operation:

@@ -9,25 +9,17 @@ from typing import Any
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, size
 from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
-from interp.bytecode.vm.context import Rule, Runtime, Site
+from interp.bytecode.vm.context import Rule, Rules, Site
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import FAULTS, LinkError, fault
 
 
-class ControlRules:
+class ControlRules(Rules):
     """Makes the operations that decide what comes next."""
-
-    def __init__(self, runtime: Runtime) -> None:
-        self._kit = runtime
-        self._program = runtime.program
-        self._types = runtime.program.types
-        self._state = runtime.state
-        self._cells = runtime.state.cells
-        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""
-        hooks = self._kit.hooks
+        hooks = self._runtime.hooks
         return {
             Op.LINE: lambda site, _line, _to: hooks.line(site.place, site.after),
             Op.PROCEED: lambda site: hooks.proceed(site.after),
@@ -68,14 +60,14 @@ class ControlRules:
 
     def _call(self, site: Site, number: int) -> Operation:
         state, stack, cells, after = self._state, self._stack, self._cells, site.after
-        calls, entries = state.calls, self._kit.entries
+        calls, entries = state.calls, self._runtime.entries
         callee = self._program.codes[number]
-        own, frame = self._kit.frames[site.code], self._kit.frames[number]
+        own, frame = self._runtime.frames[site.code], self._runtime.frames[number]
         count = sum(map(stack_cells, callee.parameters))
         blank: list[Any] = [None] * (frame - sum(map(self._program.width, callee.parameters)))
         receive = self._receiver(callee.parameters)
-        hooks = self._kit.hooks
-        is_owner = number in self._kit.owners
+        hooks = self._runtime.hooks
+        is_owner = number in self._runtime.owners
         is_told = hooks.calls_are_told
 
         def operation() -> Operation:
@@ -130,7 +122,7 @@ class ControlRules:
         return receive
 
     def _return(self, site: Site) -> Operation:
-        state, calls, hooks = self._state, self._state.calls, self._kit.hooks
+        state, calls, hooks = self._state, self._state.calls, self._runtime.hooks
         kind = self._program.codes[site.code].kind
         if kind is CodeKind.ACTION:
             return hooks.leave_action

@@ -7,19 +7,13 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import real_of, shared_cells, size
-from interp.bytecode.vm.context import Rule, Runtime, Site
+from interp.bytecode.vm.context import Rule, Rules, Site
 from interp.bytecode.vm.state import Operation, State
 from interp.values.faults import fault
 
 
-class MovementRules:
+class MovementRules(Rules):
     """Makes the operations that move what lies in cells."""
-
-    def __init__(self, runtime: Runtime) -> None:
-        self._types = runtime.program.types
-        self._state = runtime.state
-        self._cells = runtime.state.cells
-        self._stack = runtime.state.stack
 
     def rules(self) -> Mapping[Op, Rule]:
         """The makers of operations by opcode."""
