@@ -55,11 +55,14 @@ class EditSiteFinder:
         self.similarity = similarity
         self.phraser = phraser
         self._lines = LineSiteFinder(profile, similarity, phraser)
+        #: Where the line looked at can be read on.
+        self._resumed: dict[tuple[State, int, int], list[int]] = {}
 
     def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
         """Sites of a line, and edits that need no phrase; some more than once."""
         recognizer, form = self.recognizer, line.form
         words = line.words()
+        self._resumed.clear()
         before = recognizer.restore(form.before)
         starts = {form.index}
         # a would-be keyword was read as a name and failed the line later than it should have
@@ -224,6 +227,13 @@ class EditSiteFinder:
         self, state: State, words: list[Word], start: int, earliest: int = 0
     ) -> list[int]:
         """Where the line can be read on from ``state``, to its end or for some tokens at least."""
+        key = state, start, earliest
+        found = self._resumed.get(key)
+        if found is None:
+            found = self._resumed[key] = self._resumptions(state, words, start, earliest)
+        return found
+
+    def _resumptions(self, state: State, words: list[Word], start: int, earliest: int) -> list[int]:
         kinds = [kind for kind, _ in words]
         whole, part = [], []
         # the end of the line itself is never part of a phrase
