@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from posixpath import commonpath
 from typing import Any
 
 from reports.embedding import embedded_json, printable
@@ -42,9 +43,12 @@ def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) 
     """Write ``folder``/index.html and return its path; raises OSError where it cannot be."""
     ways = [count for one in files for count in one.ways]
     lines = [count for one in files for count in one.lines.values()]
+    folders = {one.path.rpartition("/")[0] for one in files}
+    below = commonpath(folders) if all(folders) and len({p[0] == "/" for p in folders}) == 1 else ""
     view = {
+        "below": printable(below),
         "figures": [_figure("statements", lines), _figure("branches", ways), _tests(tests)],
-        "files": [_file(one) for one in sorted(files, key=lambda one: one.path)],
+        "files": [_file(one, below) for one in sorted(files, key=lambda one: one.path)],
     }
     page = render(
         "coverage.html.j2",
@@ -97,11 +101,11 @@ def _tests(tests: int) -> Mapping[str, Any]:
     return {"label": "tests", "value": f"{tests:,}", "share": None, "note": "have run"}
 
 
-def _file(one: CoveredFile) -> Mapping[str, Any]:
+def _file(one: CoveredFile, below: str) -> Mapping[str, Any]:
     ran = sum(1 for count in one.lines.values() if count)
     taken = sum(1 for count in one.ways if count)
     return {
-        "path": printable(one.path),
+        "path": printable(one.path.removeprefix(below).removeprefix("/" if below else "")),
         "statements": percent(ran, len(one.lines)),
         "branches": percent(taken, len(one.ways)),
         "share": share(ran, len(one.lines)),

@@ -10,8 +10,8 @@ from reports.page import render
 from support.files.atomic_write import write_atomic
 
 
-def write_diff_page(record: Mapping[str, Any], folder: Path) -> Path:
-    """Write ``folder``/index.html, the page of a comparison, and return its path.
+def write_diff_page(record: Mapping[str, Any], place: Path) -> Path:
+    """Write the page of a comparison into a folder, or a file ``….html``, and return its path.
 
     ``record`` is what ``krl diff --json`` writes; every field may be absent. The page appears whole
     or not at all. Raises OSError when the folder cannot be made or written.
@@ -23,4 +23,5 @@ def write_diff_page(record: Mapping[str, Any], folder: Path) -> Path:
         data=embedded_json({}),
         view=diff_view(record),
     )
-    return write_atomic(folder / "index.html", page)
+    is_file = place.suffix.lower() == ".html" and not place.is_dir()
+    return write_atomic(place if is_file else place / "index.html", page)

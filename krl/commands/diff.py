@@ -40,7 +40,8 @@ def diff(
         Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
     ] = None,
     html: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write a page into this folder.")
+        Path | None,
+        typer.Option(metavar="DIR", help="Write a page into this folder, or FILE.html."),
     ] = None,
     textconv: Annotated[
         bool, typer.Option("--textconv", help="Print OLD alone, without what is noise: for git.")

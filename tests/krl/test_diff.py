@@ -68,6 +68,9 @@ def test_a_folder_that_moved_is_told_once(
     told = "2 files moved: . -> R1/Deep\nfile moved: c.src -> R1/c.src\n"
     assert capsys.readouterr().out.startswith(told)
     (page,) = tmp_path.glob("*.html")
+    file = tmp_path / "changes.html"
+    main(["diff", states[0], str(below), "--html", str(file)])
+    assert page.read_bytes() == file.read_bytes()
     assert "2 files of . are in R1/Deep now" in page.read_text(encoding="utf-8")
 
 
