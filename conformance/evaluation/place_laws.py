@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from operator import itemgetter
 from typing import Final
 
 import numpy as np
@@ -199,13 +200,16 @@ def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
         for before, one, after in neighbours
         for place in one.motion.places
     )
-    switched = seen.of_kind("trigger")
-    for event, (first, last) in zip(switched, spans, strict=False):
+    for event in seen.of_kind("trigger"):
         time = event.time or 0
-        if not first - _NEAR_TIME <= time <= last + _NEAR_TIME:
+        fitting = [span for span in spans if span[0] - _NEAR_TIME <= time <= span[1] + _NEAR_TIME]
+        if spans and not fitting:
             law = "a trigger switches where the path passes its place"
+            first, last = spans[0]
             yield Violation(event, law, f"{time} us, not {first:.0f} to {last:.0f}")
             return
+        if fitting:  # of places that overlap the one that is over first
+            spans.remove(min(fitting, key=itemgetter(1)))
 
 
 def _moments(
