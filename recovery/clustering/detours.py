@@ -19,7 +19,7 @@ from grammar.notation.addresses import Address, element_at, sequence_at
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, MakeOptional, Widen
 from grammar.notation.g4 import read_rule
 from grammar.notation.model import Alternative, Grammar, GrammarError, Repeat, Rule
-from grammar.parser.lazy_automaton import Configuration, Core, Tail
+from grammar.parser.lazy_automaton import Configuration, Core
 from grammar.parser.network import Network, Reach, RuleAutomaton, exact_automata
 from grammar.parser.recognizer import Recognizer, State
 from recovery.tuning import MOST_READINGS
@@ -42,15 +42,11 @@ class Detours:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """Tokens that cannot all be read, and the states before each until then.
-
-    ``met`` are these states with the number of the token.
-    """
+    """Tokens that cannot all be read, and the states before each until then."""
 
     kinds: Sequence[int]
     states: Sequence[State]
     cores: frozenset[Core]
-    met: frozenset[tuple[Core, Tail, int]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,7 +238,7 @@ class DetourReader:
     def _read(self, detours: Detours, path: Path, cores: frozenset[Core]) -> int | None:
         recognizer, kinds = self.recognizer, path.kinds
         furthest = len(path.states) - 1
-        met: set[tuple[Core, Tail, int]] = set()
+        met: set[tuple[State, int]] = set()
         # from the failure backwards: what is missing is mostly missing there
         todo = [(state, n) for n, state in enumerate(path.states) if state.core in cores]
         while todo:
@@ -251,8 +247,9 @@ class DetourReader:
             if start is None:
                 continue
             state = State(start, state.tail)
-            while (key := (state.core, state.tail, number)) not in met and key not in path.met:
-                met.add(key)
+            # what the path itself comes to fails where it does
+            while (state, number) not in met and path.states[number : number + 1] != [state]:
+                met.add((state, number))
                 following = recognizer.step(state, kinds[number])
                 if following is None:
                     furthest = max(furthest, number)
@@ -281,8 +278,7 @@ class DetourReader:
                 for position in self._standing.get(reach) or self._stands(reach):
                     self._cores_at[position].add(core)
         self._indexed |= cores
-        met = frozenset((state.core, state.tail, n) for n, state in enumerate(states))
-        return Path(kinds, states, cores, met)
+        return Path(kinds, states, cores)
 
     def _start(self, detours: Detours, core: Core, kind: int) -> Core | None:
         """The core of all that detours from a core lead to, where it can read the kind of token."""
