@@ -1,5 +1,6 @@
 """`krl test`: unit tests of robot programs, which pytest collects, runs and reports."""
 
+import xml.etree.ElementTree as ET
 from importlib import metadata
 from itertools import takewhile
 from pathlib import Path
@@ -10,6 +11,7 @@ import typer
 from krl.errors import InputError
 from krl.extras import ARM, expected_extras
 from krl.run_options import ExecutorOption
+from support.files.atomic_write import write_atomic
 
 _PLUGIN = "krl.program_tests.pytest_plugin"
 #: What pytest says where all have passed, some have failed, and none was there.
@@ -71,6 +73,16 @@ def run_tests(
         if all(one.value != _PLUGIN for one in installed):  # a checkout that was not installed
             arguments += ["-p", _PLUGIN]
         status = int(pytest.main([*arguments, *(paths or ["."])]))
+    if junit is not None and junit.is_file():
+        write_atomic(junit, _in_order(junit.read_bytes()))
     if status == _NONE:
         raise InputError("no test of a robot program there: test_*.toml or test_*.src")
     return status if status in (_PASSED, _FAILED) else 2
+
+
+def _in_order(report: bytes) -> bytes:
+    """A JUnit report with its tests by file and name: processes end theirs as it happens."""
+    whole = ET.fromstring(report)
+    for suite in whole:
+        suite[:] = sorted(suite, key=lambda test: (test.get("classname", ""), test.get("name", "")))
+    return bytes(ET.tostring(whole, encoding="utf-8", xml_declaration=True))

@@ -133,7 +133,7 @@ def _content(path: Path, folder: str) -> Any:
     if path.suffix in (".json", ".sarif"):
         return _timeless(json.loads(text))
     if path.suffix in (".html", ".xml"):
-        return re.sub(rb"[0-9][0-9.,:T-]*[0-9]( ?m?s)?", b"N", text)
+        return re.sub(rb"[0-9][0-9.,:T+-]*[0-9]( ?m?s)?", b"N", text)
     return text
 
 

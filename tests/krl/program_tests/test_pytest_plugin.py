@@ -95,7 +95,9 @@ def test_krl_test_has_the_exit_status_of_all_commands(
         text.format("good", "TRUE") + text.format("bad", "never"), encoding="utf-8"
     )
     Path("test_python.py").write_text("assert False\n", encoding="utf-8")
-    assert 1 == main(["test"])
+    assert 1 == main(["test", "--junit", "j.xml"])
+    names = [one.get("name") for one in ElementTree.parse("j.xml").iterfind(".//testcase")]
+    assert ["bad", "good"] == names  # whichever of them ends first
     assert 0 == main(["test", ".", "-k", "good", "--junit", "j.xml", "--", "-q"])
     assert 'testsuite name="krl"' in Path("j.xml").read_text(encoding="utf-8")
     assert "gone: no such file or folder" in capfd.readouterr().err
