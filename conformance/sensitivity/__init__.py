@@ -14,4 +14,6 @@
 
 ``survivors.tsv`` is what `krl bench conform --survivors` left over of two draws that nobody had
 seen: 64 of the robot with seed 67336, 64 of values, tree and controller with seed 67343.
+
+A case notices a fault if it passes without it and does not pass with it.
 """
