@@ -45,7 +45,8 @@ def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
     if path is not None and machine is not None:
         yield from _displaced(path, machine)
     for one in motions:
-        for law in (_arrives, _has_posture, _keeps_speed, _passes_auxiliary, _passes_points):
+        laws = (_arrives, _stands, _has_posture, _keeps_speed, _passes_auxiliary, _passes_points)
+        for law in laws:
             yield from law(one)
 
 
@@ -96,6 +97,28 @@ def _arrives(one: EndedMotion) -> Iterator[Violation]:
         off = math.degrees(float(np.abs(other - pose)[:3, :3].max()))
         if off > NEAR_DEGREES:
             yield one.broken("a motion ends at its target", f"turned {off:.4f} beside it", "MOT-20")
+
+
+def _stands(one: EndedMotion) -> Iterator[Violation]:
+    """Not at rest where it begins behind an exact stop, or ends with one.
+
+    Beside rest an axis goes no further than the greatest jerk takes it, j·t³/6.
+    """
+    axes, times = (*one.machine.axes, *one.machine.externals), one.path.times
+    jerks = np.array([axis.dynamics.jerk if axis.dynamics else math.inf for axis in axes])
+    for moment, rests in ((one.start, one.begins), (one.end, one.stops)):
+        place = int(np.searchsorted(times, moment))
+        if not rests or not 0 < place < len(times):
+            continue
+        before, after = (moment - times[place - 1]) / 1e6, (times[place] - moment) / 1e6
+        most = jerks * (before**3 + after**3) / 6.0 * RATE_MARGIN + ROUNDING
+        moved = np.abs(one.path.axes[place] - one.path.axes[place - 1])
+        axis = int(np.argmax(moved - most))
+        if moved[axis] > most[axis]:
+            law = "the arm is at rest where a motion begins after an exact stop, and where it ends"
+            actual = f"{axes[axis].name} moves by {moved[axis]:.4f} at {moment / 1e6:.3f} s"
+            yield one.broken(law, actual)
+            return
 
 
 def _has_six(machine: MachineData) -> bool:

@@ -271,11 +271,15 @@ def _spans(
 
 
 def _ease(spans: Sequence[_Span], found: _Speeds | None) -> bool:
-    """Let speeds change in blends that what is beside them holds up; whether there are any."""
+    """Let speeds change in blends that what is beside them holds up; whether there are any.
+
+    All of them where else speeds are above what is allowed: who brakes can end within a blend.
+    """
     is_eased = False
+    is_over = found is None or found.over > 0.0
     for place, span in enumerate(spans):
         if span.is_even:
-            held = found is None or found.ends[place] < _HELD * span.even
+            held = is_over or found is None or found.ends[place] < _HELD * span.even
             span.is_even = not held
             is_eased = is_eased or held
     return is_eased

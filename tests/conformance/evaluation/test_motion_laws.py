@@ -151,6 +151,13 @@ def test_a_motion_ends_at_its_target(line: int, target: dict[str, float], rule: 
     assert (rule, line) in broken(with_motion(line, target=target))
 
 
+def test_the_arm_is_at_rest_at_exact_stops() -> None:
+    """Set-points that come two cycles late still move there."""
+    late = with_path(lambda path: replace(path, axes=path.axes[[0, 0, *range(len(path.axes) - 2)]]))
+    laws = [one.law for one in misdeeds(late, tuple(ended(late)))]
+    assert any("at rest" in law for law in laws)
+
+
 def test_a_turn_counts_where_the_axis_has_another() -> None:
     """Axis 6 reaches a turn further, axis 1 does not."""
     found = [broken(with_motion(7, target={"X": 445.0, "T": turn})) for turn in (2, 3, 34)]

@@ -9,9 +9,11 @@ from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import AtRest, GearedStretch, PathState, braking, schedule
 
 
-def stretch(start: float, end: float, velocity: float, size: float = 1000.0) -> Stretch:
-    """A stretch with a speed of its own, per unit of u."""
-    return Stretch(start, end, velocity, velocity, 2.0, 20.0, 4.0, 80.0, size)
+def stretch(
+    start: float, end: float, velocity: float, size: float = 1000.0, even: float = 0.0
+) -> Stretch:
+    """A stretch with a speed of its own, per unit of u; a blend where it has an even one."""
+    return Stretch(start, end, velocity, velocity, 2.0, 20.0, 4.0, 80.0, size, even)
 
 
 def seams(steps: list[GearedStretch], profiles: list[SpeedProfile]) -> list[float]:
@@ -71,6 +73,19 @@ def test_too_late_to_brake() -> None:
     state = PathState(0.45, 1.0, 0.0)
     assert schedule(steps, state, 1.0, is_strict=True) is None
     assert seams(steps, laid(steps, state))[0] > 0.5
+
+
+def test_a_blend_is_braked_in_before_a_stop_is_overrun() -> None:
+    """Where the one under way is too short to brake in, the next is not passed at one speed."""
+    steps = [
+        GearedStretch(stretch(0.0, 1.0, 1.0, even=1.0), 0.0),
+        GearedStretch(stretch(0.0, 1.0, 1.0, even=1.0), 1.0),
+        GearedStretch(stretch(0.0, 0.01, 1.0), 1.0),
+        GearedStretch(stretch(0.0, 1.0, 1.0), 0.0),
+    ]
+    first, second, last, _ = seams(steps, laid(steps, PathState(0.95, 1.0, 0.0)))
+    assert second < 0.5 < first
+    assert 0.0 == pytest.approx(last, abs=1e-6)
 
 
 def test_an_acceleration_that_cannot_be_taken_back() -> None:
