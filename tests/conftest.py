@@ -7,13 +7,16 @@ import gc
 import os
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+from grammar.notation.g4 import read
+from grammar.notation.model import Grammar
 from support import gc_pause
 
 if TYPE_CHECKING:
@@ -102,3 +105,65 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chro
     driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver_path))
     yield driver
     driver.quit()
+
+
+# ------------------------------------------------------------------------ random grammars
+
+
+def _random_grammar(chance: Random) -> Grammar:
+    names = [f"r{number}" for number in range(chance.randint(1, 4))]
+
+    def sequence(number: int, guarded: bool, depth: int) -> str:
+        out = []
+        for _ in range(chance.randint(1, 3)):
+            text = element(number, guarded, depth)
+            guarded = guarded or text in _TOKENS
+            out.append(text)
+        return " ".join(out)
+
+    def element(number: int, guarded: bool, depth: int) -> str:
+        kind = chance.choice("ttttrrrgo" if depth else "ttr")
+        # a rule before the first token is a later one, so that there is no left recursion
+        callable_rules = names if guarded else names[number + 1 :]
+        if kind == "r" and callable_rules:
+            return chance.choice(callable_rules)
+        if kind in "go" and depth:
+            inner = " | ".join(
+                sequence(number, guarded, depth - 1) for _ in range(chance.randint(1, 2))
+            )
+            return f"({inner})" + (chance.choice("?*+") if kind == "o" else "")
+        return chance.choice(_TOKENS)
+
+    rules = ["s : r0 EOF ;"]
+    for number, name in enumerate(names):
+        alternatives = [sequence(number, False, 2) for _ in range(chance.randint(0, 2))]
+        alternatives.append(chance.choice([*_TOKENS, *names[number + 1 :], ""]))
+        rules.append(f"{name} : {' | '.join(alternatives)} ;")
+    tokens = [f"{name} : '{name}' ;" for name in _TOKENS[:-1]]
+    return read("\n".join(["grammar Random;", *rules, *tokens, "NEWLINE : '\\n' ;", ""]))
+
+
+# the recogniser treats the ends of lines in a way of its own
+_TOKENS = ["A", "B", "C", "NEWLINE"]
+
+
+@pytest.fixture(scope="session")
+def random_grammar() -> Callable[[Random], Grammar]:
+    """Makes small grammars of our style with every kind of element, most of them ambiguous."""
+    return _random_grammar
+
+
+def _mutated(tokens: Sequence[str], chance: Random, names: Sequence[str]) -> list[str]:
+    out = list(tokens)
+    for _ in range(chance.randint(1, 3)):
+        place = chance.randrange(len(out) + 1)
+        kind = chance.choice("dri")
+        put = [] if kind == "d" else [chance.choice(names)]
+        out[place : place + (kind != "i")] = put
+    return out
+
+
+@pytest.fixture(scope="session")
+def mutated() -> Callable[[Sequence[str], Random, Sequence[str]], list[str]]:
+    """``mutated(tokens, chance, names)``: one to three tokens deleted, replaced or inserted."""
+    return _mutated

@@ -83,7 +83,7 @@ class DetourReader:
         self._kinds: dict[str, int] = {}  # of words that no rule has
         self._exact = cache(lambda name: exact_automata(grammar, grammar.by_name[name]))
         self._texts: dict[str, tuple[int, bool, bool, frozenset[str]]] = {}
-        self._rests: dict[tuple[str, Address], range] = {}
+        self._rests: dict[tuple[str, Address, bool], range] = {}
         self._ends: dict[str, int] = {}
         self._indexed: set[Core] = set()
         self._cores_at: dict[int, set[Core]] = defaultdict(set)
@@ -121,8 +121,9 @@ class DetourReader:
 
         Raises `GrammarError` where they do not fit the grammar.
         """
-        if not all(isinstance(edit, _ADDING) for edit in edits):
-            return None
+        inserted = [(edit.rule, edit.at) for edit in edits if isinstance(edit, Insert)]
+        if not all(isinstance(e, _ADDING) for e in edits) or len({*inserted}) < len(inserted):
+            return None  # of two texts at one place either may be left out
         words = frozenset(edit.name for edit in edits if isinstance(edit, AddToken))
         if not self._grammar.by_name.keys().isdisjoint(words):
             raise GrammarError("a token exists already")
@@ -144,7 +145,7 @@ class DetourReader:
                     at.setdefault(position, []).append(way.detour)
         for target in {target for some in at.values() for target, _ in some}:
             if any(p in at and back for p, back in self.recognizer.network.reach(target).sites):
-                raise GrammarError("a rule would begin with itself")
+                return None  # a rule may begin with itself
         return Detours(at, words)
 
     def _detour(self, edit: Edit, words: frozenset[str]) -> _Way | None:
@@ -161,7 +162,7 @@ class DetourReader:
             first, may_be_left_out, is_choice = self._text(edit.text, words)
             if not may_be_left_out or is_choice or not sequence.elements:
                 return None
-            rest = self._rest(edit.rule, place)
+            rest = self._rest(edit.rule, place, is_inserted=True)
             return _Way(edit.rule, place, (first, rest[0]), rest, rest[0])
         if isinstance(edit, Widen):
             if isinstance(element_at(rule, place), Repeat):
@@ -177,7 +178,10 @@ class DetourReader:
         known = self._texts.get(text)
         if known is None:
             rule = _read(text)
-            automaton = exact_automata(self._grammar, rule)(())
+            try:
+                automaton = exact_automata(self._grammar, rule)(())
+            except KeyError:
+                raise GrammarError(f"there is no token in {text}") from None
             used = {symbol for edges in automaton.edges for symbol in edges}
             new = used - self._entry.keys() - self._lexer.kind_of.keys()
             first = self._added("", automaton)[0]
@@ -187,15 +191,15 @@ class DetourReader:
             raise GrammarError(f"there is no token in {text}")
         return known[:3]
 
-    def _rest(self, rule: str, at: Address) -> range:
-        """The positions of a rule from an address on."""
-        found = self._rests.get((rule, at))
+    def _rest(self, rule: str, at: Address, *, is_inserted: bool = False) -> range:
+        """The positions of a rule from an address on; others behind what is inserted there."""
+        found = self._rests.get((rule, at, is_inserted))
         if found is None:
             try:
                 automaton = self._exact(rule)(at)
             except KeyError:
                 raise GrammarError(f"rule {rule} has no place {at}") from None
-            found = self._rests[rule, at] = self._added(rule, automaton)
+            found = self._rests[rule, at, is_inserted] = self._added(rule, automaton)
         return found
 
     def _end(self, rule: str) -> int:
@@ -246,7 +250,10 @@ class DetourReader:
             start = self._start(detours, state.core, kinds[number])
             if start is None:
                 continue
-            state = State(start, state.tail)
+            opened = State(start, state.tail)
+            state = recognizer.settled(opened)
+            if state is not opened:  # frames that a detour returns to may have more of them
+                todo.append((state, number))
             # what the path itself comes to fails where it does
             while (state, number) not in met and path.states[number : number + 1] != [state]:
                 met.add((state, number))

@@ -26,7 +26,10 @@ def combined_edits(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit,
     edits = list(dict.fromkeys((*first, *second)))
     tokens = [e for e in edits if isinstance(e, AddToken)]
     places = [e for e in edits if not isinstance(e, AddToken | AddAlternative)]
-    places.sort(key=lambda e: (getattr(e, "rule", ""), getattr(e, "at", ())), reverse=True)
+    places.sort(
+        key=lambda e: (getattr(e, "rule", ""), getattr(e, "at", ()), not isinstance(e, Insert)),
+        reverse=True,
+    )
     return (*tokens, *places, *(e for e in edits if isinstance(e, AddAlternative)))
 
 

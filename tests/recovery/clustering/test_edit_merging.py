@@ -56,6 +56,8 @@ def test_no_edit_moves_the_place_of_another() -> None:
     """Of two insertions into one rule the later place comes first, and each edit comes once."""
     early, late = Insert("motion", (1, 2), "A?"), Insert("motion", (1, 3), "B?")
     assert (late, early) == combined_edits([early], [late, early])
+    other = Widen("motion", (1, 2), "A")
+    assert (other, early) == combined_edits([early], [other])
 
 
 def test_a_choice_is_widened_and_keeps_what_reserves_its_words() -> None:
