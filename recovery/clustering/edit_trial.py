@@ -84,7 +84,6 @@ class EditTrial:
         paths = Paths(recognizer.network)
         self._prefix: dict[Frames, list[int]] = {}
         self._wider: dict[tuple[Edit, ...], Recognizer | None] = {}
-        self._reader = DetourReader(recognizer.grammar, recognizer.network)
         self._forget_paths()
         self._by_rule: dict[str, list[int]] = defaultdict(list)
         self._by_keyword: dict[str, set[int]] = defaultdict(set)
@@ -185,6 +184,7 @@ class EditTrial:
     ) -> Iterator[tuple[int, int | None]]:
         """Lines with the token at which each fails under the edits; none where they do not fit."""
         if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
+            self._reader.recognizer.release()
             self._forget_paths()
         try:
             detours = self._reader.detours(edits)
@@ -214,8 +214,7 @@ class EditTrial:
         return known
 
     def _forget_paths(self) -> None:
-        """Begin with another reader: what lines have been read with so far takes too much room."""
-        self._reader.recognizer.release()
+        """Begin with a new reader."""
         self._reader = DetourReader(self.recognizer.grammar, self.recognizer.network)
         self._paths: dict[tuple[int, tuple[tuple[int, str], ...]], Path] = {}
 

@@ -180,3 +180,22 @@ def test_what_is_no_call() -> None:
         for first in ("C", "ON")
     ]
     assert ["PAIR expression", "PAIR NAME '(' (ON | NUMBER) ')'"] == forms
+
+
+@pytest.mark.parametrize(
+    ("inside", "words"),
+    [
+        ("LEFT", {"LEFT"}),
+        ("side", {"LEFT", "RIGHT"}),  # by a rule of its own
+        ("expression", set()),  # which has ON
+        ("sort", set()),  # words beside names
+    ],
+)
+def test_words_that_only_other_rules_have_in_brackets(inside: str, words: set[str]) -> None:
+    """Words beside names, and those of operands, are left out."""
+    text = _GRAMMAR.replace("':' NAME ')'", f"':' {inside} ')'")
+    more = "side : LEFT | RIGHT ;\n\nsort : NAME | LIST ;\n\nLIST :"
+    rules = OperandRules(Recognizer(read(text.replace("LIST :", more, 1))))
+    lexer = rules.lexer
+    found = rules.words_in_brackets(lexer.kind_of["LPAREN"])
+    assert words == {lexer.names[kind] for kind in found}

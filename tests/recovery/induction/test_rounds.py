@@ -116,14 +116,19 @@ def test_one_file_shows_what_it_has_often(
     assert accepted == Recognizer(_grown(toy, files).grammar).accepts(f"{word} D 7\n")
 
 
-def test_a_word_for_a_name(toy: Grammar) -> None:
-    """That a line of one file has a reserved word where a name stands tells nothing."""
+@pytest.mark.parametrize(("inside", "accepted"), [("HALT", False), ("7", True), ("", True)])
+def test_a_word_for_a_name(toy: Grammar, inside: str, accepted: bool) -> None:
+    """That a line of one file has a reserved word where a name stands tells nothing.
+
+    A number there, or nothing at all, does.
+    """
     start = _with(toy, "    | halt\n", "    | halt\n    | HALT '(' NAME ')'\n")
     files = (
-        CorpusFile("one/a.toy", "HALT(HALT)\n", frozenset({"one"})),
+        CorpusFile("one/a.toy", f"HALT({inside})\n", frozenset({"one"})),
         CorpusFile("two/a.toy", "HALT\n", frozenset({"two"})),
     )
-    assert not Recognizer(_grown(start, files).grammar).accepts("HALT(HALT)\n")
+    found = Recognizer(_grown(start, files).grammar).accepts(f"HALT({inside})\n")
+    assert accepted == found
 
 
 def _with(toy: Grammar, old: str, new: str) -> Grammar:
