@@ -26,8 +26,6 @@ _AUTO = "auto"
 _MOST_TOLD = 3
 #: Virtual seconds that a run lasts at most, without and with automatic inputs.
 _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
-#: Statements after which a program counts as endless: some five seconds of computing.
-_STATEMENTS, _TREE_STATEMENTS = 10_000_000, 2_000_000
 
 
 class Executor(StrEnum):
@@ -124,13 +122,11 @@ class RunOptions:
         ),
     ] = None
     statements: Annotated[
-        int | None,
+        int,
         typer.Option(
-            min=1,
-            max=2**31 - 1,
-            help="Begin no more: it is endless. Default: 10 million, on the tree 2 million.",
+            min=1, max=2**31 - 1, help="So many each program may begin until it counts as endless."
         ),
-    ] = None
+    ] = 10_000_000
     strict: Annotated[
         bool,
         typer.Option(
@@ -195,10 +191,8 @@ def prepared_run(
     submit = submit_of(program) if is_auto and options.submit is None else options.submit
     seconds = options.max_time or (_AUTO_SECONDS if is_auto else _SECONDS)
     profile = Profile.load(options.profile or _agreed_profile(file))
-    executor = options.executor.value if options.executor is not None else available()[-1]
-    most = options.statements or (_TREE_STATEMENTS if executor == "tree" else _STATEMENTS)
     setup = RunSetup(
-        executor=executor,
+        executor=options.executor.value if options.executor is not None else available()[-1],
         robot=options.robot.value,
         profile=profile,
         script=script,
@@ -208,7 +202,7 @@ def prepared_run(
         is_told=is_told,
         motion=options.motion.value,
         until=round(seconds * 1e6),
-        limits=Limits(statements=most, per_slice=profile.statements),
+        limits=Limits(statements=options.statements, per_slice=profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,
         machine=own.machine,

@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,10 @@ from zipfile import ZipFile
 
 import pytest
 
-from krl import run_options
+from interp import session
+from interp.executors import available
+from interp.program.load import Limits
+from interp.session import RunResult, RunSetup, run_program
 from krl.cli import main
 
 INI = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 90,A6 0}\n"
@@ -72,18 +75,26 @@ def test_time_that_is_over(run: Run) -> None:
     assert (1, "main.src: time after 0.5 s at main.src:2\n") == (status, out)
 
 
-@pytest.mark.parametrize(
-    ("options", "most"), [((), 40), (("--executor", "vm"), 90), (("--statements", "70"), 70)]
-)
-def test_statements_that_are_over(
-    run: Run, monkeypatch: pytest.MonkeyPatch, options: Sequence[str], most: int
-) -> None:
-    """An endless program ends after as many statements as take seconds, fewer on the tree."""
-    monkeypatch.setattr(run_options, "_TREE_STATEMENTS", 40)
-    monkeypatch.setattr(run_options, "_STATEMENTS", 90)
-    status, out, _ = run("LOOP\nENDLOOP\n", "--executor", "tree", *options)
+def test_statements_that_are_over(run: Run) -> None:
+    """An endless program ends after as many statements as it may begin."""
+    status, out, _ = run("LOOP\nENDLOOP\n", "--statements", "70")
     assert 1 == status
-    assert out.endswith(f"it has not ended after {most} statements\n")
+    assert out.endswith("it has not ended after 70 statements\n")
+
+
+def test_all_executors_may_begin_as_many(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Or traces would differ, where a submit program computes without end for instance."""
+    seen: list[Limits | None] = []
+
+    def noted(program: Any, setup: RunSetup, **more: Any) -> RunResult:
+        seen.append(setup.limits)
+        return run_program(program, setup, **more)
+
+    monkeypatch.setattr(session, "run_program", noted)
+    for executor in available():
+        run("", "--executor", executor)
+    assert len(seen) == len(available())
+    assert 1 == len(set(seen))
 
 
 def test_what_no_file_has(run: Run) -> None:

@@ -42,9 +42,8 @@ def fuzz(
         if one["program"] is None:
             text = f"Not found: {one['file']}:{one['line']}: {one['was']} becomes {one['now']}"
             console.print(text, markup=False, soft_wrap=True)
-    console.print(
-        f"{record['found']:,} of {record['mutants']:,} mutants found ({record['share']:.1%}), "
-        f"half of them within {record['median_runs']} programs",
-        soft_wrap=True,
-    )
+    text = f"{record['found']:,} of {record['mutants']:,} mutants found ({record['share']:.1%})"
+    if record["found"]:
+        text += f", half of them within {record['median_runs']} programs"
+    console.print(text, soft_wrap=True)
     return FINE
