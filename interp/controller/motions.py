@@ -85,8 +85,13 @@ def _load(value: Any) -> Load | None:
     return Load(float(mass), pose_of(value.get("CM")) or IDENTITY, (x, y, z))
 
 
+def _number(structure: Any, member: str) -> float:
+    """A member; 0 where it has no value."""
+    return float(structure.get(member) or 0.0)
+
+
 def _pair(velocity: Any, acceleration: Any, name: str) -> tuple[float, float]:
-    return float(velocity.get(name) or 0.0), float(acceleration.get(name) or 0.0)
+    return _number(velocity, name), _number(acceleration, name)
 
 
 def _begins_completely(block: MoveSpline) -> bool:
@@ -229,19 +234,13 @@ class MotionBuilder:
         velocity, acceleration, apo = values["$VEL"], values["$ACC"], values["$APO"]
         return Settings(
             self._frames.of(values),
-            float(velocity.get("CP") or 0.0),
-            float(acceleration.get("CP") or 0.0),
+            *_pair(velocity, acceleration, "CP"),
             _pair(velocity, acceleration, "ORI1"),
             _pair(velocity, acceleration, "ORI2"),
             _numbers(values["$VEL_AXIS"], 100.0) + _numbers(values["$VEL_EXTAX"], 100.0),
             _numbers(values["$ACC_AXIS"], 100.0) + _numbers(values["$ACC_EXTAX"], 100.0),
             _numbers(values["$GEAR_JERK"], 100.0),
-            Approximation(
-                float(apo.get("CDIS") or 0.0),
-                float(apo.get("CPTP") or 0.0),
-                float(apo.get("CVEL") or 0.0),
-                float(apo.get("CORI") or 0.0),
-            ),
+            Approximation(*(_number(apo, name) for name in ("CDIS", "CPTP", "CVEL", "CORI"))),
             word_of(values["$ORI_TYPE"]),
             word_of(values["$CIRC_TYPE"]),
             self._state.mode == "T1",

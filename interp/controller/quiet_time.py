@@ -24,7 +24,7 @@ class QuietTime:
     state: ControllerState
     queue: MotionQueue
     automatic: AutomaticInputs
-    _before: tuple[int, int, int] = (0, 0, 0)
+    _before: tuple[int, int, int] | None = None
 
     def begin_tick(self) -> None:
         """A tick begins: what changes from here on is its doing."""

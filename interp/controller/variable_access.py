@@ -67,11 +67,11 @@ class VariableAccess:
             value = max(value, signal.minimum)
         if signal.maximum is not None:
             value = min(value, signal.maximum)
-        delay = microseconds(signal.delay or 0.0)
-        if delay <= 0:  # an earlier switch would need the future (unconfirmed)
-            state.put(request.path, value)
+        if signal.delay is None or signal.delay <= 0.0:
+            state.put(request.path, value)  # an earlier switch would need the future (unconfirmed)
             return
-        state.later(state.clock.now + delay, lambda: state.put(request.path, value))
+        at = state.clock.now + microseconds(signal.delay)
+        state.later(at, lambda: state.put(request.path, value))
 
     def _note_error(self, task: Task, request: Write) -> None:
         """ON_ERROR_PROCEED notes the error it has caught: number and place [TYP-13, FCT-07]."""

@@ -110,7 +110,7 @@ class TreeExecutor:
             self._is_asked = True
             return self._open
         answer: Any = self._resumed or reply
-        self._open, self._is_asked, self._resumed = None, False, None
+        self._open, self._resumed = None, None
         try:
             request = self._advanced(answer)
         except RuntimeFailure as error:  # a routine that cannot even begin
@@ -134,7 +134,7 @@ class TreeExecutor:
             self._open, self._resumed, run.guard, self._final, self._resumed_at_end
         )
         self._stack.append(_Active(steps, frame, interrupted))
-        self._open, self._is_asked, self._resumed, run.guard = None, False, None, Guard.OFF
+        self._open, self._resumed, run.guard = None, None, Guard.OFF
         self._final = self._resumed_at_end = None
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
@@ -184,7 +184,7 @@ class TreeExecutor:
             below = active.interrupted
             self._resumed_at_end = (below.final or below.resumed_at_end) if below else None
         self._run.guard = Guard.OFF
-        self._open, self._is_asked, self._resumed = None, False, Resumed()
+        self._open, self._resumed = None, Resumed()
 
     # ----------------------------------------------------------------------- inspection
 
@@ -231,7 +231,7 @@ class TreeExecutor:
         if not way:
             raise ValueError(f"no statement begins in line {line}")
         self._run.guard = Guard.OFF
-        self._open, self._is_asked, self._resumed = None, False, Selected(way)
+        self._open, self._resumed = None, Selected(way)
 
     # ----------------------------------------------------------------------- the stack
 
