@@ -16,6 +16,7 @@ from typing import Final
 import typer
 
 from krl.plain_parameters import take_plainly
+from support.gc_pause import collect_seldom
 
 FINE: Final = 0
 FINDINGS: Final = 1
@@ -61,6 +62,7 @@ def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
     if os.name == "nt":  # shells there leave wildcards to the program
         given = _expanded(given)
     _print_anything()
+    collect_seldom()
     try:
         status = _invoke(app, given)
         sys.stdout.flush()

@@ -77,7 +77,10 @@ class _Failure:
 
 @dataclass(frozen=True, slots=True)
 class _NightlyView:
-    """``bench`` has words, value, that of before, and the change; ``earlier`` are dates of runs."""
+    """``bench`` has words, value, that of before, and the change.
+
+    ``earlier`` are dates of runs whose pages are there: none where each has a machine of its own.
+    """
 
     date: str
     failures: tuple[_Failure, ...]
@@ -105,7 +108,7 @@ def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
         script=f'"use strict";\n{{\n{scripts}}}\n',
         styles=["page.css", "conform.css", "nightly.css"],
         data=data,
-        view=_view(record, runs),
+        view=_view(record, runs, folder.parent),
     )
     return write_atomic(folder / "index.html", page)
 
@@ -128,7 +131,7 @@ def _short(run: Record) -> Json:
     }
 
 
-def _view(record: Mapping[str, Any], runs: Sequence[Record]) -> _NightlyView:
+def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> _NightlyView:
     before = nested(runs[-2], "bench") if len(runs) > 1 else {}
     return _NightlyView(
         date=shown(text(record, "date"), 40),
@@ -152,7 +155,9 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record]) -> _NightlyView:
         earlier=tuple(
             date
             for run in reversed(runs[:-1])
-            if _DATE.fullmatch(date := text(run, "date")) and date != text(record, "date")
+            if _DATE.fullmatch(date := text(run, "date"))
+            and date != text(record, "date")
+            and (out / date / "index.html").is_file()
         )[:MOST_EARLIER],
     )
 

@@ -1,4 +1,4 @@
-"""The garbage collector paused during work that makes many objects and little garbage.
+"""The garbage collector held back during work that makes many objects and little garbage.
 
 A syntax tree of a megabyte is half a million objects, none of them garbage before the whole tree
 is: going through them again and again takes 40 % of the time of a check.
@@ -13,6 +13,11 @@ from contextlib import contextmanager
 # New objects from which on garbage is collected all the same, so that memory stays flat: they take
 # some 50 MB, and a collection goes through every object that there is.
 _MANY = 500_000
+
+
+def collect_seldom() -> None:
+    """From now on collect new garbage every 100,000 objects, and all of it now and then."""
+    gc.set_threshold(_MANY // 5, 5, 1)
 
 
 @contextmanager

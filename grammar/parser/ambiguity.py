@@ -24,9 +24,12 @@ def is_ambiguous(recognizer: Recognizer, state: State, kinds: Sequence[int]) -> 
     Tokens that cannot be read have none.
     """
     network = recognizer.network
-    start = recognizer.restore(recognizer.frames(state))
     before: dict[_Node, set[_Node]] = defaultdict(set)
-    layer = {(0, c, True) for c in start.core.kernel}
+    # the tail goes below each stack as it is: written out, deep nesting would cost its depth a line
+    layer: set[_Node] = {
+        (0, (position, state.tail.pushed(reversed(stack.positions()))), True)
+        for position, stack in state.core.kernel
+    }
     for index, kind in enumerate(kinds):
         reached: set[_Node] = set()
         seen = set(layer)

@@ -28,6 +28,7 @@ from interp.standins.missing_returns import with_returns
 from interp.standins.unreadable_lines import readable
 from interp.standins.uses import FOLDER
 from interp.values.faults import BudgetExhausted, LinkError
+from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 
 #: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
@@ -236,6 +237,7 @@ def _has_no_index(node: ast.Expression) -> bool:
     )
 
 
+@gc_paused()
 def load(
     sources: Iterable[Source],
     main: str,

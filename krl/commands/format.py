@@ -9,6 +9,7 @@ import typer
 
 from krl.errors import BAD_INPUT, FINDINGS, FINE, InputError, one_line
 from support.files.atomic_write import write_atomic
+from support.gc_pause import gc_paused
 
 if TYPE_CHECKING:
     from support.files.discovery import Found, Skipped
@@ -51,7 +52,8 @@ def format_programs(
     counts: Counter[_Outcome] = Counter()
     try:
         for found in discover(paths):
-            counts[_format(found, check)] += 1
+            with gc_paused():
+                counts[_format(found, check)] += 1
     except IngestError as error:
         if counts[_Outcome.SKIPPED]:  # that was told where it was met
             return BAD_INPUT

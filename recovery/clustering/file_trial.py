@@ -81,17 +81,17 @@ class FileTrial:
         for line in mended:
             for place, at in self._occurrences[line]:
                 first[place] = min(at, first.get(place, at))
+        near = {line for place in first for _, line in self._files[place].failing}
+        behind = {
+            line
+            for line in near.intersection(others)
+            if all(first.get(place, at) < at for place, at in self._occurrences[line])
+        }
         wanted: dict[int, list[tuple[int, int]]] = {}
-        for place, began in first.items():
-            behind = [
-                (at, line)
-                for at, line in self._files[place].failing
-                if at > began
-                and line in others
-                and all(first.get(p, a) < a for p, a in self._occurrences[line])
-            ]
-            if behind:
-                wanted[place] = behind
+        for place in first:
+            found = [(at, line) for at, line in self._files[place].failing if line in behind]
+            if found:
+                wanted[place] = found
         gone: set[int] = set()
         left: set[int] = set()
         finder = FailureFinder(wider)

@@ -156,3 +156,15 @@ def test_a_year_is_kept_and_stays_small(tmp_path: Path) -> None:
     known = known_before(runs)
     assert known is not None
     assert {"hard": 1, "cases": {"a": "pass"}} == known["conform"]
+
+
+def test_only_earlier_runs_with_a_page_are_linked(tmp_path: Path) -> None:
+    """A run of another machine is in the history and on the curves, and no link leads nowhere."""
+    runs = [{"date": f"2026-01-0{day}"} for day in (1, 2, 3)]
+    there = tmp_path / "2026-01-02" / "index.html"
+    there.parent.mkdir()
+    there.touch()
+    page = write_nightly_page({**runs[-1], "history": runs}, tmp_path / "2026-01-03")
+    text = page.read_text(encoding="utf-8")
+    linked = [run["date"] for run in runs if f'href="../{run["date"]}/index.html"' in text]
+    assert (["2026-01-02"], True) == (linked, "2026-01-01" in text)
