@@ -199,9 +199,10 @@ class _Recovery:
             return self._close_all(cause)
         if any(self._write(free, cause.closer) for free in self._free_lines(cause.line + 1, line)):
             return True
-        if cause.word not in _ROUTINES:
-            return self._write(cause.line, "")
-        return False
+        if cause.word in _ROUTINES:
+            return False
+        self._exchanged.pop(cause.line, None)  # also what it was read as in place of what it is
+        return self._write(cause.line, "")
 
     def _close_all(self, block: OpenBlock | None) -> bool:
         """Close the blocks that are open at the end, which may lie within a line or a name."""

@@ -30,7 +30,9 @@ def test_faults_of_a_group_are_planted_and_counted(
     )
     assert record["killed"] >= 2
     assert record["cases_per_s"] > 0
-    assert "Not found: the clock: the submit program" in capsys.readouterr().out
+    assert (
+        "Not found: the clock: WAIT FOR looks in every tenth cycle only" in capsys.readouterr().out
+    )
 
 
 @pytest.mark.skipif(not is_possible(), reason="it takes a copy of a process")

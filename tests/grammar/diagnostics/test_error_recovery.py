@@ -147,3 +147,11 @@ def test_blocks_with_a_line_that_cannot_be_read(head: str, end: str, read: str) 
     assert found.syntax is not None
     assert read in [line.rstrip() for line in found.text.splitlines()]
     assert [False] == [failure.follows for failure in found.failures]
+
+
+@pytest.mark.parametrize("head", ["IF A = = 3 THEN", "FOR I=1 TOO 3", "CASE ) 1"])
+def test_a_head_that_cannot_be_read_and_opens_nothing(head: str) -> None:
+    """A damaged head without its end, as somebody types it, costs no other line."""
+    found = recover(f"DEF WORK()\n{head}\nB=1\nEND\nDEF OTHER()\nEND\n")
+    assert ["WORK", "OTHER"] == routines(found.syntax)
+    assert [2] == [failure.line for failure in found.failures if not failure.follows]
