@@ -139,7 +139,12 @@ class Reading:
     def completed(self, found: Findings) -> Findings:
         """What was found in the tree, with what was found in reading; nothing in place of it."""
         kept = (one for one in found.diagnostics if one.region.line not in self.exchanged)
-        return replace(found, diagnostics=(*self.diagnostics, *kept))
+        references = tuple(
+            one
+            for one in found.references
+            if one.count > 1 or one.region.line not in self.exchanged
+        )
+        return replace(found, diagnostics=(*self.diagnostics, *kept), references=references)
 
 
 def read_source(source: Source) -> Reading:

@@ -40,7 +40,7 @@ from interp.values.poses import IDENTITY, Pose
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Array, Kinematics
 
-_NUMBER: Final = r"\s*([-+]?\d*\.?\d+(?:E[-+]?\d+)?)\b"
+_NUMBER: Final = r"\s*([-+]?(?:\d+(?:\.\d+)?|\.\d+)(?:E[-+]?\d+)?)\b"
 _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_NUMBER}", re.I)
 _WHOLE: Final = re.compile(
     rf"{_POSE.pattern}\s*,\s*A{_NUMBER}\s*,\s*B{_NUMBER}\s*,\s*C{_NUMBER}", re.I
@@ -61,6 +61,8 @@ _REACHED: Final = 0.75
 #: the length of the arm; and A and C in degrees of how the foot may stand. The first is the best.
 _AHEAD: Final = tuple(product((0.75, 0.6), (0.4, 0.7, 0.1)))
 _FEET: Final = tuple(product((0.0, 90.0, -90.0, 180.0), (0.0, 180.0)))
+#: mm and degrees from which on a number in a point is garbage.
+_GARBAGE: Final = 1e6
 #: So many points tell where an arm stands.
 _MOST_POINTS: Final = 64
 #: Axes in degrees of the posture about which places lie, and how far they are from it at most: the
@@ -163,14 +165,16 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
 
     Points are aggregates of numbers with X, Y, Z in mm and A, B, C in degrees.
     """
-    found = (one.groups() for text in texts for one in _WHOLE.finditer(text))
-    every = [one for one in found if any(map(float, one[:3]))]  # else a base, or a way
+    found = [tuple(map(float, one.groups())) for text in texts for one in _WHOLE.finditer(text)]
+    every = [  # else a base, or a way, or garbage
+        one for one in found if any(one[:3]) and all(abs(value) < _GARBAGE for value in one)
+    ]
     some = every[:: len(every) // _MOST_POINTS + 1]
     if len(some) < _FEWEST:
         return machine
     import numpy as np  # only where an arm stands in for one that is lost
 
-    poses = np.array([Pose.of(*map(float, one)).matrix for one in some])
+    poses = np.array([Pose.of(*one).matrix for one in some])
     arm, length = kinematics_of(machine), _length(machine)
     lower, upper = (
         np.array([getattr(axis, end) for axis in machine.axes]) for end in ("lower", "upper")
@@ -229,7 +233,7 @@ def _factor(machine: MachineData, texts: Iterable[str]) -> float:
     reach = _length(machine)
     if far <= reach:
         return 1.0
-    return min(math.ceil(10 * far / (_USABLE * reach)) / 10, _LARGEST)
+    return math.ceil(min(10 * far / (_USABLE * reach), 10 * _LARGEST)) / 10
 
 
 def _scaled(machine: MachineData, factor: float) -> MachineData:

@@ -242,3 +242,12 @@ def test_findings_name_their_files_as_given(tmp_path: Path) -> None:
     (found,) = check(root).diagnostics
     assert isinstance(found, Diagnostic)
     assert f"{root.as_posix()}/A.src" == found.path
+
+
+def test_a_head_that_cannot_be_read_is_one_finding(tmp_path: Path) -> None:
+    """What is left of a counter in a damaged head is no unknown name besides."""
+    text = (
+        "DEF A()\n  INT COUNTER\n  FOR COUNTE?R = 1 TO 3\n    HALT\n  ENDFOR\n  COUNTER = 1\nEND\n"
+    )
+    found = check(lay(tmp_path, A__src=text)).diagnostics
+    assert ["KRL001"] == [one.code for one in found if one.region.line == 3]

@@ -87,6 +87,13 @@ def test_garbage() -> None:
     assert default_machine() == fitting_arm(default_machine(), [wild])
 
 
+def test_numbers_without_end() -> None:
+    """Points that overflow make the arm the largest one, and tell nothing of where it stands."""
+    text = "".join(f"{{X {'9' * 400},Y {number},Z 0,A 1E999,B 0,C 0}}" for number in range(5))
+    assert default_machine().length_b * 5 == fitting_arm(default_machine(), [text]).length_b
+    assert default_machine() == reaching(default_machine(), [text])
+
+
 def test_points_of_the_program() -> None:
     """A few far points of the program to be run are reached, though most of the others are near."""
     near = FAR.replace("2600", "500").replace("1000", "300") * 40
