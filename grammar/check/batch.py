@@ -265,8 +265,9 @@ class _Project:
             sizes[content.path] = len(content.data)
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
-            for number in {diagnostic.region.line for diagnostic in its} - (one.lines or {}).keys():
-                lines[content.path, number] = content.source.line(number)
+            if late := {diagnostic.region.line for diagnostic in its} - (one.lines or {}).keys():
+                source = content.source
+                lines |= {(content.path, number): source.line(number) for number in late}
             found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
         kept = frozenset(
             content.path

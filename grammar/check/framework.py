@@ -141,10 +141,10 @@ def check_project(findings: Iterable[Findings], file_of: FileOf) -> list[Diagnos
     references = [reference for one in kept for reference in one.references]
     used = frozenset[str]().union(*(one.uses for one in kept))
     slips = slipped_declarations(references, used, file_of)
-    explained = {one.finding for one in references if one.called in slips}
+    explained = {one.finding for one in references if one.slip in slips}
     found = [one for file in kept for one in file.diagnostics if one not in explained]
     found += slips.values()
-    found += of_names(one for one in references if not one.finding and one.called not in slips)
+    found += of_names(one for one in references if not one.finding and one.slip not in slips)
     found += of_effects(one.effects for one in kept)
     return in_order(found)
 
@@ -156,5 +156,5 @@ def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[D
         read = [module for module in project.modules if module.syntax is not None]
         files = {module.path: (module.table, source_of(module)) for module in read}
         findings = (check_module(project, one, files[one.path][1]).findings for one in read)
-        found += check_project(findings, files.__getitem__)
+        found += check_project(findings, files.get)
     return in_order(found)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 from grammar.check import advance_stops
 from grammar.check.context import Context
@@ -162,10 +163,11 @@ def read_source(source: Source) -> Reading:
 
 def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) -> list[Diagnostic]:
     """All findings of a project whose files were checked, in order."""
+    indices = {contents[index].path: index for index in reversed(range(len(contents)))}
 
+    @cache
     def file(path: str) -> tuple[ModuleTable | None, Source]:
-        index = next(i for i, content in enumerate(contents) if content.path == path)
-        return files[index].read.table, contents[index].source
+        return files[indices[path]].read.table, contents[indices[path]].source
 
     return check_project((one.checked.findings for one in files), file)
 
@@ -262,7 +264,7 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
     if len(content.data) > LARGEST:
         message = f"larger than {LARGEST // 1_000_000} MB, so it was not checked"
         large = diagnose("too-large", path, Region(1, 1, 1, 1), message)
-        return FileResult(Findings((large,), ())), None
+        return FileResult(Findings((large,), (), uses=frozenset({REST}))), None
     decoded = decode(content.data)
     if isinstance(decoded, str):
         return FileResult(skipped=decoded), None

@@ -19,8 +19,10 @@ from grammar.semantics.symbols import ModuleTable, TypeSymbol
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 
-#: The table and the text of a file of the project, by its path.
-FileOf = Callable[[str], tuple[ModuleTable | None, Source]]
+#: The table and the text of a file of the project, by its path; ``None`` where it is gone.
+FileOf = Callable[[str], tuple[ModuleTable | None, Source] | None]
+#: What tells a name from others: its space, its name in upper case.
+_Called = tuple[Space | None, str]
 
 #: The code of a name that nothing declares, and what it is called, by the space it belongs to.
 SLUGS: Mapping[Space | None, str] = {
@@ -67,11 +69,13 @@ class Declared:
 
     def region(self, file_of: FileOf) -> Region | None:
         """Where it is declared; ``None`` where the file does not any more."""
-        table, source = file_of(self.path)
-        symbol = table.table.find(self.space, self.key) if table else None
+        file = file_of(self.path)
+        if file is None or (table := file[0]) is None:
+            return None
+        symbol = table.table.find(self.space, self.key)
         if self.constant and isinstance(symbol, TypeSymbol):
             symbol = symbol.members.get(self.constant)
-        return Region.of(source, symbol.span) if symbol else None
+        return Region.of(file[1], symbol.span) if symbol else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,38 +104,36 @@ class UnresolvedName:
     finding: Diagnostic | None = None
 
     @property
-    def called(self) -> tuple[Space | None, str]:
+    def called(self) -> _Called:
         """What tells it from other names."""
         return self.space, self.name.upper()
+
+    @property
+    def slip(self) -> tuple[_Called, Declared | None]:
+        """What tells it from other names that are not near the same declaration."""
+        return self.called, self.declared
 
 
 def slipped_declarations(
     found: Iterable[UnresolvedName], used: Set[str], file_of: FileOf
-) -> dict[tuple[Space | None, str], Diagnostic]:
-    """The findings at declarations, by what the uses are `called` that these leave undeclared.
+) -> dict[tuple[_Called, Declared | None], Diagnostic]:
+    """The findings at declarations, by the `slip` of the uses that these leave undeclared.
 
     A declaration has a slip where nothing uses it and a name that is near has several uses.
     ``used`` are declared names that some file uses.
     """
-    uses = _by_name(found)
+    uses: dict[tuple[_Called, Declared | None], list[UnresolvedName]] = {}
+    for reference in found:
+        uses.setdefault(reference.slip, []).append(reference)
     slips = {key: at for key, some in uses.items() if (at := _slipped(some, used, file_of))}
-    often = [
-        key
+    often = {
+        key[0]
         for key in slips
         if uses[key][0].finding is None and sum(one.count for one in uses[key]) > _MOST_SLIPS
-    ]
+    }
     if len(often) > 1:  # their declarations are missing, or were given other names
-        slips = {key: at for key, at in slips.items() if key not in often}
+        slips = {key: at for key, at in slips.items() if key[0] not in often}
     return slips
-
-
-def _by_name(
-    found: Iterable[UnresolvedName],
-) -> dict[tuple[Space | None, str], list[UnresolvedName]]:
-    uses: dict[tuple[Space | None, str], list[UnresolvedName]] = {}
-    for reference in found:
-        uses.setdefault(reference.called, []).append(reference)
-    return uses
 
 
 def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
@@ -142,7 +144,9 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
     elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
     is a slip, what declares them is missing, so that these are notes, too.
     """
-    uses = _by_name(found)
+    uses: dict[_Called, list[UnresolvedName]] = {}
+    for reference in found:
+        uses.setdefault(reference.called, []).append(reference)
     counts = {key: sum(reference.count for reference in some) for key, some in uses.items()}
     seen = {
         space: Typos(some[0].name for (at, _), some in uses.items() if at is space)
@@ -159,7 +163,7 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
         for (space, name), some in uses.items()
     }
     series = Counter(name for names in meant.values() for name in names)
-    lost: dict[bool, list[tuple[Space | None, str]]] = {True: [], False: []}
+    lost: dict[bool, list[_Called]] = {True: [], False: []}
     slips = {}
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)

@@ -220,11 +220,8 @@ class OpenProject:
         """The findings of a project, or those of a file alone until all others were asked."""
         paths = [module.path for module in project.modules]
         if all(one in self._judged for one in paths):
-            tables = {module.path: module.table for module in project.modules}
-            return check_project(
-                (self._judged[one].findings for one in paths),
-                lambda path: (tables[path], self._files[path].source),
-            )
+            files = {one.path: (one.table, self._files[one.path].source) for one in project.modules}
+            return check_project((self._judged[one].findings for one in paths), files.get)
         return self._judged[path].findings.diagnostics
 
     def catch_up(self) -> Iterator[str]:

@@ -177,6 +177,8 @@ def test_names_have_the_grade_of_the_project(tmp_path: Path) -> None:
     assert f"{tmp_path.as_posix()}/ALONE.src" not in [*project.catch_up()]
     assert {"warning"} == graded(project, tmp_path, "RESETCLOK")
     assert [] == [*project.catch_up()]
+    project.forget(f"{tmp_path.as_posix()}/RESETCLOK.src")  # others still refer to it for a while
+    assert {"warning"} != graded(project, tmp_path, "CALLS")
 
 
 def test_archives_beside_files(tmp_path: Path) -> None:

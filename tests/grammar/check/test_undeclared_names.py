@@ -228,6 +228,18 @@ def test_a_slip_in_a_constant_is_told_where_it_is_declared(agrees: Agrees) -> No
     agrees({"$config.dat": ENUM, "a.src": PLACES, "b.src": b}, is_complete=None)
 
 
+def test_each_list_has_its_own_slips(agrees: Agrees) -> None:
+    """What one list declares is not what other programs call alike."""
+    files = {}
+    for name in "AB":
+        data = f"DEFDAT {name}\nENUM JOB PICK, PLCAE ;> KSS2296\nDECL JOB J\n"
+        data += "DECL INT RECIEVED=0 ;> KRL101?\nENDDAT\n"
+        program = PLACES.replace("A()", f"{name}()\n" + "RECEIVED = 1\n" * 5)
+        files |= {f"{name}.dat": data, f"{name}.src": program}
+    other = "DEF C() ;> KRL702-\nRECEIVED = 1 ;> KRL701-\nEND\n"
+    agrees({**files, "C.src": other}, is_complete=None)
+
+
 def test_a_slip_in_the_use_of_a_constant(agrees: Agrees) -> None:
     """Where the constant is used as it is declared, its other uses are wrong."""
     b = "DEF B()\nJ = #PLCAE\nEND\n"
