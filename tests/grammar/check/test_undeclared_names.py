@@ -230,7 +230,7 @@ def test_a_slip_in_a_constant_is_told_where_it_is_declared(agrees: Agrees) -> No
 
 def test_each_list_has_its_own_slips(agrees: Agrees) -> None:
     """What one list declares is not what other programs call alike."""
-    files = {}
+    files: dict[str, str] = {}
     for name in "AB":
         data = f"DEFDAT {name}\nENUM JOB PICK, PLCAE ;> KSS2296\nDECL JOB J\n"
         data += "DECL INT RECIEVED=0 ;> KRL101?\nENDDAT\n"
@@ -270,6 +270,43 @@ def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
 
 CUT = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nDECL GLOBAL IN"
 UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
+
+
+@pytest.mark.parametrize("other", ["J = = #PLCAE\nEND\n", "HALT\n"])
+def test_what_cannot_be_read_may_use_a_declaration(other: str) -> None:
+    """Then it has no slip for certain, and the uses are told."""
+    found = told({"$config.dat": ENUM, "a.src": PLACES, "b.src": f"DEF B()\n{other}"})
+    assert [2, 3] == [line for path, line, _ in found if path == "a.src"]
+    assert "$config.dat" not in [path for path, *_ in found]
+
+
+@pytest.mark.parametrize(("more", "count"), [("", 1), (", PLAEC", 0)])
+def test_a_slip_has_one_name_that_is_near(more: str, count: int) -> None:
+    """Of two declarations that are near neither is wrong for certain."""
+    found = told({"$config.dat": ENUM.replace("PLCAE", f"PLCAE{more}"), "a.src": PLACES})
+    assert count == [path for path, *_ in found].count("$config.dat")
+
+
+def test_a_slip_in_a_declaration_that_moved() -> None:
+    """Findings that were kept lead to the file that declares it now."""
+    slip = "DECL GLOBAL INT RECIEVED=0\n"
+    program = "DEF A()\n" + "RECEIVED = 1\n" * 5 + "END\n"
+    one, two = (
+        [
+            Content(path, "", text.encode())
+            for path, text in (
+                ("a.src", program),
+                ("b.dat", f"DEFDAT B PUBLIC\n{first}ENDDAT\n"),
+                ("c.dat", f"DEFDAT C PUBLIC\n{second}ENDDAT\n"),
+            )
+        ]
+        for first, second in ((slip, ""), ("", slip))
+    )
+    known = recheck(one, CheckOptions(), {})
+    found = found_in_project(two, recheck(two, CheckOptions(), {0: known[0]}))
+    assert ["c.dat"] == [diagnostic.path for diagnostic in found if diagnostic.severity != "note"]
+
+
 WATCHED = "DEF A()\nINTERRUPT DECL 5 WHEN $IN[1] DO B()\n"
 MAIN = "DEF MAIN()\n  GRIPPED = 1\n  PARTS = OTHERS\n  CELL(1)\nEND\n"
 
