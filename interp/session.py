@@ -18,7 +18,7 @@ from interp.controller.controller import Controller
 from interp.controller.input_script import Script
 from interp.controller.profile import Profile
 from interp.controller.scheduler import HOUR, RunOutcome
-from interp.controller.trace import WORLD_KINDS, Trace, TraceEvent
+from interp.controller.trace import WORLD_KINDS, TaskSink, Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
 from interp.port.events import EVERY_KIND, Kind
 from interp.port.executor import Executor
@@ -198,8 +198,7 @@ def run_program(
     starts = program.starts(prepared.routine, setup.submit)
     arguments = _stand_in_arguments(program.reached(*starts)) if setup.is_told else None
     trace = Trace(take, kinds=_kinds(program, setup), arguments=arguments)
-    silent = None if setup.is_submit_told else _needed_kinds(program)
-    sink, submit_sink = trace.sink(), trace.sink("submit", silent)
+    sink, submit_sink = _sinks(trace, program, setup)
     limits = replace(
         setup.limits or Limits(per_slice=profile.statements),
         skips_failures=setup.skips_failures and profile.is_tolerant and debugger is None,
@@ -291,6 +290,15 @@ def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
     if setup.is_full:
         return EVERY_KIND
     return WORLD_KINDS if setup.is_told else _needed_kinds(program)
+
+
+def _sinks(trace: Trace, program: CheckedProgram, setup: RunSetup) -> tuple[TaskSink, TaskSink]:
+    """Those of the two programs. Calls that only interrupts and $ERR go by are in no trace."""
+    is_told = setup.is_full or setup.is_told
+    silent = None if setup.is_submit_told else _needed_kinds(program)
+    return trace.sink(keeps_calls=is_told), trace.sink(
+        "submit", silent, keeps_calls=is_told and setup.is_submit_told
+    )
 
 
 def _stand_in_arguments(units: Sequence[Unit]) -> dict[tuple[str, int, str], str]:

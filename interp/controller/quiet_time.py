@@ -1,38 +1,63 @@
-"""Stretches of time in which every tick is like the one before, so that the clock may jump.
+"""Stretches of time that are like the one before, so that the clock may jump.
 
 A program that waits looks at its condition in every cycle, and so do interrupts. Where a tick has
 changed nothing, and has read nothing that time alone changes, the next one will be like it, until
 the arm, a script or a wait with an end does something. Nothing of that is seen in a trace.
+
+A submit program goes round and round meanwhile, and its slices end anywhere in its loop. Where all
+programs are at a tick where they were at an earlier one, and nothing has changed since, so it goes
+on: whole periods pass at once. Their statements count as if they had been begun.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from interp.controller.automatic_inputs import AutomaticInputs
 from interp.controller.motion_queue import MotionQueue
 from interp.controller.state import ControllerState
 from interp.controller.tasks import Task
-from interp.port.requests import Poll, Request, Wait
+from interp.controller.waits import IDLE_AFTER
+from interp.port.executor import Recurrent
+from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
+
+#: Requests that leave no trace but in what they write.
+REPEATABLE: Final = (Read, Write, StopAdvance, Slice, Poll)
+
+
+@dataclass(frozen=True, slots=True)
+class _Mark:
+    """Where all programs were at a tick, and how many statements each had begun."""
+
+    time: int
+    places: tuple[object, ...]
+    begun: tuple[int, ...]
 
 
 @dataclass(slots=True)
 class QuietTime:
-    """Finds such stretches."""
+    """Finds such stretches. ``acts`` counts requests that are not `REPEATABLE`."""
 
     state: ControllerState
     queue: MotionQueue
     automatic: AutomaticInputs
-    _before: tuple[int, int, int] | None = None
+    acts: int = 0
+    _before: tuple[int, ...] | None = None
+    _mark: _Mark | None = None
+    _reach: int = 0
 
     def begin_tick(self) -> None:
         """A tick begins: what changes from here on is its doing."""
-        self._before = self._counts()
+        counts = self._counts()
+        if self._before != counts or self.state.variables.has_read_changing:
+            self._mark = None
+        self._before = counts
         self.state.variables.has_read_changing = False
 
     def end(self, tasks: Sequence[Task], now: int, limit: int) -> int:
-        """The time up to which all ticks are like the one that is over; ``now`` where none is."""
+        """The time up to which all ticks are like those before; ``now`` where none is."""
         clock, state = self.state.clock, self.state
         is_quiet = (
             clock.is_tick
@@ -40,18 +65,67 @@ class QuietTime:
             and not state.variables.has_read_changing
             and self.queue.next_time() is None
             and _waits(tasks[0], Poll, Wait)
-            and all(_waits(task, Wait) for task in tasks[1:])  # which have longer slices
         )
         if not is_quiet:
             return now
         times = [limit, state.actions.next_time(), self.automatic.wake]
         times += (task.blocked.wake for task in tasks if task.blocked and _is_timed(task))
         end = min(time for time in times if time is not None)
-        return end - end % clock.cycle
+        if all(_waits(task, Wait) for task in tasks[1:]):  # which have longer slices
+            return end - end % clock.cycle
+        return now + self._skipped([task for task in tasks if not task.is_over], end - now)
 
-    def _counts(self) -> tuple[int, int, int]:
+    def _skipped(self, tasks: Sequence[Task], most: int) -> int:
+        """The time in µs that passes at once: whole periods after which all is as it is now."""
+        now, cycle = self.state.clock.now, self.state.clock.cycle
+        found = [self._place(task) for task in tasks]
+        executors = [one.executor for one in tasks if isinstance(one.executor, Recurrent)]
+        if None in found or len(executors) < len(tasks):
+            self._mark = None
+            return 0
+        phase = now % (cycle * self.state.profile.submit_every)
+        places = (phase, self.state.actions.next_time(), *found)
+        begun = tuple(executor.begun for executor in executors)
+        mark = self._mark
+        if mark is None or mark.places != places:  # after Brent: a mark is kept twice as long
+            if mark is None:
+                self._reach = cycle
+            if mark is None or now - mark.time >= self._reach:
+                self._mark, self._reach = _Mark(now, places, begun), 2 * self._reach
+            return 0
+        period = now - mark.time
+        sizes = [new - old for new, old in zip(begun, mark.begun, strict=True)]
+        rounds = [most // period]
+        rounds += (one.spare // size for one, size in zip(executors, sizes, strict=True) if size)
+        count = max(min(rounds), 0)
+        for task, executor, size in zip(tasks, executors, sizes, strict=True):
+            executor.skip(count * size)
+            if now - task.busy_at < IDLE_AFTER and not _is_timed(task):
+                task.busy_at += count * period
+        self._mark = _Mark(now + count * period, places, tuple(one.begun for one in executors))
+        return count * period
+
+    def _place(self, task: Task) -> tuple[object, ...] | None:
+        """All that a program goes on from, its times relative to now; ``None`` if that is unknown.
+
+        A level on top of it may end, and an executor that is debugged shows every statement.
+        """
+        blocked, now = task.blocked, self.state.clock.now
+        is_waiting = blocked is not None and isinstance(blocked.request, (*REPEATABLE, Wait))
+        if not is_waiting or blocked is None or task.levels or task.signals or task.is_halted:
+            return None
+        standing = task.executor.standing() if isinstance(task.executor, Recurrent) else None
+        if standing is None:
+            return None
+        place = (standing, repr(blocked.request), task.idle_at, task.exempt_line)
+        if _is_timed(task):
+            return place
+        wake = None if blocked.wake is None else blocked.wake - now
+        return *place, wake, task.spent, min(now - task.busy_at, IDLE_AFTER)
+
+    def _counts(self) -> tuple[int, ...]:
         state = self.state
-        return state.trace.count, state.variables.writes, self.queue.count
+        return state.trace.count, state.variables.writes, self.queue.count, self.acts
 
 
 def _is_timed(task: Task) -> bool:

@@ -19,7 +19,7 @@ from interp.controller.interrupt_unit import InterruptUnit
 from interp.controller.levels import Levels
 from interp.controller.motion_queue import MotionQueue
 from interp.controller.operator_panel import OperatorPanel
-from interp.controller.quiet_time import QuietTime
+from interp.controller.quiet_time import REPEATABLE, QuietTime
 from interp.controller.request_table import RequestTable
 from interp.controller.script_player import ScriptPlayer
 from interp.controller.spline_stops import SplineStops
@@ -264,6 +264,8 @@ class Scheduler:
             task.exempt_line = None
         task.last_at = request.at
         self.state.trace.origin = task.name, request.at
+        if not isinstance(request, REPEATABLE):
+            self.quiet.acts += 1
         answer = self.requests.answer(task, request)
         is_passed = isinstance(request, StopAdvance) and answer is None
         if is_passed and most is not None and task.exempt_line is None:

@@ -116,23 +116,33 @@ class Trace:
         finally:
             self.origin = before
 
-    def sink(self, task: TaskName = "robot", kinds: frozenset[Kind] | None = None) -> TaskSink:
+    def sink(
+        self,
+        task: TaskName = "robot",
+        kinds: frozenset[Kind] | None = None,
+        *,
+        keeps_calls: bool = True,
+    ) -> TaskSink:
         """The sink of an executor whose events belong into this trace; ``kinds`` as for that."""
-        return TaskSink(self, task, self.kinds if kinds is None else kinds)
+        return TaskSink(self, task, self.kinds if kinds is None else kinds, keeps_calls)
 
 
 class TaskSink:
     """Records the events of one executor.
 
     ``left`` is called with the depth of each routine that has ended: interrupts that it declared
-    end with it [INT-04]. ``kinds`` are those that it wants.
+    end with it [INT-04]. ``kinds`` are those that it wants; unless it ``keeps_calls`` the trace has
+    none, and they only serve to know which routines are open.
     """
 
-    def __init__(self, trace: Trace, task: TaskName, kinds: frozenset[Kind]) -> None:
+    def __init__(
+        self, trace: Trace, task: TaskName, kinds: frozenset[Kind], keeps_calls: bool
+    ) -> None:
         self.task: TaskName = task
         self.kinds = kinds
         self.left: Callable[[int], None] | None = None
         self._trace = trace
+        self._keeps_calls = keeps_calls
         self._names: dict[int, str] = {}
 
     def routine(self, depth: int) -> str:
@@ -150,13 +160,16 @@ class TaskSink:
     def call(self, at: At, name: str) -> None:
         """A routine is called."""
         self._names[at.depth + 1] = name
+        if not self._keeps_calls:
+            return
         given = self._trace.arguments.get((at.file, at.line, name.upper()))
         fields = {} if given is None else {"arguments": given}
         self._trace.record(self.task, "call", at, name=name, **fields)
 
     def leave(self, at: At, name: str) -> None:
         """A routine has ended."""
-        self._trace.record(self.task, "return", at, name=name)
+        if self._keeps_calls:
+            self._trace.record(self.task, "return", at, name=name)
         if self.left is not None:
             self.left(at.depth)
 

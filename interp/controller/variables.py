@@ -70,13 +70,16 @@ _STEADY: Final = frozenset(
     "$IN $OUT $ANIN $ANOUT $OUT_C $STOPMESS $PRO_STATE $PRO_STATE0 $PRO_STATE1 $PRO_ACT $ON_PATH "
     "$NUM_IN $NUM_OUT $NULLFRAME $I_O_ACTCONF $T1 $T2 $AUT $EXT".split()
 )
+#: Those whose changes are events.
+_SIGNALS: Final = frozenset({"$IN", "$OUT", "$ANIN", "$ANOUT"})
 
 
 class Variables:
     """All system variables; names are in upper case.
 
-    ``writes`` counts all that were given a value. ``has_read_changing``: one was read that changes
-    with time alone, since this was made false.
+    ``writes`` counts those that were given a value, but not where they had it already, nor signals,
+    which tell of their changes. ``has_read_changing``: one was read that changes with time alone,
+    since this was made false.
     """
 
     def __init__(self, profile: Profile, given: Mapping[str, Value] | None = None) -> None:
@@ -178,7 +181,6 @@ class Variables:
 
     def put(self, path: Path, value: Value) -> None:
         """Anybody gives a variable a value, write-protected or not."""
-        self.writes += 1
         name = str(path[0])
         entry = self.entry(name)
         if entry is not None and entry.limits is not None and isinstance(value, int | float):
@@ -187,15 +189,27 @@ class Variables:
                 raise fault("invalid")
         live = self._live.get(name)
         if live is not None:
+            self.writes += name not in _SIGNALS
             live.write(path, value)
             return
         if self._is_loose(path):
+            self.writes += 1
             self._loose[path] = copied(value)
             return
+        before = self._scalar(path)
         if name in self._twice:  # snapshots keep the old one
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
+        self.writes += before is None or before != self._scalar(path)
+
+    def _scalar(self, path: Path) -> str | None:
+        """A value that can be compared, if it is one: both zeros differ, and so do 1 and TRUE."""
+        try:
+            value = part(self._root(str(path[0])), path[1:])
+        except Fault:
+            return None
+        return repr(value) if isinstance(value, int | float) else None
 
     def _is_loose(self, path: Path) -> bool:
         """Whether it is a part of a variable of which nothing is known, an option's perhaps.

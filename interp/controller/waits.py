@@ -17,7 +17,7 @@ from interp.port.requests import Confirm, Halt, Poll, Read, Request, Slice, Wait
 from interp.values.json_form import to_json
 
 #: A program that has only read variables for so long, in µs, gets so many requests in a slice.
-_IDLE_AFTER: Final = 1_000_000
+IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
 
 
@@ -94,7 +94,7 @@ class Waits:
             if task.busy_at != now or task.idle_at is not None:
                 self._busy(task, request)
             return most
-        if now - task.busy_at < _IDLE_AFTER or task.level is not None:
+        if now - task.busy_at < IDLE_AFTER or task.level is not None:
             return most
         if task.name == "robot" and task.spent == 1:  # once a slice
             if task.idle_at is None:
@@ -116,7 +116,7 @@ class Waits:
         """The time in µs from which inputs may change for a program that only computes, if any."""
         if task.idle_at is not None:
             return self._automatic.next_change
-        return task.busy_at + _IDLE_AFTER if self._automatic.is_on else None
+        return task.busy_at + IDLE_AFTER if self._automatic.is_on else None
 
     # ----------------------------------------------------------------------- the operator
 

@@ -112,7 +112,7 @@ class _Calls:
 class _State(Core):
     """What the machine works on, which lies in C, as `interp.bytecode.vm.state.State` shows it."""
 
-    __slots__ = ("calls", "completion", "reader", "request", "stack")
+    __slots__ = ("calls", "completion", "reader", "request", "site", "stack")
 
     base = 0  # where nothing lies on the stack that is not the frame's
 
@@ -122,6 +122,7 @@ class _State(Core):
         self.reader: Reader | None = None
         self.request: Request | None = None
         self.completion: Completion | None = None
+        self.site: object = None
 
     @property
     def cells(self) -> Core:
@@ -272,6 +273,9 @@ class Machine(vm.Machine):
             if one.op is Op.LINE and (code.file, one.operands[0]) in places
         ]
         return self._core.break_at(steps) == len(steps)
+
+    def _memory(self) -> object:
+        return self._core.snapshot()
 
     def _push_frame(self, number: int, serial: int, _after: Operation) -> None:
         core = self._core

@@ -322,6 +322,21 @@ static PyObject *core_floor(PyObject *self, void *Py_UNUSED(closure))
     return PyLong_FromLong(machine->fp + machine->routines[machine->code].frame);
 }
 
+/* All that a machine goes on from: the frame that runs, the open calls, the cells of the data lists and of its frames. */
+static PyObject *core_snapshot(PyObject *self, PyObject *Py_UNUSED(ignored))
+{
+    const struct krl_machine *machine = &((struct core *)self)->machine;
+    const krl_cell *cells = machine->memory->cells;
+    const int32_t frame[] = {machine->code, machine->fp, machine->extent, machine->statement,
+                             machine->serial, machine->serials, machine->left, machine->quota,
+                             machine->whole, machine->stops, machine->top};
+    const Py_ssize_t cell = (Py_ssize_t)sizeof *cells;
+    return Py_BuildValue("y#y#y#y#", (const char *)frame, (Py_ssize_t)sizeof frame, (const char *)machine->calls,
+                         (Py_ssize_t)sizeof *machine->calls * machine->open, (const char *)cells,
+                         cell * machine->program.data_cells, (const char *)(cells + machine->first),
+                         cell * (machine->top - machine->first));
+}
+
 /* ---------------------------------------------------------------------------- register code */
 
 static const char *const step_names[] = {
@@ -429,6 +444,7 @@ static PyMethodDef core_methods[] = {
     {"step", core_step, METH_VARARGS, "step(code, place): the step of an instruction that is a target."},
     {"about", core_about, METH_VARARGS, "about(step): its matter, its instruction, its LINE or -1."},
     {"run", core_run, METH_VARARGS, "run(step, is_begun): why it stopped, and 8 times where."},
+    {"snapshot", core_snapshot, METH_NOARGS, "snapshot(): all that it goes on from."},
     {"open_frame", core_open, METH_VARARGS, "open_frame(code): whether there is room for it."},
     {"close_frame", core_close, METH_NOARGS, "close_frame(): back to the frame before."},
     {"call", core_call, METH_VARARGS, "call(number): code, first cell, statement, serial of an open call."},

@@ -9,7 +9,7 @@ executor may go on. Neither knows more of the other than this.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from interp.port.events import Sink
 from interp.port.requests import CodeHandle, Path, Request, Value
@@ -65,4 +65,30 @@ class Executor(Protocol):
     @property
     def depth(self) -> int:
         """How many calls deep the program is; 0 in the routine it began with."""
+        ...
+
+
+@runtime_checkable
+class Recurrent(Protocol):
+    """An executor that can tell whether it has come to where it was before."""
+
+    @property
+    def begun(self) -> int:
+        """How many statements have begun."""
+        ...
+
+    @property
+    def spare(self) -> int:
+        """How many statements may be skipped before the limits have a say."""
+        ...
+
+    def standing(self) -> object | None:
+        """All that its next requests depend on, but for the replies; ``None`` where it cannot tell.
+
+        Where two are equal, equal replies lead from both through the same requests.
+        """
+        ...
+
+    def skip(self, statements: int) -> None:
+        """Count so many statements as begun that have led back to here."""
         ...

@@ -10,6 +10,7 @@ behind the one that RESUME comes back to.
 
 from __future__ import annotations
 
+import marshal
 from collections.abc import Callable, Collection
 from typing import Any
 
@@ -104,6 +105,7 @@ class Machine:
         self._final: Request | None = None
         number = _routine(program, routine.upper() if isinstance(routine, str) else routine)
         self._begin(number)
+        self._first = self._state.fp
         self._open = _Open(self._threaded.entries[number])
 
     # ----------------------------------------------------------------------- what it is made of
@@ -148,7 +150,7 @@ class Machine:
         if now.request is not None and not now.is_asked:
             self._open = _Open(None, now.request, now.completion, is_asked=True)
             return now.request
-        state.request = state.completion = None
+        state.request = state.completion = state.site = None
         try:
             self._run(now.operation if now.completion is None else _given(now.completion, reply))
         except Exception as error:  # a defect of ours, reported as one
@@ -228,6 +230,36 @@ class Machine:
             self._leave_frame()
         self._services.counter.guard = Guard.OFF
         self._open = _Open(self._behind_statement())
+
+    # ----------------------------------------------------------------------- skipping
+
+    def standing(self) -> object | None:
+        """All that it goes on from; see `interp.port.executor.Recurrent`."""
+        now, state, counter, random = self._open, self._state, self._services.counter, self._random
+        counted = counter.standing
+        is_known = state.site is not None and now.request is not None and not self._entered
+        if counted is None or not is_known or not isinstance(random, Randomness):
+            return None
+        return counted, state.site, repr(now.request), now.is_asked, random.state, self._memory()
+
+    def _memory(self) -> object:
+        """The frame that runs, the open calls, the data lists and the frames."""
+        state, data = self._state, self._program.addresses[-1]
+        end = state.fp + self._threaded.frames[state.code]
+        cells = state.cells[:data], state.cells[self._first : end], state.stack
+        frame = state.code, state.fp, state.base, state.statement, state.serial, state.serials
+        counts = state.left, state.quota, state.whole, state.stops
+        # As bytes: the numbers 1, 1.0 and TRUE are equal, and so are both zeros.
+        return frame, counts, tuple(state.calls), marshal.dumps(cells, 2)
+
+    @property
+    def spare(self) -> int:
+        """How many statements may be skipped."""
+        return self._services.counter.spare
+
+    def skip(self, statements: int) -> None:
+        """So many more statements have begun."""
+        self._services.counter.skip(statements)
 
     # ----------------------------------------------------------------------- inspection
 

@@ -115,7 +115,7 @@ class Services:
             case Pause.SLICE if state.reader is None:
                 counter.asked()
                 state.request = Slice(self.at(), counter.passed() + 1)
-                state.completion = completion
+                state.completion, state.site = completion, begin
                 return None
         return completion(None)
 
@@ -172,6 +172,7 @@ class Services:
                     raise LinkError(NOT_IN_CONDITIONS)
                 return completion(state.reader(request.path))
             state.request, state.completion = _finished(request), completion
+            state.site = after, block
             self.counter.asked()
             return None
 
@@ -189,6 +190,7 @@ class Services:
             if state.reader is not None or counter.passes_stop():
                 return after
             state.request, state.completion = StopAdvance(self.at()), completion
+            state.site = after
             counter.asked()
             return None
 

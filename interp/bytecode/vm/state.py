@@ -32,7 +32,8 @@ class State:
     ``last`` the cell that was written last through a reference.
 
     When the machine stops, ``request`` is why, and ``completion`` takes the reply. ``reader`` is
-    there while a condition is evaluated, which does not stop.
+    there while a condition is evaluated, which does not stop. ``site`` is what the program goes on
+    with behind the request, where nothing else is to be remembered.
     """
 
     __slots__ = (
@@ -51,6 +52,7 @@ class State:
         "request",
         "serial",
         "serials",
+        "site",
         "stack",
         "statement",
         "stops",
@@ -79,3 +81,4 @@ class State:
         self.reader: Reader | None = None
         self.request: Request | None = None
         self.completion: Completion | None = None
+        self.site: object = None

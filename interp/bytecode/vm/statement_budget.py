@@ -23,6 +23,8 @@ from interp.program.load import Limits
 
 #: The largest ``State.quota``, which C holds in 32 bits.
 _LARGEST: Final = 2**31 - 1
+#: So many slices before its end the budget is near: more requests than a task makes in a cycle.
+_NEAR: Final = 1_000
 
 
 class Guard(Enum):
@@ -88,6 +90,24 @@ class Counter:
         if self._guard is Guard.OFF:
             most = min(self._limits.statements - self.begun, _LARGEST) // self._state.whole - 1
             self._allowed = self._state.stops = max(min(stops, most), 0)
+
+    @property
+    def standing(self) -> tuple[int, ...] | None:
+        """What it goes on from, where neither the budget nor ON_ERROR_PROCEED is near."""
+        if self._guard is not Guard.OFF or self.spare <= 0:
+            return None
+        due = self._due - self._begun
+        return due, self._slices, self._passed, self._allowed, self._stopped
+
+    @property
+    def spare(self) -> int:
+        """How many statements may be skipped before the budget has a say."""
+        return self._limits.statements - self.begun - _NEAR * self._state.whole
+
+    def skip(self, statements: int) -> None:
+        """So many more have begun."""
+        self._begun += statements
+        self._due += statements
 
     def passes_stop(self) -> bool:
         """Whether a `StopAdvance` need not be asked for: then a slice begins."""

@@ -1,0 +1,171 @@
+"""A submit program that goes round without an effect costs little, and nothing is seen of that."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grammar.syntax.source import Source
+from interp.bytecode.vm.executor import Machine
+from interp.controller import Profile, scheduler
+from interp.controller.automatic_inputs import OPERATOR
+from interp.controller.input_script import Script
+from interp.controller.quiet_time import QuietTime
+from interp.program.load import CheckedProgram, Limits, load
+from interp.session import RunResult, RunSetup, available, run_program
+
+MACHINES = [name for name in available() if name != "tree"]
+CONFIG = "DEFDAT $CONFIG\nDECL INT COUNT=0\nDECL INT OTHER=0\nDECL REAL ZERO=0.0\nENDDAT\n"
+SHOW = "".join(f"$OUT[{100 + bit}]=(COUNT B_AND {1 << bit})<>0\n" for bit in range(12))
+MAIN = """DEF main ( )
+INTERRUPT DECL 3 WHEN $IN[3] DO SEEN ( )
+INTERRUPT ON 3
+WAIT FOR $IN[7]
+{}$OUT[50]=NOT $OUT[50]
+WAIT SEC 0.7
+{}WAIT FOR $IN[8]{}
+{}END
+DEF SEEN ( )
+$FLAG[2]=TRUE
+COUNT=COUNT+3
+END
+DEFFCT BOOL TURNS ( )
+OTHER=OTHER+1
+RETURN OTHER>90
+ENDFCT
+"""
+SPS = """DEF SPS ( )
+DECL INT I
+DECL BOOL B
+{}LOOP
+{}ENDLOOP
+END
+DEF PASS (B:IN )
+BOOL B
+IF B THEN
+  $OUT[9]=$FLAG[2]
+ENDIF
+END
+"""
+#: Statements of a submit program: those that change nothing, and those that do.
+IDLE = (
+    "$OUT[1]=$IN[1]",
+    "$OUT[2]=$IN[2] AND NOT $IN[3]",
+    "$FLAG[1]=TRUE",
+    "IF $IN[4] THEN\nCOUNT=COUNT+1\nENDIF",
+    "FOR I=1 TO 7\nB=$IN[I]\nENDFOR",
+    "PASS ($IN[5])",
+    "B=$IN[1] OR $IN[1] OR $IN[1]",
+    "$OUT[11]=COUNT>40",
+    "$OUT[10]=$FLAG[2]",
+    "I=I+1-1",
+    "$ANOUT[1]=0.25",
+    "$OV_PRO=100",
+    "$OUT[5]=ZERO==0.0",
+)
+BUSY = (
+    "COUNT=COUNT+1",
+    "I=I+1",
+    "$OUT[12]=$TIMER[1]>1000",
+    "$TIMER_STOP[1]=FALSE",
+    "$OUT[13]=$ROB_STOPPED",
+    "PULSE ($OUT[14],TRUE,0.3)",
+    "$FLAG[3]=NOT $FLAG[3]",
+    "WAIT SEC 0.05",
+    "ZERO=-ZERO",
+    "$OUT[15]=NOT $OUT[15]",
+    "IF COUNT>60 THEN\n$OUT[16]=TRUE\nENDIF\nCOUNT=COUNT+1",
+    "B=RND()>0.5",
+    "I=(I+1)-3*((I+1)/3)",
+)
+HEADS = ("", "I=0\n", "INTERRUPT DECL 5 WHEN $IN[6] DO PASS (TRUE )\nINTERRUPT ON 5\nI=0\n")
+
+
+def _program(submit: str, main: str = MAIN.format("", "", "", SHOW)) -> CheckedProgram:
+    files = {"main.src": main, "sps.sub": submit, "$config.dat": CONFIG}
+    sources = [Source(text, name) for name, text in files.items()]
+    return load(sources, "main.src", strict=False)
+
+
+def _seen(run: RunResult) -> list[str]:
+    assert isinstance(run.executor, Machine)
+    begun = [one.begun for one in run.executor._together]
+    return [str(run.outcome), f"{begun}", *(one.line() for one in run.events)]
+
+
+def _both(program: CheckedProgram, setup: RunSetup) -> tuple[list[str], list[str]]:
+    """What is seen of a run, with whole periods at once and without."""
+    setup = replace(setup, submit="SPS", is_told=False)
+    quick = _seen(run_program(program, setup))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(QuietTime, "_skipped", lambda *_: 0)
+        return quick, _seen(run_program(program, setup))
+
+
+@st.composite
+def drawn(draw: st.DrawFn) -> tuple[CheckedProgram, RunSetup]:
+    idle = draw(st.lists(st.sampled_from(IDLE), min_size=0, max_size=6))
+    busy = draw(st.lists(st.sampled_from(BUSY), max_size=1))
+    body = "".join(f"{one}\n" for one in draw(st.permutations(idle + busy)))
+    calls = draw(st.sampled_from(["", "", "", " OR TURNS ( )"]))
+    parts = st.sampled_from(["", "COUNT=COUNT+1\n", "$FLAG[1]=FALSE\n", "SPTP {A1 10}\n"])
+    main = MAIN.format(draw(parts), draw(parts), calls, SHOW)
+    times = st.integers(1, 2_900_000).map(lambda time: f"{time / 1e6:.6f}")
+    change = st.builds(
+        lambda time, number, value: f"t={time} IN[{number}]={value}\n",
+        times,
+        st.sampled_from([1, 2, 3, 4, 5, 6, 7, 7, 8, 8]),
+        st.sampled_from(["TRUE", "TRUE", "FALSE"]),
+    )
+    script = draw(st.sampled_from(["", OPERATOR])) + "".join(draw(st.lists(change, max_size=6)))
+    profile = replace(
+        Profile.load(),
+        submit_every=draw(st.sampled_from([1, 1, 3])),
+        submit_requests=draw(st.sampled_from([20, 10, 7])),
+    )
+    limits = Limits(
+        statements=draw(st.sampled_from([10**7, 10**7, 9_000, 24_000])),
+        per_slice=draw(st.sampled_from([profile.statements, 20])),
+    )
+    setup = RunSetup(
+        executor=draw(st.sampled_from(MACHINES)),
+        profile=profile,
+        script=Script.read(script),
+        limits=limits,
+        until=3_000_001,
+    )
+    return _program(SPS.format(draw(st.sampled_from(HEADS)), body), main), setup
+
+
+@given(drawn())
+def test_nothing_is_seen(one: tuple[CheckedProgram, RunSetup]) -> None:
+    """Trace, outcome and statements are as if each slice of the submit program had run."""
+    quick, slow = _both(*one)
+    assert slow == quick
+
+
+@pytest.mark.parametrize("executor", MACHINES)
+@pytest.mark.parametrize("body", ["$OUT[1]=$IN[1]\n", "PASS ($IN[2])\n", "", "B=$IN[1]\n"])
+def test_idle_takes_few_looks(monkeypatch: pytest.MonkeyPatch, executor: str, body: str) -> None:
+    """A minute of it takes some looks a second, and not one in every cycle."""
+    looks = 0
+    settle = scheduler.Scheduler._settle
+
+    def counted(self: scheduler.Scheduler) -> None:
+        nonlocal looks
+        looks += 1
+        settle(self)
+
+    monkeypatch.setattr(scheduler.Scheduler, "_settle", counted)
+    setup = RunSetup(executor=executor, submit="SPS", is_told=False, until=60_000_000)
+    run = run_program(_program(SPS.format("", body)), setup)
+    assert ("time", True) == (run.outcome.ending, looks < 60 * 5)
+
+
+def test_a_counter_is_not_skipped() -> None:
+    """A loop that only counts goes on counting."""
+    program = _program(SPS.format("", "COUNT=COUNT+1\n$OUT[1]=$IN[1]\n"))
+    script = Script.read("t=5 IN[7]=TRUE\nt=6 IN[8]=TRUE\n")
+    quick, slow = _both(program, RunSetup(executor=MACHINES[-1], script=script))
+    assert slow == quick
