@@ -1,6 +1,7 @@
 """`krl run`: a program on the controller, with an arm that moves."""
 
 import json
+import signal
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -8,6 +9,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
+from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
@@ -163,12 +165,24 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
 
 @contextmanager
 def _tracing(file: Path | None) -> Iterator[TextIO | None]:
-    """The trace, written beside its place and moved there when it is whole."""
+    """The trace, written beside its place and moved there when it is whole.
+
+    A process that is told to end (SIGTERM) leaves no part of one.
+    """
     if file is None:
         yield None
         return
-    with atomic_path(file) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
-        yield stream
+    is_ours = (
+        current_thread() is main_thread() and signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    )
+    if is_ours:
+        signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
+    try:
+        with atomic_path(file) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
+            yield stream
+    finally:
+        if is_ours:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _write(

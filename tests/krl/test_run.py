@@ -1,7 +1,10 @@
 """`krl run` from the outside: what it prints and writes, exit status, one line for bad input."""
 
 import json
+import signal
+import subprocess
 import sys
+import time
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -444,3 +447,19 @@ def test_syntax_error(run: Run, tmp_path: Path) -> None:
     assert "left out: broken.src:3: " in err
     status, out, err = run(None, str(file), "--strict")
     assert (2, "", True) == (status, out, "broken.src:3: " in err)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no signals")
+def test_a_run_that_is_ended_leaves_no_part_of_a_trace(tmp_path: Path) -> None:
+    """SIGTERM, as a service or a pipeline sends it."""
+    file = tmp_path / "main.src"
+    file.write_text("DEF MAIN()\nLOOP\nWAIT SEC 0.001\nENDLOOP\nEND\n", encoding="ascii")
+    out = tmp_path / "out"
+    words = ["run", str(file), "--trace", str(out / "t.jsonl"), "--until", "1000000"]
+    with subprocess.Popen([sys.executable, "-m", "krl", *words], stderr=subprocess.DEVNULL) as run:
+        while not out.exists() or not [*out.iterdir()]:
+            assert run.poll() is None
+            time.sleep(0.05)
+        run.send_signal(signal.SIGTERM)
+        assert 128 + signal.SIGTERM == run.wait(60)
+    assert [] == [*out.iterdir()]
