@@ -23,8 +23,6 @@ from interp.program.load import Limits
 
 #: The largest ``State.quota``, which C holds in 32 bits.
 _LARGEST: Final = 2**31 - 1
-#: So many slices before its end the budget is near: more requests than a task makes in a cycle.
-_NEAR: Final = 1_000
 
 
 class Guard(Enum):
@@ -56,6 +54,7 @@ class Counter:
         self._passed = 0
         self._allowed = 0
         self._stopped = 0
+        self._most_stops = 0
         state.whole = limits.per_slice + 1
         self._refill()
 
@@ -87,6 +86,7 @@ class Counter:
 
     def allow(self, stops: int) -> None:
         """So many `StopAdvance` may pass before the next request of another kind."""
+        self._most_stops = max(self._most_stops, stops)
         if self._guard is Guard.OFF:
             most = min(self._limits.statements - self.begun, _LARGEST) // self._state.whole - 1
             self._allowed = self._state.stops = max(min(stops, most), 0)
@@ -101,8 +101,8 @@ class Counter:
 
     @property
     def spare(self) -> int:
-        """How many statements may be skipped before the budget has a say."""
-        return self._limits.statements - self.begun - _NEAR * self._state.whole
+        """How many statements may be skipped before the budget limits a slice, or what may pass."""
+        return self._limits.statements - self.begun - (self._most_stops + 3) * self._state.whole
 
     def skip(self, statements: int) -> None:
         """So many more have begun."""
