@@ -8,7 +8,7 @@ called [SCO-10].
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain
@@ -98,6 +98,7 @@ class CheckedProgram:
 
     ``stand_ins`` are those for all files of the project, see `used_stand_ins`. ``callers`` are the
     routines that were added to begin with one that has parameters, by its name in upper case.
+    ``damaged`` are the paths of files with lines that cannot be read.
     """
 
     project: Project
@@ -106,6 +107,7 @@ class CheckedProgram:
     is_strict: bool = True
     stand_ins: tuple[StandIn, ...] = ()
     callers: Mapping[str, str] = field(default_factory=dict)
+    damaged: Set[str] = frozenset()
 
     @cached_property
     def routines(self) -> Mapping[Symbol, Routine]:
@@ -258,6 +260,7 @@ def load(
     """
     by_path = {source.path: source for source in sources}
     files = []
+    damaged: set[str] = set()
     for path, source in list(by_path.items()):
         try:
             files.append(File(path, _read(source)))
@@ -268,11 +271,13 @@ def load(
             if unread is not None:
                 unread += [str(error)] if found is None else found.reasons
             if found is not None:
+                damaged.add(path)
                 by_path[path] = found.source
                 files.append(File(path, found.syntax))
     for project in link(files, system).projects:
         if any(module.path == main for module in project.modules):
-            return _checked(project, by_path, main, strict=strict, stands_in=stands_in)
+            whole = _checked(project, by_path, main, strict=strict, stands_in=stands_in)
+            return replace(whole, damaged=frozenset(damaged))
     raise LinkError(f"{main} is not among the files")
 
 

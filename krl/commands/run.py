@@ -109,8 +109,8 @@ def run(
         typer.echo(one_line(f"page: {html}"))
     is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped
     is_fine &= all(seen.is_estimate for seen in done.observations)
-    used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
-    is_fine &= all(one.origin != "unreadable" for one in used)
+    reached = program.reached(*program.starts(setup.routine, setup.submit))
+    is_fine &= all(unit.module.path not in program.damaged for unit in reached)
     return FINE if is_fine else FINDINGS
 
 

@@ -438,6 +438,14 @@ def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
     assert "other.src:2: " in err
 
 
+@pytest.mark.parametrize("line", ["IF = THEN\nENDIF", "FOR I=1 TOO 3\nENDFOR", "DECL INT ="])
+def test_a_line_that_cannot_be_read(run: Run, line: str) -> None:
+    """The status is 1, whatever is run in its place."""
+    status, out, err = run(f"{line}\n")
+    assert (1, "main.src: end after 0 s\n") == (status, out)
+    assert err.startswith("left out: main.src:2: ")
+
+
 def test_syntax_error(run: Run, tmp_path: Path) -> None:
     """A program with one runs without that line and says so; under --strict nothing of it does."""
     file = tmp_path / "broken.src"
