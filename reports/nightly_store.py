@@ -35,14 +35,15 @@ def bound_store(folder: Path) -> None:
     """Remove what nobody needs beside the last run, that of ``folder``.
 
     Results that it keeps itself are kept once; of runs whose pages it no longer links summary and
-    record are kept, for a year. Only folders that have a record of a run are touched; what cannot
-    be removed stays.
+    record are kept, for a year, and nothing where a run was broken off. Only folders that have a
+    record of a run are touched; what cannot be removed stays.
     """
     earlier = sorted(filter(_is_run, folder.parent.iterdir()), reverse=True)
     for number, run in enumerate((one for one in earlier if one.name != folder.name), 1):
         for cache in folder.glob("*/cache"):
             rmtree(run / cache.relative_to(folder), ignore_errors=True)
-        if number > _MOST_RUNS:
+        is_whole = (run / "night.json").is_file()
+        if number > (_MOST_RUNS if is_whole else MOST_EARLIER):
             rmtree(run, ignore_errors=True)
         elif number > MOST_EARLIER:
             for one in _pages(run):

@@ -65,7 +65,7 @@ def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Blends that take more of a motion than their criteria say, or less of both [BLD-07]."""
     law = "a blend takes of both motions what its criteria say"
     for (one, way), (other, further) in pairwise(_ways(motions)):
-        if one.stops or other.begins:
+        if one.stops or other.begins or not one.motion.criteria:
             continue
         is_path, leads_on = (not each.motion.kind.endswith("PTP") for each in (one, other))
         main, *second = one.motion.criteria

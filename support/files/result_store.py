@@ -39,7 +39,8 @@ class ResultStore:
             try:
                 self._base = self._opened(file)
             except _DAMAGE as error:
-                if getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) in _DAMAGED:
+                code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT)
+                if code & 0xFF in _DAMAGED:  # what it is more exactly stands above
                     with contextlib.suppress(OSError):
                         file.replace(file.with_suffix(".damaged"))
                     self._base = self._opened(file)

@@ -199,20 +199,23 @@ def test_a_case_that_fails_is_run_once_more(
 def test_what_is_kept_is_bounded(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pages of old runs go, their records later, results but once; what is no run stays."""
+    """Pages of old runs go, broken runs too, records later, results but once; else all stays."""
     runs = [f"2024-{day:04}" for day in range(400)]
     for name in (*runs, "mine"):
         (tmp_path / name).mkdir()
         for file in ("index.html", "summary.md", "night.json"):
             (tmp_path / name / file).write_text("{}", encoding="utf-8")
     (tmp_path / "mine" / "night.json").unlink()
+    broken = tmp_path / runs.pop(100)
+    (broken / "night.json").rename(broken / "steps.json")
     for name in (DATE, runs[-1]):
         (tmp_path / name / "recover" / "cache").mkdir(parents=True)
     _step(monkeypatch, (0, ""))
     assert 0 == run(tmp_path, capsys, "recover")[0]
     pages = sorted(one.parent.name for one in tmp_path.glob("*/index.html"))
     assert [*runs[-30:], DATE, "mine"] == pages
-    assert [*runs[-366:], DATE] == sorted(one.parent.name for one in tmp_path.glob("*/night.json"))
+    assert [*runs[-365:], DATE] == sorted(one.parent.name for one in tmp_path.glob("*/night.json"))
+    assert not broken.exists()
     assert [DATE] == [one.parents[1].name for one in tmp_path.glob("*/recover/cache")]
 
 
