@@ -227,8 +227,11 @@ def test_a_nightly_page_compares_and_leads_back(
         {"date": date, "bench": {"vm.ratio": value}}
         for date, value in (("2031-05-05", 9.0), ("x/../y", 8.0), ("2031-05-06", 4.0))
     ]
+    for run in runs:
+        (tmp_path / str(run["date"])).mkdir(parents=True)
+        (tmp_path / str(run["date"]) / "index.html").touch()
     runs.append({"date": "2031-05-07", "bench": {"vm.ratio": 5.0}})
-    opened(write_nightly_page({**runs[-1], "history": runs}, tmp_path), "")
+    opened(write_nightly_page({**runs[-1], "history": runs}, tmp_path / "2031-05-07"), "")
     assert "vm.ratio 5 4 +25.0 %" == browser.find_element(By.XPATH, "//tr[th='vm.ratio']").text
     links = browser.find_elements(By.CSS_SELECTOR, "a[href^='../']")
     assert ["../2031-05-06/index.html", "../2031-05-05/index.html"] == [
