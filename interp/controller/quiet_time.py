@@ -73,6 +73,8 @@ class QuietTime:
         end = min(time for time in times if time is not None)
         if all(_waits(task, Wait) for task in tasks[1:]):  # which have longer slices
             return end - end % clock.cycle
+        if any(task.blocked and task.blocked.wake != now for task in tasks if not _is_timed(task)):
+            return now  # a slice would begin too soon behind the stretch
         return now + self._skipped([task for task in tasks if not task.is_over], end - now)
 
     def _skipped(self, tasks: Sequence[Task], most: int) -> int:

@@ -169,3 +169,13 @@ def test_a_counter_is_not_skipped() -> None:
     script = Script.read("t=5 IN[7]=TRUE\nt=6 IN[8]=TRUE\n")
     quick, slow = _both(program, RunSetup(executor=MACHINES[-1], script=script))
     assert slow == quick
+
+
+@pytest.mark.parametrize("executor", MACHINES)
+def test_slices_keep_their_cycles(executor: str) -> None:
+    """Behind a stretch the next slice begins in its own cycle, not at once."""
+    setup = RunSetup(
+        executor=executor, profile=replace(Profile.load(), submit_every=3), until=3_000_001
+    )
+    quick, slow = _both(_program(SPS.format("", "")), setup)
+    assert slow == quick
