@@ -5,6 +5,8 @@ Only what is asked for is imported: the machines need a compiled program, the tr
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
@@ -46,16 +48,23 @@ def is_available(name: str) -> bool:
 class Prepared:
     """A program for executors of any kind: compiled and verified where one needs it, and once.
 
-    ``routine`` is what it begins with, by default the first one of its first file. ``notes`` says
+    ``routine`` is what it begins with, by default the first one of its first file; ``submits`` may
+    run beside it, as may those in files that end in .sub, which need no name here. ``notes`` says
     why the machine runs a program that native code was asked for. Where it ``is_kept`` what was
     verified is kept for the user: not where code may differ from its files, as with mutants.
     """
 
     def __init__(
-        self, program: CheckedProgram, routine: str | None = None, *, is_kept: bool = False
+        self,
+        program: CheckedProgram,
+        routine: str | None = None,
+        submits: Iterable[str | None] = (),
+        *,
+        is_kept: bool = False,
     ) -> None:
         self.program = program
         self.routine = routine
+        self._names = list(dict.fromkeys(name for name in (routine, *submits) if name))
         self._is_kept = is_kept
         self.notes: list[str] = []
 
@@ -67,15 +76,18 @@ class Prepared:
         program = self.program
         units = program.units.values()
         texts = (text for unit in units for text in (unit.module.path, unit.source.text))
-        return kept(
-            CODE, (program.main.module.path, f"{program.is_strict}", *texts), self._verified
-        )
+        what = program.main.module.path, f"{program.is_strict} {self._names}", *texts
+        return kept(CODE, what, self._verified)
 
     def _verified(self) -> Verified:
         from interp.bytecode.compiler import compile_program
         from interp.bytecode.verifier.verify import verify
 
-        return verify(compile_program(self.program).program)
+        named = []
+        for name in self._names:
+            with suppress(LinkError):  # told where an executor is to begin with it
+                named.append(self.program.start(name))
+        return verify(compile_program(self.program, named).program)
 
     def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:
         """An executor of its own; raises `LinkError`, and `ValueError` for an unknown name."""

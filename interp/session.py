@@ -163,7 +163,7 @@ def run_program(
     `ImportError` for a robot that is not installed.
     """
     if isinstance(prepared, CheckedProgram):
-        prepared = Prepared(prepared, setup.routine)
+        prepared = Prepared(prepared, setup.routine, [setup.submit])
     program, profile, note = prepared.program, setup.profile, ""
     program.start(prepared.routine)  # what is wrong with it is said alike for all executors
     values = _system_values(program)

@@ -21,7 +21,7 @@ def debugged_run(
     ``on_message`` takes each message of the program with its line once, though going back runs it
     again. One that comes again and again is told the first times, the 100th, the 1,000th.
     """
-    prepared = Prepared(program, setup.routine, is_kept=True)
+    prepared = Prepared(program, setup.routine, [setup.submit], is_kept=True)
     counts: Counter[str] = Counter()
 
     def take(event: TraceEvent) -> None:

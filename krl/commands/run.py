@@ -142,7 +142,7 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
     from interp.executors import Prepared
     from interp.session import run_program
 
-    prepared = Prepared(program, setup.routine, is_kept=True)
+    prepared = Prepared(program, setup.routine, [setup.submit], is_kept=True)
     with progress_bar("running, virtual seconds", None) as bar, _tracing(trace) as stream:
         kept: list[TraceEvent] = []
         told = 0

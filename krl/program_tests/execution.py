@@ -163,7 +163,7 @@ def _with_drivers(tests: tuple[ProgramTest, ...]) -> tuple[Prepared, Mapping[int
         lacking = [word for word in words if word.upper() in unknown]
         if lacking:
             errors[place] = f"'{lacking[0]}' is declared nowhere"
-    return Prepared(loaded), errors
+    return Prepared(loaded, submits=(test.submit for test in tests)), errors
 
 
 def _line_of(test: ProgramTest, error: str) -> int:

@@ -192,10 +192,14 @@ def test_script(run: Run) -> None:
     assert (0, "main.src: end after 0.3 s at main.src:2\n") == (status, out)
 
 
-def test_submit(run: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize("ending", ["sub", "src"])
+@pytest.mark.parametrize("executor", available())
+def test_submit(run: Run, tmp_path: Path, executor: str, ending: str) -> None:
     """--submit runs a second program beside the first, on the same variables."""
-    (tmp_path / "beside.sub").write_text("DEF beside ( )\n$FLAG[3]=TRUE\nEND\n", encoding="utf-8")
-    status, out, _ = run("WAIT FOR $FLAG[3]\n", "--submit", "beside", "--max-time", "1")
+    text = "DEF beside ( )\n$FLAG[3]=TRUE\nEND\n"
+    (tmp_path / f"beside.{ending}").write_text(text, encoding="utf-8")
+    options = "--submit", "beside", "--max-time", "1", "--executor", executor
+    status, out, _ = run("WAIT FOR $FLAG[3]\n", *options)
     assert (0, "end") == (status, out.split()[1])
     assert 1 == run("WAIT FOR $FLAG[3]\n", "--max-time", "1")[0]
 

@@ -50,18 +50,16 @@ class Compiled:
     starts: Mapping[Symbol, int]
 
 
-def compile_program(program: CheckedProgram, starts: Iterable[Routine] | None = None) -> Compiled:
+def compile_program(program: CheckedProgram, starts: Iterable[Routine] = ()) -> Compiled:
     """Compile a program; raises `LinkError` where it cannot be run at all.
 
-    ``starts`` are the routines without parameters that it can begin with, by default all such of
-    its first file and of the submit programs. What none of them calls is not compiled.
+    It can begin with the routines without parameters of its first file and of the submit programs,
+    and with ``starts``. What none of them calls is not compiled.
     """
-    if starts is None:
-        submits = (unit for unit in program.units.values() if unit.module.suffix == ".sub")
-        files = dict.fromkeys((program.main, *submits))
-        found = (routine for unit in files for routine in program.routines_of(unit))
-        starts = filter(program.can_begin, found)
-    return Project(program).compiled(tuple(starts))
+    submits = (unit for unit in program.units.values() if unit.module.suffix == ".sub")
+    files = dict.fromkeys((program.main, *submits))
+    found = (routine for unit in files for routine in program.routines_of(unit))
+    return Project(program).compiled((*filter(program.can_begin, found), *starts))
 
 
 class Project:
