@@ -12,6 +12,7 @@ import pytest
 
 from grammar.syntax.source import Source
 from interp.controller import Controller, Profile, RunOutcome, Script, Trace, TraceEvent
+from interp.controller.scheduler import Scheduler
 from interp.executors import Prepared
 from interp.port.events import EVERY_KIND
 from interp.program.load import Limits, load
@@ -325,3 +326,17 @@ def go() -> Runner:
         return Ran(outcome, trace.events, controller, arm)
 
     return ran
+
+
+@pytest.fixture
+def looks(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The times in µs at which the controller has looked whether anything is to be done."""
+    times: list[int] = []
+    settle = Scheduler._settle
+
+    def counted(self: Scheduler) -> None:
+        times.append(self.state.clock.now)
+        settle(self)
+
+    monkeypatch.setattr(Scheduler, "_settle", counted)
+    return times

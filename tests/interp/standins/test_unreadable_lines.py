@@ -3,8 +3,8 @@
 import pytest
 
 from grammar.syntax.source import Source
-from interp.program.load import load
-from interp.session import EXECUTORS, RunSetup, run_program
+from interp.program.load import CheckedProgram, load
+from interp.session import EXECUTORS, RunResult, RunSetup, run_program
 from interp.standins.unreadable_lines import UNREADABLE
 from interp.values.faults import LinkError
 
@@ -23,17 +23,25 @@ END
 """
 
 
+def _run(text: str, executor: str) -> tuple[CheckedProgram, RunResult]:
+    program = load([Source(text, "main.src")], "main.src", strict=False, stands_in=True)
+    return program, run_program(program, RunSetup(executor=executor, is_tolerant=True))
+
+
+def _passed(run: RunResult) -> list[str | None]:
+    """The lines that the trace tells of."""
+    calls = (event for event in run.events if event.kind == "call")
+    return [event.place for event in calls if event.fields["name"] == UNREADABLE]
+
+
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_goes_on_behind_what_cannot_be_read(executor: str) -> None:
-    """A broken statement does nothing, and the trace tells that its line was passed."""
-    program = load([Source(TEXT, "main.src")], "main.src", strict=False, stands_in=True)
-    run = run_program(program, RunSetup(executor=executor, is_tolerant=True))
+    """A broken statement that is not come to is not told, and a broken FOR goes round once."""
+    program, run = _run(TEXT, executor)
     ends = [event for event in run.events if event.kind == "motion_end"]
-    calls = [event for event in run.events if event.kind == "call"]
-    passed = [event.place for event in calls if event.fields["name"] == UNREADABLE]
     used = program.used_stand_ins(program.start())
     assert (3, "end") == (len(ends), run.outcome.ending)
-    assert [] == passed
+    assert [] == _passed(run)
     assert [("unreadable", 6)] == [(one.origin, one.line) for one in used]
 
 
@@ -61,13 +69,10 @@ END
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_blocks_whose_heads_cannot_be_read(executor: str) -> None:
     """Such a block is gone through once, in its first branch, and the trace tells of conditions."""
-    program = load([Source(HEADS, "main.src")], "main.src", strict=False, stands_in=True)
-    run = run_program(program, RunSetup(executor=executor, is_tolerant=True))
-    calls = [event for event in run.events if event.kind == "call"]
-    passed = [event.place for event in calls if event.fields["name"] == UNREADABLE]
+    _, run = _run(HEADS, executor)
     outputs = [event.fields["number"] for event in run.events if event.kind == "out"]
     assert ("end", [1, 11, 3, 4]) == (run.outcome.ending, outputs)
-    assert [f"main.src:{line}" for line in (3, 5, 14, 15, 17)] == passed
+    assert [f"main.src:{line}" for line in (3, 5, 14, 15, 17)] == _passed(run)
 
 
 def test_every_broken_line_is_told() -> None:
