@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from grammar.check.context import placed
+from grammar.check.analysis.context import placed
 from grammar.syntax import ast
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk

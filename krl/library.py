@@ -87,7 +87,7 @@ def check(
     ``complete``: no file is missing; ``packages`` are option packages that are there; ``jobs`` is
     the number of processes, by default as many as are worth it. Raises `InputError`.
     """
-    from grammar.check.batch import CheckOptions, check_paths
+    from grammar.check.project.batch import CheckOptions, check_paths
     from krl.program_loading import project_paths
     from support.files.discovery import IngestError
 

@@ -37,7 +37,7 @@ def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
 
     Where it does itself, on what its first motion depends.
     """
-    from grammar.check.context import placed
+    from grammar.check.analysis.context import placed
     from grammar.syntax import ast
     from grammar.syntax.references import calls_in
     from grammar.syntax.walk import walk

@@ -14,10 +14,10 @@ from typing import Final, Literal
 
 from conformance.evaluation.observation import Event, Finding, Observation
 from conformance.suite.case import Case
-from grammar.check import advance_stops
-from grammar.check.context import Context
-from grammar.check.framework import check_module
-from grammar.check.unresolved_names import of_project
+from grammar.check.analysis.context import Context
+from grammar.check.flow import advance_stops
+from grammar.check.names.unresolved_names import of_project
+from grammar.check.project.framework import check_module
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System

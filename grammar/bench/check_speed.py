@@ -15,9 +15,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from grammar.check.batch import CheckOptions, check_paths
-from grammar.check.context import Context
-from grammar.check.framework import CHECKS
+from grammar.check.analysis.context import Context
+from grammar.check.project.batch import CheckOptions, check_paths
+from grammar.check.project.framework import CHECKS
 from grammar.generation.cells.writing import write_cells
 from grammar.parser.tree import Tree
 from grammar.semantics.link import File, link

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from grammar.bench.slips import Token, cut, damaged, lines_of_tokens
-from grammar.check.dependencies import Contribution, contribution
-from grammar.check.framework import Findings, check_module, check_project
-from grammar.check.project_check import Reading, read_source
+from grammar.check.project.dependencies import Contribution, contribution
+from grammar.check.project.framework import Findings, check_module, check_project
+from grammar.check.project.project_check import Reading, read_source
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System

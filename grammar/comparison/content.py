@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from grammar.check.project_check import read_source
+from grammar.check.project.project_check import read_source
 from grammar.diagnostics.open_blocks import lead
 from grammar.syntax import ast
 from grammar.syntax.source import Source

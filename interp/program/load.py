@@ -13,8 +13,8 @@ from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain
 
-from grammar.check.context import placed
-from grammar.check.framework import Checked, check_module, check_project, typed_module
+from grammar.check.analysis.context import placed
+from grammar.check.project.framework import Checked, check_module, check_project, typed_module
 from grammar.semantics.link import File, Project, extended, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found, Module, Scope

@@ -13,7 +13,7 @@ from dataclasses import field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
 
-from grammar.check.framework import Checked, typed_module
+from grammar.check.project.framework import Checked, typed_module
 from grammar.semantics.link import File, Project, extended
 from grammar.semantics.packages import load_packages
 from grammar.semantics.resolve import resolve

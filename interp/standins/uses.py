@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
 from typing import Any
 
-from grammar.check.framework import Checked
+from grammar.check.project.framework import Checked
 from grammar.semantics.link import Project
 from grammar.semantics.scopes import Found, Module
 from grammar.semantics.symbols import Kind, RoutineSymbol, TypeReference

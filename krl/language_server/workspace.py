@@ -14,10 +14,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grammar.check.dependencies import Contribution, Needs, contribution, needs_of
-from grammar.check.framework import Checked, Findings, check_module, check_project
-from grammar.check.project_check import Reading, read_source
-from grammar.check.suppression_comments import apply_suppressions, suppression_comments
+from grammar.check.project.dependencies import Contribution, Needs, contribution, needs_of
+from grammar.check.project.framework import Checked, Findings, check_module, check_project
+from grammar.check.project.project_check import Reading, read_source
+from grammar.check.project.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.suppression import Selection
 from grammar.semantics.link import File, Project, link

@@ -9,7 +9,7 @@ from typing import Any, get_args, get_type_hints
 
 import pytest
 
-from grammar.check import expressions
+from grammar.check.types import expressions
 from grammar.generation.closed.programs import seeded
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
@@ -96,7 +96,7 @@ TABLES: dict[str, tuple[Kinds, Callable[[], Kinds]]] = {
         NODES - {ast.Module},
         lambda: {*ast.TEMPLATES, *unparse._PRINTERS},
     ),
-    "grammar.check.expressions": (EXPRESSIONS, lambda: {*expressions._RULES}),
+    "grammar.check.types.expressions": (EXPRESSIONS, lambda: {*expressions._RULES}),
     "interp.tree.statements": (EXECUTED, lambda: {*tree_statements._RULES}),
     "interp.tree.expressions": (EXPRESSIONS, lambda: {*tree_expressions._VALUES, *PLACES}),
     "interp.bytecode.compiler.statements": (EXECUTED, lambda: {*compiled_statements._RULES}),

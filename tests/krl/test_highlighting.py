@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pygments import token
 
-from grammar.check.project_check import read_source
+from grammar.check.project.project_check import read_source
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.syntax.source import Source

@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("lsprotocol")
 
-from grammar.check.batch import CheckOptions, check_paths
+from grammar.check.project.batch import CheckOptions, check_paths
 from krl.cli import main
 from krl.language_server.calls import signature_at
 from krl.language_server.hover import hover

@@ -19,7 +19,7 @@ from krl.project_settings import Settings, baseline_place, read_baseline, read_s
 from support.files.user_cache import user_cache
 
 if TYPE_CHECKING:
-    from grammar.check.batch import CheckOptions, CheckReport
+    from grammar.check.project.batch import CheckOptions, CheckReport
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
@@ -116,7 +116,7 @@ def check(
     0. A comment '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl
     explain CODE' says what a code means.
     """
-    from grammar.check.batch import CheckOptions
+    from grammar.check.project.batch import CheckOptions
 
     check_files(out, write_baseline)
     if format_ is Format.JUNIT:
@@ -215,7 +215,7 @@ class _Check:
         return self.selection.keeps(found.code) and bool(self.agreed.adjusted([found]))
 
     def _found(self) -> "tuple[CheckReport, list[Diagnostic]]":
-        from grammar.check.batch import check_paths
+        from grammar.check.project.batch import check_paths
         from krl.program_loading import project_paths
         from support.files.discovery import IngestError
 

@@ -26,7 +26,7 @@ def fix_files(
 
     Encoding, line ends and all other lines stay as they are. Archives are not written to.
     """
-    from grammar.check.repair import repair
+    from grammar.check.project.repair import repair
     from grammar.syntax.source import Source
     from support.files.decode import decode
     from support.files.discovery import Found, IngestError, discover, read

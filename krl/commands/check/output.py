@@ -18,7 +18,7 @@ from support.files.atomic_write import write_atomic
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from grammar.check.batch import CheckReport
+    from grammar.check.project.batch import CheckReport
     from grammar.diagnostics.diagnostic import Diagnostic
 
 _SKIPPED_SHOWN = 5

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
-from grammar.check.framework import Checked, check, check_module
+from grammar.check.project.framework import Checked, check, check_module
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.scopes import Module

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grammar.check.framework import check
+from grammar.check.project.framework import check
 from grammar.semantics.link import File, link
 from grammar.semantics.rules import is_confirmed
 from grammar.syntax.build import read_module

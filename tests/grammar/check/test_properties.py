@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grammar.check.framework import check
+from grammar.check.project.framework import check
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link
 from grammar.syntax.build import read_module

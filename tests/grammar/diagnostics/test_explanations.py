@@ -2,8 +2,8 @@
 
 import re
 
-from grammar.check.project_check import CheckOptions, Content, found_in_project, recheck
-from grammar.check.suppression_comments import apply_suppressions
+from grammar.check.project.project_check import CheckOptions, Content, found_in_project, recheck
+from grammar.check.project.suppression_comments import apply_suppressions
 from grammar.diagnostics.codes import by_code
 from grammar.diagnostics.explanations import explanation
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from grammar.check.project_check import read_source
+from grammar.check.project.project_check import read_source
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.expected_tokens import in_words
 from grammar.diagnostics.open_blocks import lead, open_blocks

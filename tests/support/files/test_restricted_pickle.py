@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grammar.check.batch import CheckOptions
+from grammar.check.project.batch import CheckOptions
 from grammar.syntax.references import Space
 from support.files.restricted_pickle import dumps, loads
 

@@ -1,0 +1,163 @@
+"""What a statement does to variables: reads them, assigns to them, or passes them on.
+
+A block counts with its head alone: its condition, its bounds. What an interrupt or a trigger will
+do later is passed on, as nobody knows when it happens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from grammar.check.analysis.context import Context
+from grammar.semantics.symbols import RoutineSymbol
+from grammar.syntax import ast
+from grammar.syntax.walk import BODIES, LEAVES, children, left_chain
+
+
+class Use(Enum):
+    """What is done to a variable."""
+
+    READ = "read"
+    WRITTEN = "written"
+    #: To a routine that may read it, assign to it, or both.
+    PASSED = "passed"
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """A variable in a statement, by the node of its name.
+
+    ``place`` is the whole of what is accessed, with indices and components.
+    """
+
+    name: ast.Name
+    use: Use
+    place: ast.Expression | None = None
+
+
+def accesses(context: Context, node: ast.Node) -> Sequence[Access]:
+    """The accesses of a statement, in the order in which they happen as far as that matters."""
+    known: Sequence[Access] | None = context.accesses.get(node)
+    if known is None:
+        found: list[Access] = []
+        _add(context, node, found)
+        known = context.accesses[node] = found
+    return known
+
+
+def _add(context: Context, node: ast.Node, found: list[Access]) -> None:
+    rule = _RULES.get(type(node))
+    if rule is not None:
+        rule(context, node, found)
+        return
+    for part in own_parts(node):
+        if type(part) not in LEAVES:
+            _add(context, part, found)
+
+
+def _assignment(context: Context, node: ast.Assignment, found: list[Access]) -> None:
+    _add(context, node.value, found)
+    _add_place(context, node.target, Use.WRITTEN, found)
+
+
+def _binary(context: Context, node: ast.Binary, found: list[Access]) -> None:
+    chain = left_chain(node)
+    for operand in (chain[0].left, *(each.right for each in chain)):
+        _add(context, operand, found)
+
+
+def _loop(context: Context, node: ast.For, found: list[Access]) -> None:
+    for bound in (node.first, node.last, node.step):
+        if bound is not None:
+            _add(context, bound, found)
+    found.append(Access(node.counter, Use.WRITTEN))
+
+
+def _later(
+    context: Context, node: ast.InterruptDeclaration | ast.Trigger, found: list[Access]
+) -> None:
+    inner: list[Access] = []
+    for part in children(node):
+        _add(context, part, inner)
+    found += [Access(access.name, Use.PASSED, access.place) for access in inner]
+
+
+def own_parts(node: ast.Node) -> Sequence[ast.Node]:
+    """The nodes directly below one, without the statements of a block; the values of each CASE."""
+    below = children(node)
+    inner = BODIES.get(type(node))
+    if inner is None:
+        return below
+    held = {id(one) for name in inner for one in getattr(node, name) or ()}
+    found: list[ast.Node] = []
+    for child in below:
+        if id(child) not in held:
+            found.append(child)
+        elif isinstance(child, ast.CaseBranch):
+            found += child.values
+    return found
+
+
+def parts_of(node: ast.Node) -> Sequence[ast.Node]:
+    """A statement and all below it, without the statements in a block."""
+    found: list[ast.Node] = [node]
+    for here in found:  # grows while it is walked
+        if type(here) not in LEAVES:
+            found += own_parts(here)
+    return found
+
+
+def calls_of(node: ast.Node) -> Iterator[ast.Call]:
+    """The calls in a statement, not those of the statements in a block."""
+    return (part for part in parts_of(node) if isinstance(part, ast.Call))
+
+
+def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Access]) -> None:
+    """The variable that something is part of, behind what its indices read."""
+    whole = node
+    while isinstance(node, ast.Subscript | ast.Member):
+        if isinstance(node, ast.Subscript):
+            for index in node.indices:
+                if index is not None:
+                    _add(context, index, found)
+        node = node.base
+    if isinstance(node, ast.Variable):
+        found.append(Access(node.name, use, whole))
+    else:
+        _add(context, node, found)
+
+
+def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
+    """The arguments: those passed :IN are read, of all others nobody knows."""
+    called = context.found(node.name)
+    symbol = called.symbol if called else None
+    known = symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
+    for index, argument in enumerate(node.arguments):
+        if argument is None:
+            continue
+        _add(context, argument, found)
+        is_read = index < len(known) and known[index].mode == "IN"
+        is_place = isinstance(argument, ast.Variable | ast.Subscript | ast.Member)
+        if is_place and not is_read and found[-1].place is argument:
+            found[-1] = Access(found[-1].name, Use.PASSED, argument)
+
+
+_RULES: Mapping[type[Any], Callable[[Context, Any, list[Access]], object]] = {
+    ast.Assignment: _assignment,
+    ast.Binary: _binary,
+    ast.Call: _call,
+    ast.For: _loop,
+    ast.InterruptDeclaration: _later,
+    ast.Trigger: _later,
+    **dict.fromkeys(
+        (ast.Variable, ast.Subscript, ast.Member),
+        lambda context, node, found: _add_place(context, node, Use.READ, found),
+    ),
+    **dict.fromkeys(
+        (ast.VariableDeclaration, ast.Signal, ast.Structure, ast.Enumeration),
+        lambda *_: None,
+    ),
+}

@@ -1,0 +1,193 @@
+"""What every check is given: a file, what its names mean, and what its expressions are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import field
+from functools import cached_property
+from typing import Any
+
+from grammar.check.analysis.name_suggestions import NameSuggestions
+from grammar.diagnostics.codes import Severity, code, of_message
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.semantics.link import Project
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Resolution
+from grammar.semantics.rules import is_confirmed
+from grammar.semantics.scopes import Found, Module, Scope
+from grammar.semantics.symbols import ModuleTable, RoutineTable
+from grammar.semantics.types import Enumeration, Type, Verdict
+from grammar.syntax import ast
+from grammar.syntax.ast import Node, Span
+from grammar.syntax.source import Source
+from grammar.syntax.walk import BODIES, bodies
+from support.lazy_dataclass import dataclass
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedStatement:
+    """A statement and the one that it stands in: a block, SWITCH or spline block."""
+
+    statement: ast.Statement | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
+    inside: PlacedStatement | None
+
+    @property
+    def is_in_spline(self) -> bool:
+        """Whether it stands in a spline block."""
+        return self.inside is not None and isinstance(self.inside.statement, ast.SplineBlock)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RoutineBody:
+    """A routine with its table and scope.
+
+    ``statements`` are all of them, those in blocks too, in the order of the text. What an interrupt
+    or a trigger does is part of its statement and none of its own.
+    """
+
+    node: ast.Routine
+    table: RoutineTable
+    scope: Scope
+    statements: tuple[PlacedStatement, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """A file to check.
+
+    ``resolution`` has what its names mean. ``types``, ``enumerations`` and ``values`` are filled by
+    the first check, `grammar.check.types.statements`: the type of each expression but literals, the
+    enumeration of each constant, the values of expressions that have to be constant, and the
+    ``constants`` that names without a declaration would be with a #; ``unknown_constants`` are
+    those that an enumeration lacks. ``accesses`` are those that `analysis.accesses` has worked out.
+    ``is_lacking``: the data list of the program is not at hand, and may declare what is found in
+    other files.
+    """
+
+    project: Project
+    module: Module
+    source: Source
+    resolution: Resolution
+    system: System
+    types: dict[Node, Type] = field(default_factory=dict)
+    enumerations: dict[ast.EnumConstant, Enumeration] = field(default_factory=dict)
+    values: dict[Node, Any] = field(default_factory=dict)
+    constants: dict[ast.Name, str] = field(default_factory=dict)
+    unknown_constants: list[tuple[Enumeration, str, Diagnostic]] = field(default_factory=list)
+    accesses: dict[Node, Any] = field(default_factory=dict)
+    is_lacking: bool = False
+    suggestions: NameSuggestions = field(default_factory=NameSuggestions)
+
+    # ----------------------------------------------------------------------- the file
+
+    @property
+    def syntax(self) -> ast.Module:
+        """The tree."""
+        assert self.module.syntax is not None, "only what can be read is checked"
+        return self.module.syntax
+
+    @property
+    def table(self) -> ModuleTable:
+        """What the file declares."""
+        assert self.module.table is not None, "only what can be read is checked"
+        return self.module.table
+
+    @property
+    def data(self) -> ast.DataList | None:
+        """The data list, if the file is one."""
+        content = self.syntax.content
+        return content if isinstance(content, ast.DataList) else None
+
+    @property
+    def scope(self) -> Scope:
+        """What is known at the first level of the file."""
+        return self.project.scope(self.module)
+
+    @cached_property
+    def routines(self) -> tuple[RoutineBody, ...]:
+        """The routines in the order of the file; none in a data list."""
+        content = self.syntax.content
+        if isinstance(content, ast.DataList):
+            return ()
+        return tuple(
+            RoutineBody(node, table, self.project.scope(self.module, table), placed(node.body))
+            for node, table in zip(content.routines, self.table.routines, strict=True)
+        )
+
+    def is_cut(self, routine: RoutineBody) -> bool:
+        """Whether the end of a routine is missing with that of the file."""
+        return self.module.is_cut and routine is self.routines[-1]
+
+    def found(self, name: ast.Name) -> Found | None:
+        """What a name means, if that is known."""
+        return self.resolution.found(name)
+
+    # ----------------------------------------------------------------------- findings
+
+    def finding(
+        self,
+        slug: str,
+        where: Node | Span,
+        message: str,
+        *,
+        reason: str = "",
+        rules: tuple[str, ...] | None = None,
+        severity: Severity | None = None,
+        is_unconfirmed: bool = False,
+        fix: Fix | None = None,
+    ) -> Diagnostic:
+        """A finding at a node or a span; the rest as `grammar.diagnostics.diagnostic.diagnose`.
+
+        What rests on unconfirmed rules alone is no error.
+        """
+        region = Region.of(self.source, where.span if isinstance(where, Node) else where)
+        rules = code(slug).rules if rules is None else rules
+        return diagnose(
+            slug,
+            self.source.path,
+            region,
+            message,
+            reason=reason,
+            rules=rules,
+            severity=severity,
+            is_unconfirmed=is_unconfirmed or not is_confirmed(rules),
+            fix=fix,
+        )
+
+    def refusal(
+        self,
+        slug: str,
+        where: Node | Span,
+        verdict: Verdict,
+        *,
+        fix: Fix | None = None,
+        is_unconfirmed: bool = False,
+    ) -> Diagnostic:
+        """A finding from a bad verdict; the controller's own message comes before ``slug``."""
+        entry = None if verdict.message is None else of_message(verdict.message)
+        return self.finding(
+            entry.slug if entry else slug,
+            where,
+            verdict.reason,
+            rules=verdict.rules,
+            is_unconfirmed=is_unconfirmed,
+            fix=fix,
+        )
+
+
+def placed(body: tuple[ast.Statement, ...]) -> tuple[PlacedStatement, ...]:
+    """All statements of a body with those they stand in, in the order of the text."""
+    found: list[PlacedStatement] = []
+    todo: list[tuple[Iterator[Any], PlacedStatement | None]] = [(iter(body), None)]
+    while todo:
+        statements, inside = todo[-1]
+        for statement in statements:
+            here = PlacedStatement(statement, inside)
+            found.append(here)
+            if type(statement) in BODIES:
+                inner = tuple(bodies(statement))
+                todo.extend((iter(body), here) for body in reversed(inner))
+                break
+        else:
+            todo.pop()
+    return tuple(found)

@@ -1,0 +1,204 @@
+"""Why the robot stops: what stops the advance run, and blends that are lost for it.
+
+The advance run works ahead of the robot. A statement that has to be in step with the robot stops it
+[ADV-04 to ADV-07]; then the robot stops exactly at the point before, and a motion that was to be
+approximated is not. CONTINUE takes the stop of the very next line back [ADV-08].
+
+All of this is lawful, so it is reported as notes, and only on demand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Context, RoutineBody
+from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
+from grammar.check.analysis.statement_heads import head, line_of
+from grammar.check.flow.advance_stop_reasons import AdvanceStop, is_known_call, stop_of
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.syntax import ast
+
+#: So many statements behind an approximated motion are looked at.
+_FARTHEST_LOOK = 200
+_MOTIONS = ast.Motion | ast.SplineBlock | ast.EmilyMotion
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Notes about all routines of a file; submit programs have no advance run."""
+    if context.module.suffix == ".sub":
+        return
+    for routine in context.routines:
+        yield from _Routine(context, routine).notes()
+
+
+@dataclass(frozen=True, slots=True)
+class _Ahead:
+    """What may come behind a motion before the next one: stops, and whether anything else may."""
+
+    stops: tuple[FlowNode, ...]
+    is_open: bool
+
+
+class _Routine:
+    """One routine; ``_spent`` are the lines for which a CONTINUE stands on the line before."""
+
+    def __init__(self, context: Context, routine: RoutineBody) -> None:
+        self._context = context
+        self._statements = [placed.statement for placed in routine.statements]
+        self._continues = [node for node in self._statements if isinstance(node, ast.Continue)]
+        self._spent = {line_of(context.source, node) + 1 for node in self._continues}
+        self._ways = flow_graph(routine.node)
+        self._known: dict[tuple[ast.Node, bool], AdvanceStop | None] = {}
+
+    def notes(self) -> Iterator[Diagnostic]:
+        for node in self._statements:
+            yield from self._stops(node, is_test=False)
+            if isinstance(node, ast.Repeat):
+                yield from self._stops(node, is_test=True)
+        for step, _, _ in self._ways.steps:
+            if _criteria(step.statement):
+                yield from self._blend(step)
+        yield from self._lost_continues()
+        yield from self._without_advance()
+
+    # ------------------------------------------------------------------------------ stops
+
+    def _stop(self, node: ast.Node | None, is_test: bool) -> AdvanceStop | None:
+        """Why a statement stops the advance run, CONTINUE left aside."""
+        if node is None:
+            return None
+        key = node, is_test
+        if key not in self._known:
+            self._known[key] = stop_of(self._context, node, is_test)
+        return self._known[key]
+
+    def _is_taken_back(self, stop: AdvanceStop) -> bool:
+        return line_of(self._context.source, stop.where) in self._spent
+
+    def _stops(self, node: ast.Node, is_test: bool) -> Iterator[Diagnostic]:
+        stop = self._stop(node, is_test)
+        if stop is None or self._is_taken_back(stop):
+            return
+        fix = Fix("CONTINUE on the line before would let it be done ahead of the robot")
+        yield self._context.finding(
+            "stops-advance-run",
+            head(self._context.source, stop.where),
+            f"{stop.what} stops the advance run",
+            reason=stop.reason,
+            rules=stop.rules,
+            fix=fix if stop.can_go_ahead else None,
+        )
+
+    # ------------------------------------------------------------------------------ blends
+
+    def _blend(self, motion: FlowNode) -> Iterator[Diagnostic]:
+        """An approximated motion behind which the advance run stops before the next motion."""
+        ahead = self._ahead(motion)
+        if not ahead.stops:
+            return
+        source = self._context.source
+        assert motion.statement is not None
+        stopping = [self._stop(step.statement, step.is_test) for step in ahead.stops]
+        lines = sorted({line_of(source, stop.where) for stop in stopping if stop})
+        shown = ", ".join(map(str, lines[:3])) + (" …" if len(lines) > 3 else "")
+        where = f"line{'s' * (len(lines) > 1)} {shown}"
+        criteria = _criteria(motion.statement)
+        how = "where the way leads there" if ahead.is_open else "before the next motion"
+        yield self._context.finding(
+            "no-blend",
+            head(source, motion.statement),
+            f"{criteria} is lost: {where} stop{'s' * (len(lines) == 1)} the advance run",
+            reason=f"{how}, and the robot stops exactly at this point (message 1442 or 1123)",
+        )
+
+    def _ahead(self, motion: FlowNode) -> _Ahead:
+        found: list[FlowNode] = []
+        is_open = False
+        seen = {motion}
+        todo = [motion]
+        while todo:
+            for step in todo.pop().after:
+                if step in seen:
+                    is_open = is_open or step is motion
+                    continue
+                seen.add(step)
+                stop = self._stop(step.statement, step.is_test)
+                if stop is not None and not self._is_taken_back(stop):
+                    found.append(step)
+                elif self._is_boundary(step) or len(seen) > _FARTHEST_LOOK:
+                    is_open = True
+                else:
+                    todo.append(step)
+        return _Ahead(tuple(found), is_open)
+
+    def _is_boundary(self, step: FlowNode) -> bool:
+        """Whether the next motion begins here, or may begin in what is called here."""
+        if step is self._ways.end or isinstance(step.statement, _MOTIONS | ast.Return):
+            return True
+        return step.statement is not None and not is_known_call(
+            self._context, step.statement, step.is_test
+        )
+
+    # -------------------------------------------------------------------- CONTINUE, $ADVANCE
+
+    def _lost_continues(self) -> Iterator[Diagnostic]:
+        """CONTINUE before a blank line or a comment."""
+        source = self._context.source
+        for node in self._continues:
+            following = line_of(source, node) + 1
+            text = source.line(following).strip()
+            if not text or text.startswith(";"):
+                what = "a comment" if text else "an empty line"
+                message = f"CONTINUE is spent on {what}"
+                yield self._context.finding("continue-lost", node, message)
+
+    def _without_advance(self) -> Iterator[Diagnostic]:
+        """Approximated motions that $ADVANCE=0 leads to."""
+        steps = [step for step, _, _ in self._ways.steps]
+        advances = {step: _advance(self._context, step.statement) for step in steps}
+        todo = [step for step, value in advances.items() if value == 0]
+        seen = set(todo)
+        found: list[ast.Node] = []
+        while todo:
+            for step in todo.pop().after:
+                if step in seen or advances.get(step) is not None:
+                    continue
+                seen.add(step)
+                statement = step.statement
+                if statement is not None:
+                    if _criteria(statement):
+                        found.append(statement)
+                    if not is_known_call(self._context, statement, step.is_test):
+                        continue
+                    if isinstance(statement, ast.CallStatement) and _is_bas(statement):
+                        continue  # it may set $ADVANCE
+                todo.append(step)
+        for node in found:
+            message = f"{_criteria(node)} is lost: $ADVANCE is 0"
+            yield self._context.finding("no-advance", head(self._context.source, node), message)
+
+
+def _criteria(node: ast.Node | None) -> str:
+    """The words with which a motion asks to be approximated; empty where it does not."""
+    match node:
+        case ast.Motion(criteria=criteria):
+            return " ".join(criteria)
+        case ast.SplineBlock(is_approximated=True):
+            return "C_SPL"
+    return ""
+
+
+def _advance(context: Context, node: ast.Node | None) -> float | None:
+    """What $ADVANCE is set to; -1 where that is not known, ``None`` where it is not set."""
+    match node:
+        case ast.Assignment(target=ast.Variable(name=name), value=value):
+            if name.key == "$ADVANCE":
+                known = constant(context, value)
+                return known if isinstance(known, int) else -1
+    return None
+
+
+def _is_bas(node: ast.CallStatement) -> bool:
+    return node.call.name.key == "BAS"

@@ -1,0 +1,188 @@
+"""Where a routine can go: EXIT, GOTO and labels, its end, what is never reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
+from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
+from grammar.check.analysis.statement_heads import head, line_of
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.diagnostics.did_you_mean import did_you_mean
+from grammar.semantics.rules import is_confirmed
+from grammar.syntax import ast
+
+# Guessing costs time for each label, and one who has so many wrong has something else in mind.
+_MOST_GUESSES = 20
+_LOOPS = ast.For | ast.While | ast.Repeat | ast.Loop
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Findings about the control flow of all routines of a file."""
+    labels = [_labels(routine) for routine in context.routines]
+    homes: dict[str, str] = {}
+    for routine, own in zip(context.routines, labels, strict=True):
+        for key in own:
+            homes.setdefault(key, routine.node.name.text)
+    for routine, own in zip(context.routines, labels, strict=True):
+        yield from _exits(context, routine)
+        yield from _label_twice(context, own)
+        yield from _gotos(context, routine, own, homes)
+        yield from _end(context, routine)
+        yield from _never_reached(context, routine)
+
+
+def _finding(
+    context: Context,
+    slug: str,
+    where: ast.Node,
+    message: str,
+    rule: str,
+    *,
+    reason: str = "",
+    fix: Fix | None = None,
+) -> Diagnostic:
+    is_unconfirmed = not is_confirmed([rule])
+    return context.finding(
+        slug, where, message, reason=reason, is_unconfirmed=is_unconfirmed, fix=fix
+    )
+
+
+# ------------------------------------------------------------------------------------------- EXIT
+
+
+def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    is_in_loop: dict[PlacedStatement | None, bool] = {None: False}
+    for placed in routine.statements:
+        statement, around = placed.statement, is_in_loop[placed.inside]
+        is_in_loop[placed] = around or isinstance(statement, _LOOPS)
+        if isinstance(statement, ast.Exit) and not around:
+            reason = ""
+            if placed.inside is not None:
+                block = "SWITCH" if isinstance(placed.inside.statement, ast.Switch) else "IF"
+                reason = f"{block} is no loop"
+            yield _finding(
+                context,
+                "exit-outside-loop",
+                statement,
+                "EXIT outside a loop",
+                "CTL-02",
+                reason=reason,
+            )
+
+
+# ------------------------------------------------------------------------------- GOTO and labels
+
+_Labels = dict[str, list[PlacedStatement]]
+
+
+def _labels(routine: RoutineBody) -> _Labels:
+    found: _Labels = {}
+    for placed in routine.statements:
+        if isinstance(placed.statement, ast.Label):
+            found.setdefault(placed.statement.name.key, []).append(placed)
+    return found
+
+
+def _label_twice(context: Context, own: _Labels) -> Iterator[Diagnostic]:
+    for first, *others in own.values():
+        line = line_of(context.source, first.statement)
+        for other in others:
+            assert isinstance(other.statement, ast.Label)
+            message = f"label {other.statement.name.text} stands on line {line} already"
+            yield _finding(context, "label-twice", other.statement.name, message, "CTL-07")
+
+
+def _gotos(
+    context: Context, routine: RoutineBody, own: _Labels, homes: Mapping[str, str]
+) -> Iterator[Diagnostic]:
+    """Jumps that lead nowhere or into a block; ``homes`` has a routine for each label."""
+    guesses = _MOST_GUESSES
+    for placed in routine.statements:
+        goto = placed.statement
+        if not isinstance(goto, ast.Goto):
+            continue
+        targets = own.get(goto.label.key)
+        if targets is None and context.is_cut(routine):
+            continue
+        if targets is None:
+            guess = did_you_mean(goto.label.text, own) if guesses > 0 else None
+            guesses -= 1
+            home = homes.get(goto.label.key)
+            yield _finding(
+                context,
+                "unknown-label",
+                goto.label,
+                f"{routine.node.name.text} has no label {goto.label.text}",
+                "CTL-07",
+                reason=f"it stands in {home}, another routine" if home else "",
+                fix=Fix(guess) if guess else None,
+            )
+            continue
+        block = targets[0].inside
+        if block is not None and not _holds(block.statement, goto):
+            line = line_of(context.source, targets[0].statement)
+            kind = _BLOCKS.get(type(block.statement), "a block")
+            message = f"GOTO into {kind}, to {goto.label.text} on line {line}"
+            yield _finding(context, "goto-into-block", goto, message, "CTL-07")
+
+
+def _holds(block: ast.Node, node: ast.Node) -> bool:
+    return block.span[0] <= node.span[0] and node.span[1] <= block.span[1]
+
+
+_BLOCKS: dict[type[ast.Node], str] = {
+    ast.If: "an IF",
+    ast.Switch: "a SWITCH",
+    ast.For: "a FOR loop",
+    ast.While: "a WHILE loop",
+    ast.Repeat: "a REPEAT loop",
+    ast.Loop: "a LOOP",
+}
+
+
+# ----------------------------------------------------------------------------- the end of a routine
+
+
+def _end(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    if routine.node.result is None:
+        return
+    ways = flow_graph(routine.node, lambda switch: _is_exhaustive(context, switch))
+    if ways.end in ways.reached():
+        name = routine.node.name
+        message = f"{name.text} can reach ENDFCT without RETURN, and has no result then"
+        # The controller accepts it, and files that it is delivered with have it.
+        yield context.finding("return-missing", name, message, severity="note")
+
+
+def _is_exhaustive(context: Context, switch: ast.Switch) -> bool:
+    """Whether a SWITCH without DEFAULT may well name all values that there are."""
+    values = [value for branch in switch.branches for value in branch.values]
+    if not all(isinstance(value, ast.EnumConstant) for value in values):
+        return False
+    known = {context.enumerations.get(v) for v in values if isinstance(v, ast.EnumConstant)}
+    named = {v.name.key for v in values if isinstance(v, ast.EnumConstant)}
+    for enumeration in known:
+        if enumeration is not None and not enumeration.is_open:
+            return {constant.upper() for constant in enumeration.constants} <= named
+    return True
+
+
+def _never_reached(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    ways = flow_graph(routine.node)
+    reached = ways.reached()
+    for step, before, inside in ways.steps:
+        if step in reached or isinstance(step.statement, ast.Label | ast.Definition):
+            continue
+        if (inside is None or inside in reached) and (before is None or before in reached):
+            yield _unreachable(context, step, before)
+
+
+def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> Diagnostic:
+    assert step.statement is not None
+    assert before is not None, "the first statement of a block that is reached is reached"
+    assert before.statement is not None
+    source = context.source
+    line = line_of(source, before.statement)
+    message = f"this is never reached: nothing goes on behind line {line}"
+    return context.finding("unreachable", head(source, step.statement), message)

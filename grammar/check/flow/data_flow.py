@@ -1,0 +1,394 @@
+"""What becomes of the data of a routine: read before it has a value, unused, counters changed.
+
+Only the routine's own variables are followed: nothing else can reach them. Where no way through the
+routine gives a variable a value before it is read, the finding is certain as far as the language
+goes. Where some ways do and others do not, nobody knows whether these are ever taken: a note.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from grammar.check.analysis.accesses import Access, Use, accesses, calls_of
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
+from grammar.check.analysis.control_flow_graph import FlowGraph, FlowNode, flow_graph
+from grammar.diagnostics.codes import Severity
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.symbols import Kind
+from grammar.semantics.types import BOOL, REAL
+from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.walk import BODIES, root_variable, walk, without_parentheses
+
+_WORD = re.compile(r"[A-Za-z_$][\w$]*")
+# A text, or a comment, which is none.
+_TEXT = re.compile(r';[^\r\n]*|"([^"\r\n]*)"')
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Findings about the data of all routines of a file."""
+    for routine in context.routines:
+        flow = _DataFlow(context, routine)
+        yield from flow.read_too_early()
+        yield from flow.unused()
+        yield from _counters(context, routine)
+        before: ast.Node | None = None
+        for placed in routine.statements:
+            is_tried = isinstance(before, ast.OnErrorProceed)
+            if isinstance(placed.statement, ast.Assignment) and not is_tried:
+                yield from _to_itself(context, placed.statement)
+            elif isinstance(placed.statement, ast.WaitFor):
+                yield from _waiting(context, placed.statement)
+            before = placed.statement
+    if context.routines:
+        yield from _real_equality(context)
+
+
+def needed_parameters(context: Context, routine: RoutineBody) -> tuple[int, ...]:
+    """The parameters, from 0, that a routine reads on every way, without asking VARSTATE for them.
+
+    To pass a parameter on is not to read it: who gets it may ask. Behind ON_ERROR_PROCEED a routine
+    may try.
+    """
+    if any(isinstance(placed.statement, ast.OnErrorProceed) for placed in routine.statements):
+        return ()
+    flow = _DataFlow(context, routine)
+    return tuple(
+        index
+        for index, parameter in enumerate(routine.node.parameters)
+        if parameter.name.key in flow.parameters and flow.is_needed(parameter.name.key)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _OnCondition:
+    """A variable that is assigned to in blocks, if in any, first at an ``offset`` of the text.
+
+    ``deciding`` are the names that the heads of ``blocks`` ask for, and those that are assigned to
+    along with it.
+    """
+
+    offset: int
+    deciding: frozenset[str]
+    blocks: frozenset[ast.Node]
+
+
+class _DataFlow:
+    """The variables of one routine and what its statements do to them."""
+
+    def __init__(self, context: Context, routine: RoutineBody) -> None:
+        self._context = context
+        self._routine = routine
+        told = context.module.words or frozenset()
+        symbols = routine.table.table.spaces[Space.VALUE].values()
+        asked = _names_in_texts(context, routine)
+        followed = {
+            one.key: one
+            for one in symbols
+            if one.key not in told and one.key not in asked and not context.is_cut(routine)
+        }
+        self.parameters = frozenset(
+            key for key, one in followed.items() if one.kind is Kind.PARAMETER
+        )
+        self.variables = frozenset(
+            key for key, one in followed.items() if one.kind is Kind.VARIABLE
+        )
+        self._accesses: dict[FlowNode, Sequence[Access]] = {}
+
+    @cached_property
+    def _graph(self) -> FlowGraph:
+        return flow_graph(self._routine.node)
+
+    def _of(self, node: FlowNode) -> Sequence[Access]:
+        """The accesses at a place: of REPEAT, the condition stands at its end."""
+        found = self._accesses.get(node)
+        if found is None:
+            statement: ast.Node | None = node.statement
+            if isinstance(statement, ast.Repeat):
+                statement = statement.condition if node.is_test else None
+            found = () if statement is None else accesses(self._context, statement)
+            self._accesses[node] = found
+        return found
+
+    def early(self, followed: frozenset[str]) -> Iterator[Access]:
+        """The reads of some variables that no way with a value leads to, each variable once."""
+        if not followed:
+            return
+        bits = {key: 1 << index for index, key in enumerate(sorted(followed))}
+        known = self._reaching(0, lambda node, _, value: value | self._changed(node, bits))
+        told = 0
+        for node in sorted(known, key=_position):
+            value = known[node]
+            for access in self._of(node):
+                bit = bits.get(access.name.key, 0)
+                if access.use is Use.READ and bit and not (value | told) & bit:
+                    told |= bit
+                    yield access
+                elif access.use is not Use.READ:
+                    value |= bit
+
+    def _changed(self, node: FlowNode, bits: dict[str, int]) -> int:
+        """The variables that get a value at a place."""
+        changed = 0
+        for access in self._of(node):
+            if access.use is not Use.READ:
+                changed |= bits.get(access.name.key, 0)
+        return changed
+
+    def _reaching(
+        self, first: int, passed: Callable[[FlowNode, int, int], int]
+    ) -> dict[FlowNode, int]:
+        """What may reach each place that can be reached, as bits; ``first`` is there at the start.
+
+        ``passed`` says what a place hands on of what reaches it, by the number of the way on.
+        """
+        start = self._graph.start
+        known = {start: first}
+        todo = deque([start])
+        while todo:
+            node = todo.popleft()
+            for number, after in enumerate(node.after):
+                value = passed(node, number, known[node])
+                before = known.get(after)
+                if before is None or value | before != before:
+                    known[after] = value | (before or 0)
+                    todo.append(after)
+        return known
+
+    def is_needed(self, key: str) -> bool:
+        """Whether no way leads to the end without reading a parameter."""
+        start, end = self._graph.start, self._graph.end
+        seen = {start}
+        todo = [start]
+        is_read = False
+        while todo:
+            node = todo.pop()
+            if node is end:
+                return False
+            uses = [access.use for access in self._of(node) if access.name.key == key]
+            if uses and not self._is_passed(node, key):
+                if uses[0] is not Use.READ:
+                    return False
+                is_read = True
+                continue
+            todo.extend(after for after in node.after if after not in seen)
+            seen.update(node.after)
+        return is_read
+
+    def _is_passed(self, node: FlowNode, key: str) -> bool:
+        return node.statement is not None and any(
+            _is_whole(argument, key)
+            for call in calls_of(node.statement)
+            for argument in call.arguments
+        )
+
+    def read_too_early(self) -> Iterator[Diagnostic]:
+        """Variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
+        told: set[str] = set()
+        for access in self.early(self.variables):
+            told.add(access.name.key)
+            message = f"{access.name.text} has no value yet"
+            reason = "nothing before this assigns to it"
+            yield self._context.finding("read-too-early", access.name, message, reason=reason)
+        for access, line in self._possibly_early(self.variables - told):
+            message = f"{access.name.text} may have no value yet"
+            reason = f"line {line} assigns to it, and there is a way past that"
+            yield self._context.finding("read-perhaps-early", access.name, message, reason=reason)
+
+    def _possibly_early(self, followed: frozenset[str]) -> Iterator[tuple[Access, int]]:
+        """The first read of each variable that a way without a value leads to.
+
+        With it comes the line of an assignment. Loops count as gone through at least once. Not
+        told is what a condition may rule out: one that asks for a name which also decides whether
+        the variable is assigned to, or is assigned along with it.
+        """
+        some = self._on_conditions(followed)
+        if not some:
+            return
+        bits = {key: 1 << index for index, key in enumerate(sorted(some))}
+
+        def lacking(node: FlowNode, number: int, value: int) -> int:
+            value &= ~self._changed(node, bits)
+            if number == 0 and isinstance(node.statement, ast.For | ast.While):  # the way past it
+                for key, one in some.items():
+                    value &= ~bits[key] if node.statement in one.blocks else ~0
+            return value
+
+        known = self._reaching(sum(bits.values()), lacking)
+        place_of = {placed.statement: placed for placed in self._routine.statements}
+        told: set[str] = set()
+        for node in sorted(known, key=_position):
+            value = known[node]
+            for access in self._of(node):
+                key = access.name.key
+                if access.use is not Use.READ:
+                    value &= ~bits.get(key, 0)
+                elif node.statement and key not in told and bits.get(key, 0) & value:
+                    read = place_of[node.statement]
+                    asked = set[str]().union(*map(self._asked, (read, *_around(read))))
+                    if asked.isdisjoint(some[key].deciding):
+                        told.add(key)
+                        yield access, self._context.source.place(some[key].offset)[0]
+
+    def _on_conditions(self, followed: frozenset[str]) -> dict[str, _OnCondition]:
+        """Those variables that are assigned to inside of blocks, or that a GOTO may pass by."""
+        if not followed:
+            return {}
+        assigned: dict[str, list[PlacedStatement]] = {}
+        along: dict[PlacedStatement | None, set[str]] = {}
+        has_jumps = False
+        for placed in self._routine.statements:
+            has_jumps |= isinstance(placed.statement, ast.Goto)
+            for access in accesses(self._context, placed.statement):
+                key = access.name.key
+                if access.use is not Use.READ:
+                    along.setdefault(placed.inside, set()).add(key)
+                    if key in followed:
+                        assigned.setdefault(key, []).append(placed)
+        found: dict[str, _OnCondition] = {}
+        for key, places in assigned.items():
+            blocks = {around for one in places for around in _around(one)}
+            if blocks or has_jumps:
+                beside = [along[one.inside] for one in places if one.inside]
+                names = set[str]().union(*map(self._asked, blocks), *beside) - {key}
+                nodes = frozenset(one.statement for one in blocks)
+                found[key] = _OnCondition(places[0].statement.span[0], frozenset(names), nodes)
+        return found
+
+    def _asked(self, placed: PlacedStatement) -> set[str]:
+        """The names in the head of a block; none for a statement that is none."""
+        if type(placed.statement) not in BODIES:
+            return set()
+        return {access.name.key for access in accesses(self._context, placed.statement)}
+
+    def unused(self) -> Iterator[Diagnostic]:
+        """Variables and parameters that nothing reads; notes."""
+        used: set[str] = set()
+        written: set[str] = set()
+        for placed in self._routine.statements:
+            for access in _all(self._context, placed):
+                (written if access.use is Use.WRITTEN else used).add(access.name.key)
+        table = self._routine.table.table.spaces[Space.VALUE]
+        for key in sorted(self.variables | self.parameters):
+            symbol = table[key]
+            if key in used or (symbol.kind is Kind.PARAMETER and key in written):
+                continue
+            what = "is assigned to and never read" if key in written else "is never used"
+            message = f"{symbol.name} {what}"
+            yield self._context.finding("unused", symbol.span, message)
+
+
+def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
+    """The statements that one stands in, the innermost first."""
+    around = placed.inside
+    while around is not None:
+        yield around
+        around = around.inside
+
+
+def _is_whole(node: ast.Expression | None, key: str) -> bool:
+    """Whether an argument is a variable as a whole: ``NAME`` or ``NAME[]``."""
+    if isinstance(node, ast.Subscript) and not any(node.indices):
+        node = node.base
+    return isinstance(node, ast.Variable) and node.name.key == key
+
+
+def _all(context: Context, placed: PlacedStatement) -> Iterator[Access]:
+    statement = placed.statement
+    yield from accesses(context, statement)
+    if isinstance(statement, ast.VariableDeclaration):
+        for declarator in statement.declarators:
+            for index in declarator.indices or ():
+                if index is not None:
+                    yield from accesses(context, index)
+
+
+def _position(node: FlowNode) -> tuple[int, int]:
+    if node.statement is None:
+        return (-1, 0)
+    return node.statement.span[node.is_test], node.is_test
+
+
+def _names_in_texts(context: Context, routine: RoutineBody) -> frozenset[str]:
+    """The names that a routine hands over in texts, as VARSTATE("NAME") does."""
+    start, end = routine.node.span
+    texts = _TEXT.findall(context.source.text, start, end)  # a walk over the tree takes long
+    return frozenset(word.upper() for text in texts for word in _WORD.findall(text))
+
+
+# ------------------------------------------------------------------------------- single statements
+
+
+def _counters(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    """Counters that are changed inside their own loop [CTL-05]."""
+    for placed in routine.statements:
+        statement = placed.statement
+        if isinstance(statement, ast.For):
+            name, place = statement.counter, statement.counter
+        elif isinstance(statement, ast.Assignment) and isinstance(statement.target, ast.Variable):
+            name, place = statement.target.name, statement.target.name
+        else:
+            continue
+        around = placed.inside
+        while around is not None:
+            if isinstance(around.statement, ast.For) and around.statement.counter.key == name.key:
+                line = context.source.place(around.statement.span[0])[0]
+                message = f"{name.text} counts the loop of line {line} and is changed inside it"
+                yield context.finding("counter-changed", place, message)
+                break
+            around = around.inside
+
+
+def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
+    """``A = A``; to assign to a variable of the controller has effects of its own.
+
+    Behind ON_ERROR_PROCEED it is a way to ask whether there is a value.
+    """
+    root = root_variable(node.target)
+    value = without_parentheses(node.value)
+    if root is None or root.name.text.startswith("$") or type(value) is not type(node.target):
+        return
+    found = context.found(root.name)
+    is_plain = found is not None and found.symbol.kind is not Kind.SIGNAL
+    has_call = any(isinstance(inner, ast.Call) for inner in walk(node.target))
+    shown = [
+        "".join(context.source.text[slice(*one.span)].upper().split())
+        for one in (node.target, value)
+    ]
+    if is_plain and not has_call and shown[0] == shown[1]:
+        yield context.finding("self-assignment", node, f"{root.name.text} is assigned to itself")
+
+
+def _real_equality(context: Context) -> Iterator[Diagnostic]:
+    """``==`` and ``<>`` of numbers that are rounded [ARI-10]."""
+    for node in context.types:
+        if isinstance(node, ast.Binary) and node.operator in ("==", "<>"):
+            types = context.types.get(node.left), context.types.get(node.right)
+            if REAL in types:
+                message = f"{node.operator} compares REAL values, which are rounded"
+                yield context.finding("real-equality", node, message)
+
+
+def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
+    """WAIT FOR on what nothing can change while the routine waits: FALSE, its own variables."""
+    used = accesses(context, node)
+    found = [context.found(access.name) for access in used]
+    has_call = any(isinstance(inner, ast.Call) for inner in walk(node))
+    is_own = bool(found) and all(
+        one is not None and one.scope.routine is not None and one.symbol.kind is Kind.VARIABLE
+        for one in found
+    )
+    if is_own and not has_call and context.types.get(node.condition) == BOOL:
+        names = ", ".join(dict.fromkeys(access.name.text for access in used))
+        message = f"nothing can change {names} while this waits"
+        yield context.finding("waits-for-ever", node.condition, message)
+    elif constant(context, node.condition) is False:
+        is_on_purpose = isinstance(without_parentheses(node.condition), ast.BoolLiteral)
+        severity: Severity = "note" if is_on_purpose else "warning"
+        message = "this condition is never fulfilled"
+        yield context.finding("waits-for-ever", node.condition, message, severity=severity)

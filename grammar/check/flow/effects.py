@@ -1,0 +1,371 @@
+"""What takes all files of a project to be judged: what one does and another relies on.
+
+An interrupt is declared here and switched on there, an output is set here and reset there, a
+parameter is read without a guard here and left out there. Each file gives its `Effects`, in its
+check; `of_project` puts those of all files together.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import field
+
+from grammar.check.analysis.accesses import Use, accesses, parts_of
+from grammar.check.analysis.constant_folding import constant, integer_of
+from grammar.check.analysis.context import Context
+from grammar.check.flow.data_flow import needed_parameters
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.semantics.scopes import REST
+from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
+from grammar.syntax import ast
+from grammar.syntax.walk import left_chain, without_parentheses
+from support.lazy_dataclass import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something is done in a file, and to what: a number or a name."""
+
+    path: str
+    region: Region
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A call that leaves the ``index``-th parameter of a routine out, which counts from 0.
+
+    ``routine`` is the path of its file and its name in upper case.
+    """
+
+    path: str
+    region: Region
+    routine: tuple[str, str]
+    index: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Effects:
+    """What the routines of a file do that others may rely on.
+
+    ``changed`` are the names, with a known index as in ``$FLAG[3]``, of all that is assigned to or
+    passed on; ``reset`` those that may become FALSE. ``switched_on`` has numbers of interrupts, and
+    ``""`` where all or unknown ones are meant. ``needed`` are the parameters, by file and routine,
+    that are read without a guard. ``literals`` are the variables that no file at hand declares, in
+    upper case, each beside a literal that it is compared with or receives, by the kind of that.
+    """
+
+    interrupts: tuple[Place, ...] = ()
+    switched_on: frozenset[str] = frozenset()
+    outputs: tuple[Place, ...] = ()
+    reset: frozenset[str] = frozenset()
+    waits: tuple[tuple[Place, frozenset[str]], ...] = ()
+    changed: frozenset[str] = frozenset()
+    left_out: tuple[LeftOut, ...] = ()
+    needed: dict[tuple[str, str], tuple[int, ...]] = field(default_factory=dict)
+    literals: tuple[tuple[str, str, Place], ...] = ()
+
+
+NO_EFFECTS = Effects()
+
+# Two places alike and one that differs.
+_FEWEST = 2
+
+#: What a variable of one type can be compared with.
+_KINDS: Mapping[type[ast.Node], str] = {
+    ast.BoolLiteral: "a truth value",
+    ast.IntegerLiteral: "a number",
+    ast.RealLiteral: "a number",
+    ast.BitLiteral: "a number",
+    ast.StringLiteral: "a text",
+}
+
+_OPERATORS: Mapping[str, Callable[[bool, bool], bool]] = {
+    "AND": operator.and_,
+    "OR": operator.or_,
+    "==": operator.eq,
+    "<>": operator.ne,
+}
+
+#: Nothing but programs changes these.
+_PROGRAMS_OWN = frozenset({"$FLAG", "$OUT"})
+
+
+def effects(context: Context) -> Effects:
+    """What the routines of a file do."""
+    return _Collector(context).collect()
+
+
+def effects_of_unread(words: frozenset[str]) -> Effects:
+    """What text that cannot be read may do, given its words in upper case; `REST` may do it all."""
+    if REST in words:
+        words |= {"INTERRUPT", "$OUT", "$FLAG"}
+    switched_on = frozenset({""} if "INTERRUPT" in words else ())
+    return Effects(switched_on=switched_on, reset=words, changed=words)
+
+
+class _Collector:
+    """Goes through the statements of a file."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        unread = effects_of_unread(context.module.words or frozenset())
+        self._interrupts: list[Place] = []
+        self._on = set(unread.switched_on)
+        self._outputs: dict[str, Place] = {}
+        self._reset = set(unread.reset)
+        self._waits: list[tuple[Place, frozenset[str]]] = []
+        self._changed = set(unread.changed)
+        self._left_out: list[LeftOut] = []
+        self._literals: list[tuple[str, str, Place]] = []
+
+    def collect(self) -> Effects:
+        context = self._context
+        for routine in context.routines:
+            for placed in routine.statements:
+                self._statement(placed.statement)
+                if not isinstance(placed.statement, ast.Definition):
+                    self._accesses(placed.statement)
+        needed = {
+            (context.module.path, routine.node.name.key): indices
+            for routine in context.routines
+            if routine.node.parameters and (indices := needed_parameters(context, routine))
+        }
+        return Effects(
+            tuple(self._interrupts),
+            frozenset(self._on),
+            tuple(self._outputs.values()),
+            frozenset(self._reset),
+            tuple(self._waits),
+            frozenset(self._changed),
+            tuple(self._left_out),
+            needed,
+            tuple(self._literals),
+        )
+
+    def _place(self, node: ast.Node, what: str) -> Place:
+        source = self._context.source
+        return Place(source.path, Region.of(source, node.span), what)
+
+    def _statement(self, node: ast.Node) -> None:
+        match node:
+            case ast.InterruptDeclaration(number=number):
+                known = integer_of(self._context, number)
+                if known is not None:
+                    self._interrupts.append(self._place(number, str(known)))
+            case ast.InterruptSwitch(action="ON" | "ENABLE", number=number):
+                known = None if number is None else integer_of(self._context, number)
+                self._on.add("" if known is None else str(known))
+            case ast.WaitFor(condition=condition):
+                self._wait(condition)
+
+    def _accesses(self, node: ast.Node) -> None:
+        for inner in _assignments(node):
+            self._assigned(inner)
+        for access in accesses(self._context, node):
+            if access.use is not Use.READ:
+                key = self._key(access.place) if access.place is not None else access.name.key
+                self._changed.add(key)
+                if access.use is Use.PASSED:
+                    self._reset.add(key)
+        for part in parts_of(node):
+            if isinstance(part, ast.Call):
+                self._call(part)
+            elif isinstance(part, ast.Assignment):
+                self._literal(part.target, part.value)
+            elif isinstance(part, ast.Binary) and part.operator in ("==", "<>"):
+                self._literal(part.left, part.right)
+
+    def _literal(self, variable: ast.Expression, value: ast.Expression) -> None:
+        """Note what an undeclared variable, or a component of one, stands beside."""
+        if isinstance(variable, ast.Subscript):
+            return  # letters may be given by their codes
+        path: list[str] = []
+        while isinstance(variable, ast.Member | ast.Subscript):
+            if isinstance(variable, ast.Member):
+                path.insert(0, variable.name.text)
+            variable = variable.base
+        if not isinstance(variable, ast.Variable):
+            return
+        name = variable.name
+        value = without_parentheses(value)
+        if isinstance(value, ast.Unary) and value.operator in "+-":
+            value = value.operand
+        kind = _KINDS.get(type(value))
+        if kind is not None and self._context.found(name) is None and not name.key.startswith("$"):
+            shown = ".".join((name.text, *path))
+            self._literals.append((shown.upper(), kind, self._place(value, shown)))
+
+    # --------------------------------------------------------------------------- keys
+
+    def _key(self, node: ast.Expression) -> str:
+        """What is accessed: a name, ``$OUT[5]``, or the output that a signal stands for."""
+        node = without_parentheses(node)
+        if isinstance(node, ast.Subscript) and isinstance(node.base, ast.Variable):
+            index = integer_of(self._context, node.indices[0]) if node.indices else None
+            if index is not None and node.base.name.key in _PROGRAMS_OWN:
+                return f"{node.base.name.key}[{index}]"
+            return node.base.name.key
+        while isinstance(node, ast.Subscript | ast.Member):
+            node = node.base
+        if not isinstance(node, ast.Variable):
+            return ""
+        found = self._context.found(node.name)
+        if found is None or not isinstance(found.symbol, SignalSymbol):
+            return node.name.key
+        first = found.symbol.first
+        return _written_key(first) if found.symbol.last is None else "$OUT"
+
+    # --------------------------------------------------------------------------- outputs
+
+    def _assigned(self, node: ast.Assignment) -> None:
+        key = self._key(node.target).replace("$OUT_C", "$OUT")
+        value = constant(self._context, node.value)
+        if value is not True:
+            self._reset.add(key)
+        elif key.startswith("$OUT[") and key not in self._outputs:
+            shown = self._context.source.text[slice(*node.target.span)]
+            self._outputs[key] = self._place(node, f"{key}\t{shown}")
+
+    # --------------------------------------------------------------------------- waiting
+
+    def _wait(self, condition: ast.Expression) -> None:
+        """A condition that flags alone fulfil, and that is not fulfilled while these are FALSE."""
+        keys: set[str] = set()
+        if self._with_flags_off(condition, keys) is False and keys:
+            shown = ", ".join(sorted(keys))
+            self._waits.append((self._place(condition, shown), frozenset(keys)))
+
+    def _with_flags_off(self, node: ast.Expression, keys: set[str]) -> bool | None:
+        """The value of a condition while all flags are FALSE; ``keys`` gets those that it asks."""
+        match without_parentheses(node):
+            case ast.BoolLiteral(value=value):
+                return value
+            case ast.Subscript() as place:
+                key = self._key(place)
+                keys.add(key)
+                return False if key.startswith("$FLAG[") else None
+            case ast.Unary(operator="NOT", operand=operand):
+                inner = self._with_flags_off(operand, keys)
+                return None if inner is None else not inner
+            case ast.Binary() as both:
+                chain = left_chain(both)
+                left = self._with_flags_off(chain[0].left, keys)
+                for each in chain:
+                    right = self._with_flags_off(each.right, keys)
+                    if left is None or right is None or each.operator not in _OPERATORS:
+                        return None
+                    left = _OPERATORS[each.operator](left, right)
+                return left
+        return None
+
+    # --------------------------------------------------------------------------- calls
+
+    def _call(self, node: ast.Call) -> None:
+        for argument in node.arguments:
+            if argument is not None:
+                self._reset.add(self._key(argument))  # PULSE, and what a routine may do with it
+        found = self._context.found(node.name)
+        if found is None or found.module is None or not isinstance(found.symbol, RoutineSymbol):
+            return
+        if found.symbol.kind is Kind.EXTERNAL:
+            return
+        source = self._context.source
+        for index, parameter in enumerate(found.symbol.parameters):
+            if index >= len(node.arguments) or node.arguments[index] is None:
+                routine = found.module.path, found.symbol.key
+                region = Region.of(source, node.span)
+                self._left_out.append(LeftOut(source.path, region, routine, index, parameter.name))
+
+
+def _written_key(node: ast.Expression) -> str:
+    """The output or flag that a signal stands for."""
+    match node:
+        case ast.Subscript(
+            base=ast.Variable(name=name), indices=(ast.IntegerLiteral(value=index),)
+        ):
+            return f"{name.key}[{index}]"
+    return "$OUT"
+
+
+def _assignments(node: ast.Node) -> Iterator[ast.Assignment]:
+    """What a statement assigns, now or later."""
+    match node:
+        case ast.Assignment():
+            yield node
+        case ast.Trigger(action=ast.Assignment() as action):
+            yield action
+        case ast.Motion(values=values) | ast.SplineBlock(values=values):
+            yield from values
+        case ast.SignalOn(assignment=assignment):
+            yield assignment
+
+
+# ------------------------------------------------------------------------------------- a project
+
+
+def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
+    """What is to be said of what the files of a project do to one another."""
+    files = list(found)
+    switched_on = frozenset[str]().union(*(one.switched_on for one in files))
+    reset = frozenset[str]().union(*(one.reset for one in files))
+    changed = frozenset[str]().union(*(one.changed for one in files))
+    needed = {routine: some for one in files for routine, some in one.needed.items()}
+    yield from _of_two_kinds(files)
+    for one in files:
+        if "" not in switched_on:
+            yield from _never_on(one.interrupts, switched_on)
+        if "$OUT" not in reset:
+            yield from _never_reset(one.outputs, reset)
+        for place, keys in one.waits:
+            if "$FLAG" not in changed and not keys & changed:
+                message = f"nothing at hand sets {place.what}, so this may wait for ever"
+                yield diagnose("never-fulfilled", place.path, place.region, message)
+        for call in one.left_out:
+            if call.index in needed.get(call.routine, ()):
+                yield _left_out(call)
+
+
+def _of_two_kinds(files: Iterable[Effects]) -> Iterator[Diagnostic]:
+    """Undeclared variables that are one kind of value in all places of a file but one."""
+    uses: dict[tuple[str, str], list[tuple[str, Place]]] = {}
+    for one in files:
+        for key, kind, place in one.literals:
+            uses.setdefault((place.path, key), []).append((kind, place))
+    for some in uses.values():
+        counts = Counter(kind for kind, _ in some)
+        if len(counts) == 2 and len(some) > _FEWEST and 1 in counts.values():
+            (usual, count), (rare, _) = counts.most_common()
+            place = next(place for kind, place in some if kind == rare)
+            message = f"{place.what} is {usual} elsewhere, and this is {rare}"
+            reason = f"so it is in {count} places"
+            yield diagnose(
+                "wrong-value", place.path, place.region, message, reason=reason, severity="warning"
+            )
+
+
+def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:
+    told = set()
+    for place in declared:
+        if place.what not in switched_on and place.what not in told:
+            told.add(place.what)
+            message = f"interrupt {place.what} is never switched on"
+            yield diagnose("interrupt-never-on", place.path, place.region, message)
+
+
+def _never_reset(outputs: Iterable[Place], reset: frozenset[str]) -> Iterator[Diagnostic]:
+    for place in outputs:
+        key, _, shown = place.what.partition("\t")
+        if key not in reset and shown.upper() not in reset:
+            message = f"{shown} is set here and never reset"
+            yield diagnose("output-never-reset", place.path, place.region, message)
+
+
+def _left_out(call: LeftOut) -> Diagnostic:
+    path, routine = call.routine
+    message = f"{call.name} is left out, and {routine} reads it"
+    reason = f"{path.rpartition('/')[2]} does not ask VARSTATE first"
+    return diagnose("argument-missing", call.path, call.region, message, reason=reason)

@@ -1,0 +1,171 @@
+"""How routines are entered: by an interrupt, by a call, or as the program that somebody selects.
+
+BRAKE and RESUME belong to interrupts, and the first motion of a program has to be complete. Both
+can be judged where nothing else may enter a routine: its module has all calls of a local one, and
+a project in which nothing is missing has those of any other. A program, and not just a routine
+that nobody calls, is what sets up its motions: ``BAS(#INITMOV, 0)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
+from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
+from grammar.check.flow.advance_stop_reasons import is_known_call
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.symbols import Access
+from grammar.syntax import ast
+from grammar.syntax.references import calls_in
+
+# Statements that are looked at before the first motion; who needs more sets up a lot.
+_FARTHEST_LOOK = 2_000
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Findings about BRAKE, RESUME and first motions."""
+    if not context.routines:
+        return
+    suspects = [routine for routine in context.routines if _interrupting(routine)]
+    if suspects:
+        entered = _Entered(context)
+        for routine in suspects:
+            if not entered.maybe_by_interrupt(routine):
+                yield from _outside(context, routine)
+    yield from _first_motion(context, context.routines[0])
+
+
+# ---------------------------------------------------------------------------- BRAKE and RESUME
+
+
+def _interrupting(routine: RoutineBody) -> list[ast.Brake | ast.Resume]:
+    return [
+        placed.statement
+        for placed in routine.statements
+        if isinstance(placed.statement, ast.Brake | ast.Resume)
+    ]
+
+
+class _Entered:
+    """Who calls whom in a module, and what its interrupts call."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._callers: dict[str, set[str]] = {}
+        self._targets: set[str] = set()
+        for routine in context.routines:
+            for called in calls_in(routine.node.body):
+                self._callers.setdefault(called, set()).add(routine.node.name.key)
+            for placed in routine.statements:
+                match placed.statement:
+                    case ast.InterruptDeclaration(action=ast.CallStatement(call=call)):
+                        self._targets.add(call.name.key)
+        self._seen_outside = {
+            routine.node.name.key
+            for routine in context.routines
+            if routine.table.routine.access is not Access.MODULE
+        } | {context.module.name}
+        first = context.routines[0]
+        if any(map(_sets_up, first.statements)) and not first.node.parameters:
+            self._seen_outside.discard(first.node.name.key)  # somebody selects it
+
+    def maybe_by_interrupt(self, routine: RoutineBody) -> bool:
+        """Whether an interrupt may lead to a routine, as far as is known."""
+        found = {routine.node.name.key}
+        todo = list(found)
+        while todo:
+            key = todo.pop()
+            if key in self._targets or (
+                key in self._seen_outside and _is_called_outside(self._context, key)
+            ):
+                return True
+            more = self._callers.get(key, set()) - found
+            found |= more
+            todo.extend(more)
+        return False
+
+
+def _is_called_outside(context: Context, key: str) -> bool:
+    """Whether another module calls a routine, or one that is not at hand may."""
+    if not context.project.is_complete:
+        return True
+    return any(
+        module.table is None or key in module.table.calls
+        for module in context.project.modules
+        if module.path != context.module.path
+    )
+
+
+def _outside(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    name = routine.node.name.text
+    for node in _interrupting(routine):
+        word, slug = "RESUME", "resume-outside-interrupt"
+        if isinstance(node, ast.Brake):
+            word, slug = "BRAKE", "brake-outside-interrupt"
+        yield context.finding(slug, node, f"{word} in {name}, which no interrupt calls")
+
+
+# -------------------------------------------------------------------------------- first motions
+
+
+def _first_motion(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    """The first motion of a program that nobody calls, where it is certain which one that is."""
+    if context.module.suffix != ".src" or routine.node.parameters or routine.node.result:
+        return
+    key = routine.node.name.key
+    if key in context.table.calls or not any(map(_sets_up, routine.statements)):
+        return
+    if _is_called_outside(context, key):
+        return
+    for motion in _first_motions(context, routine):
+        what = _incomplete(motion)
+        if what:
+            message = f"the program begins with {what}"
+            yield context.finding("first-motion", motion, message)
+
+
+def _sets_up(placed: PlacedStatement) -> bool:
+    """Whether a statement sets up the motions of a program."""
+    match placed.statement:
+        case ast.CallStatement(
+            call=ast.Call(name=name, arguments=(ast.EnumConstant() as what, *_))
+        ):
+            return name.key == "BAS" and what.name.key == "INITMOV"
+    return False
+
+
+def _first_motions(context: Context, routine: RoutineBody) -> list[ast.Motion]:
+    """The motions that may be the first, in the order of the text; none where calls may move."""
+    ways = flow_graph(routine.node)
+    found: list[ast.Motion] = []
+    seen: set[FlowNode] = {ways.start}
+    todo = [ways.start]
+    while todo and len(seen) < _FARTHEST_LOOK:
+        for step in todo.pop().after:
+            if step in seen:
+                continue
+            seen.add(step)
+            node = step.statement
+            if isinstance(node, ast.Motion):
+                found.append(node)
+            elif isinstance(node, ast.SplineBlock | ast.EmilyMotion):
+                return []
+            elif node is None or is_known_call(context, node, step.is_test):
+                todo.append(step)
+            else:
+                return []
+    return sorted(found, key=lambda motion: motion.span)
+
+
+_COMPLETE = frozenset({"PTP", "SPTP", "ASYPTP"})
+
+
+def _incomplete(motion: ast.Motion) -> str:
+    """Why a motion cannot be the first one; empty where it can."""
+    if motion.kind not in _COMPLETE:
+        return motion.kind
+    if isinstance(motion.target, ast.Aggregate) and motion.kind != "ASYPTP":
+        names = {component.name.key for component in motion.target.components}
+        if "X" in names and not {"S", "T"} <= names:
+            return f"{motion.kind} without Status and Turn"
+    return ""

@@ -1,0 +1,1 @@
+"""Limits: numbers, values and lengths of names that a program may not exceed."""

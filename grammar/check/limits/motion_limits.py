@@ -1,0 +1,79 @@
+"""Velocities, accelerations and approximation that are more than the robot has, or than 100 %.
+
+The machine data say what a robot can do: ``$VEL_MA`` and ``$ACC_MA`` of the project's own $MACHINE
+list. Without these only what no robot does is told: m/s written as mm/s. BAS reduces what is too
+much [MOT-03, MOT-04], the variables do not, and which message comes is not documented: warnings.
+"""
+
+from __future__ import annotations
+
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.type_checker import TypeChecker
+from grammar.semantics.scopes import Found
+from grammar.syntax import ast
+from grammar.syntax.references import Space
+from grammar.syntax.walk import without_parentheses
+
+#: The machine data for each component that a program sets.
+_MAXIMA = {"$VEL": "$VEL_MA", "$ACC": "$ACC_MA"}
+#: m/s and m/s² that no robot reaches.
+_FASTEST = {("$VEL", "CP"): 10.0, ("$ACC", "CP"): 100.0}
+_PERCENT = frozenset({"$VEL_AXIS", "$ACC_AXIS", "$VEL_EXTAX", "$ACC_EXTAX"})
+_PERCENT_OF = frozenset({("$APO", "CPTP"), ("$APO", "CVEL")})
+
+
+def check_motion_limit(checker: TypeChecker, node: ast.Assignment) -> None:
+    """Judge a value that is known before the program runs."""
+    value = constant(checker.context, node.value)
+    if isinstance(value, bool | str) or value is None:
+        return
+    limits = _limits(checker, node.target)
+    if limits is None:
+        return
+    low, high, reason = limits
+    if not low <= value <= high:
+        shown = checker.context.source.text[slice(*node.target.span)]
+        message = f"{shown} reaches from {low:g} to {high:g}"
+        rules = ("MOT-02", "MOT-04", "ARI-11")
+        checker.report(
+            "invalid-system-value",
+            node.value,
+            message,
+            reason=reason,
+            rules=rules,
+            is_unconfirmed=True,
+        )
+
+
+def _limits(checker: TypeChecker, node: ast.Expression) -> tuple[float, float, str] | None:
+    """The lowest and highest value, and which data say so."""
+    match node:
+        case ast.Subscript(base=ast.Variable(name=name)) if name.key in _PERCENT:
+            return 0, 100, "it is a percentage"
+        case ast.Subscript(base=ast.Variable(name=name)) if name.key == "$ANOUT":
+            return -1, 1, "1 stands for 10 V"
+        case ast.Member(base=ast.Variable(name=name), name=part):
+            place = name.key, part.key
+            if place in _PERCENT_OF:
+                return 0, 100, "it is a percentage"
+            most = _most(checker, *place)
+            if most is not None:
+                return 0, most, f"so says {_MAXIMA[name.key]} in the machine data"
+            if place in _FASTEST:
+                return 0, _FASTEST[place], "it is given in metres"
+    return None
+
+
+def _most(checker: TypeChecker, variable: str, part: str) -> float | None:
+    """What the machine data of the project have for a component."""
+    if variable not in _MAXIMA:
+        return None
+    found = checker.context.scope.find(Space.VALUE, _MAXIMA[variable])
+    if not isinstance(found, Found) or not isinstance(found.symbol.value, ast.Aggregate):
+        return None
+    for component in found.symbol.value.components:
+        if component.name.key == part:
+            value = without_parentheses(component.value)
+            if isinstance(value, ast.IntegerLiteral | ast.RealLiteral):
+                return float(value.value)
+    return None

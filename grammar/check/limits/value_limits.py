@@ -1,0 +1,166 @@
+"""Numbers and values with limits: interrupts, triggers, cyclical flags.
+
+Only what is known before a program runs is judged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Context, RoutineBody
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.motion_kinds import WITHOUT_PATH
+from grammar.semantics.symbols import Access
+from grammar.syntax import ast
+from grammar.syntax.walk import root_variable, walk
+
+#: Milliseconds or millimetres: how far a trigger can be shifted [TRG-03, TRG-04].
+_FARTHEST = 10_000_000
+_STOP_MESSAGE = "$STOPMESS"
+
+
+def is_priority(number: float) -> bool:
+    """Whether a program can give this number to an interrupt or a trigger [INT-02, TRG-06]."""
+    return number in (1, 2) or 4 <= number <= 39 or 81 <= number <= 128
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Findings about values outside their limits."""
+    for routine in context.routines:
+        for placed in routine.statements:
+            match placed.statement:
+                case ast.InterruptDeclaration() as declaration:
+                    yield from _interrupt(context, declaration)
+                case ast.InterruptSwitch(number=number) if number is not None:
+                    yield from _interrupt_number(context, number, is_own=False)
+                case ast.WaitSeconds(duration=duration):
+                    yield from _duration(context, duration)
+                case ast.Trigger() as trigger:
+                    yield from _trigger(context, trigger)
+                case ast.Assignment() as assignment:
+                    yield from _cyclical_flag(context, assignment)
+        yield from _before_ptp(context, routine)
+
+
+def _number(context: Context, node: ast.Expression | None) -> float | None:
+    """The value of a number that is known; ``None`` for all else."""
+    value = None if node is None else constant(context, node)
+    return value if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
+# ------------------------------------------------------------------------------------- interrupts
+
+
+def _interrupt(context: Context, node: ast.InterruptDeclaration) -> Iterator[Diagnostic]:
+    is_own = not _is_stop_message(node.condition)  # 3 is that of every program [INT-02]
+    yield from _interrupt_number(context, node.number, is_own=is_own)
+
+
+def _interrupt_number(
+    context: Context, node: ast.Expression, *, is_own: bool
+) -> Iterator[Diagnostic]:
+    number = _number(context, node)
+    if number is None or is_priority(number) or (number == 3 and not is_own):
+        return
+    message = f"an interrupt cannot have the number {number:g}"
+    reason = "3 and 40 to 80 belong to the system" if 0 < number <= 80 else ""
+    yield context.finding(
+        "interrupt-number",
+        node,
+        message,
+        reason=reason,
+        severity="warning" if number == 3 else None,
+    )
+
+
+def _duration(context: Context, node: ast.Expression) -> Iterator[Diagnostic]:
+    """WAIT SEC with less than nothing waits for nothing: the sign is a slip."""
+    seconds = _number(context, node)
+    if seconds is not None and seconds < 0:
+        message = f"WAIT SEC of {seconds:g} seconds does not wait"
+        yield context.finding("negative-wait", node, message)
+
+
+def _is_stop_message(condition: ast.Expression) -> bool:
+    names = (node.name.key for node in walk(condition) if isinstance(node, ast.Variable))
+    return _STOP_MESSAGE in names
+
+
+# --------------------------------------------------------------------------------------- triggers
+
+
+def _trigger(context: Context, node: ast.Trigger) -> Iterator[Diagnostic]:
+    place, delay = _number(context, node.place), _number(context, node.delay)
+    if node.place_kind == "DISTANCE":
+        if place is not None and place not in (0, 1):
+            message = f"DISTANCE is 0 or 1, and not {place:g}"
+            yield context.finding("trigger-limits", node.place, message, rules=("TRG-01",))
+    elif place is not None and abs(place) > _FARTHEST:
+        message = f"PATH reaches to {_FARTHEST:,} mm"
+        yield context.finding("trigger-limits", node.place, message, rules=("TRG-04",))
+    if delay is not None and abs(delay) > _FARTHEST:
+        message = f"DELAY reaches to {_FARTHEST:,} ms"
+        yield context.finding("trigger-limits", node.delay, message, rules=("TRG-03",))
+    priority = _number(context, node.priority)
+    if priority is not None and priority != -1 and not is_priority(priority):
+        assert node.priority is not None
+        message = f"a trigger cannot have the priority {priority:g}"
+        yield context.finding("trigger-priority", node.priority, message)
+    if isinstance(node.action, ast.CallStatement):
+        if node.priority is None and node.action.call.name.key != "PULSE":  # no call [TRG-05]
+            message = f"a trigger that calls {node.action.call.name.text} needs PRIO"
+            yield context.finding("trigger-priority", node.action, message)
+        return
+    variable = root_variable(node.action.target)
+    if variable is not None and _is_local(context, variable):
+        message = f"a trigger assigns to {variable.name.text}, a variable of the routine"
+        yield context.finding("trigger-local", node.action.target, message)
+
+
+def _before_ptp(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    """Triggers with PATH whose next motion is a PTP, as far as statements follow one another."""
+    waiting: list[ast.Trigger] = []
+    inside = None
+    for placed in routine.statements:
+        statement = placed.statement
+        if placed.inside is not inside or isinstance(statement, _ELSEWHERE):
+            waiting, inside = [], placed.inside
+        if isinstance(statement, ast.Trigger) and statement.place_kind == "PATH":
+            waiting.append(statement)
+        elif isinstance(statement, ast.Motion):
+            if statement.kind in WITHOUT_PATH:
+                line = context.source.place(statement.span[0])[0]
+                for trigger in waiting:
+                    message = f"PATH before {statement.kind} on line {line}"
+                    yield context.finding("path-before-ptp", trigger, message)
+            waiting = []
+
+
+#: Behind these the next motion may be one that stands elsewhere.
+_ELSEWHERE = (
+    ast.Goto | ast.Label | ast.Return | ast.Exit | ast.CallStatement | ast.If | ast.Switch
+    | ast.For | ast.While | ast.Repeat | ast.Loop | ast.SplineBlock | ast.EmilyMotion
+)  # fmt: skip
+
+
+# --------------------------------------------------------------------------------- cyclical flags
+
+
+def _is_local(context: Context, variable: ast.Variable) -> bool:
+    """Whether a variable belongs to its routine."""
+    found = context.found(variable.name)
+    return found is not None and found.symbol.access is Access.ROUTINE
+
+
+def _cyclical_flag(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
+    target = root_variable(node.target)
+    if target is None or target.name.key != "$CYCFLAG":
+        return
+    for inner in walk(node.value):
+        if isinstance(inner, ast.Call):
+            message = f"a cyclical flag that depends on the function {inner.name.text}"
+            yield context.finding("cycflag-function", inner, message)
+        elif isinstance(inner, ast.Variable) and _is_local(context, inner):
+            message = f"a cyclical flag that depends on {inner.name.text}, local data"
+            yield context.finding("cycflag-local", inner, message)

@@ -1,0 +1,1 @@
+"""Names: not declared, declared twice, and how unknown ones are graded over a project."""

@@ -1,0 +1,71 @@
+"""Names that are declared twice: in one scope, for everybody by two modules, or hidden by another.
+
+Folders in which people collect programs are full of copies, so only where files are laid out like a
+controller's drive is it a fault that two modules declare the same for everybody.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+
+from grammar.check.analysis.context import Context
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.link import Project
+from grammar.semantics.scopes import Found, Module
+from grammar.semantics.symbols import Duplicate, Kind, Table
+from grammar.syntax.references import Space
+
+#: Labels are the affair of `grammar.check.flow.control_flow`; a routine may be announced again and
+#: again.
+_HARMLESS = frozenset({Kind.LABEL, Kind.EXTERNAL})
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Tell the names of a file that stand twice or hide others."""
+    yield from _in_table(context, context.table.table)
+    for routine in context.routines:
+        yield from _in_table(context, routine.table.table)
+        for inner, outer in routine.scope.shadowed():
+            if outer.module is not None and inner.symbol.kind is not Kind.ROUTINE:
+                yield _hides(context, inner, outer)
+    for mine, first in _clashing(context.project).get(context.module, ()):
+        message = f"{mine.symbol.name} is declared for everybody in another module already"
+        reason = f"in {first.module.path}" if first.module else ""
+        yield context.finding(
+            "declared-twice", mine.symbol.span, message, reason=reason, severity="warning"
+        )
+
+
+def _in_table(context: Context, table: Table) -> Iterator[Diagnostic]:
+    for duplicate in table.duplicates:
+        if _HARMLESS.isdisjoint((duplicate.first.kind, duplicate.second.kind)):
+            yield _twice(context, duplicate)
+
+
+def _twice(context: Context, duplicate: Duplicate) -> Diagnostic:
+    first, second = duplicate.first, duplicate.second
+    line, _ = context.source.place(first.span[0])
+    message = f"{second.name} is declared already in line {line}"
+    reason = "" if first.kind is second.kind else f"there it is a {first.kind.value}"
+    return context.finding("declared-twice", second.span, message, reason=reason)
+
+
+def _hides(context: Context, inner: Found, outer: Found) -> Diagnostic:
+    symbol = inner.symbol
+    where = outer.module.path if outer.module else "the controller"
+    message = f"{symbol.name} hides the {outer.symbol.kind.value} {outer.symbol.name}"
+    return context.finding("shadowed", symbol.span, message, reason=f"declared in {where}")
+
+
+@lru_cache(maxsize=1)
+def _clashing(project: Project) -> Mapping[Module, list[tuple[Found, Found]]]:
+    """What the modules of a controller declare for everybody after another one did."""
+    found: dict[Module, list[tuple[Found, Found]]] = {}
+    for clash in project.clashes if project.is_controller else ():
+        if clash.space is not Space.LABEL:
+            first, *others = clash.declarations
+            for other in others:
+                if other.module is not None:
+                    found.setdefault(other.module, []).append((other, first))
+    return found

@@ -1,0 +1,373 @@
+"""Names in a file that nothing declares.
+
+A look-up says `NotFound` where the whole project is at hand: `check` tells these. Real backups
+seldom are whole; names that some file not at hand may declare are the `references` of the file, and
+those of all files are graded together (`grammar.check.names.unresolved_names`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache, partial
+
+from grammar.check.analysis.context import Context
+from grammar.check.names.unresolved_names import (
+    SLUGS,
+    WORDS,
+    Declared,
+    UnresolvedName,
+    slipped_declaration,
+)
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
+from grammar.diagnostics.typos import Series, Typos
+from grammar.semantics.link import Project
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Resolution, Use
+from grammar.semantics.scopes import Found, MaybeElsewhere, Module, NotFound, Reason
+from grammar.semantics.symbols import Access, Kind, Symbol, Table
+from grammar.semantics.types import SCALARS, Structure
+from grammar.syntax import ast
+from grammar.syntax.ast import Span
+from grammar.syntax.references import Space
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Tell the names that are certain to be unknown, each once in a file."""
+    slips = _slipped_declarations(context)
+    reported = {(Space.VALUE, key) for key in slips}
+    for symbol, name, count in slips.values():
+        region = Region.of(context.source, symbol.span)
+        yield slipped_declaration(
+            "unknown-name",
+            context.source.path,
+            region,
+            symbol.name,
+            name,
+            count,
+            is_certain=False,
+        )
+    for use in context.resolution.open_uses:
+        if use.space is None or use.space is Space.LABEL or not isinstance(use.answer, NotFound):
+            continue
+        key = use.space, use.name.key
+        if key not in reported:
+            reported.add(key)
+            yield _unknown(context, use)
+    yield from _near_system_names(context)
+    if lacks_data_list(context.project, context.module, context.resolution):
+        message = f"{context.module.name} may have a data list that is not at hand"
+        yield context.finding("data-list-missing", context.table.span, message)
+
+
+def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]]:
+    """The variables that are declared in the file by a slip, by what they are called in use.
+
+    That is what nothing uses, while a name one slip away is used several times and not declared.
+    """
+    uses: dict[str, list[Use]] = {}
+    for use in context.resolution.open_uses:
+        if use.space is Space.VALUE and not isinstance(use.answer, Found):
+            uses.setdefault(use.name.key, []).append(use)
+    several = {key: some for key, some in uses.items() if len(some) > 1 and key[0] != "$"}
+    if not several or context.module.words:  # what cannot be read may use it
+        return {}
+    unused = _unused(context, _own_tables(context))
+    typos = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
+    found = {}
+    for key, some in several.items():
+        near = typos.meant(key)
+        if len(near) == 1:
+            symbol = unused.pop(near[0].upper(), None)
+            if symbol is not None:
+                found[key] = symbol, some[0].name.text, len(some)
+    return found
+
+
+def _own_tables(context: Context) -> tuple[Table, ...]:
+    return context.table.table, *(routine.table.table for routine in context.routines)
+
+
+def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
+    """The variables of some tables that the file does not use, by their names in upper case."""
+    used = {found.symbol for found in _used(context)}
+    return {
+        symbol.key: symbol
+        for table in tables
+        for symbol in table.spaces[Space.VALUE].values()
+        if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT) and symbol not in used
+    }
+
+
+def _used(context: Context) -> Iterator[Found]:
+    for name, answer in context.resolution.answers.items():
+        if isinstance(answer, Found) and answer.symbol.span != name.span:
+            yield answer
+
+
+def uses(context: Context) -> frozenset[str]:
+    """The names in upper case that a file uses and some file declares, or that cannot be read.
+
+    Constants of enumerations are among them with a #.
+    """
+    constants = {f"#{node.name.key}" for node in context.types if type(node) is ast.EnumConstant}
+    declared = {found.symbol.key for found in _used(context) if found.module}
+    return frozenset(declared | constants | uses_of_unread(context.module.words or ()))
+
+
+def uses_of_unread(words: Iterable[str]) -> frozenset[str]:
+    """What text that cannot be read may use, given its words in upper case."""
+    return frozenset(written for word in words for written in (word, f"#{word}"))
+
+
+def _near_system_names(context: Context) -> Iterator[Diagnostic]:
+    """What a list of the controller declares and is one slip away from what the tables have."""
+    if not context.table.is_data:
+        return
+    known = context.system.variables
+    for key, symbol in context.table.table.spaces[Space.VALUE].items():
+        if key.startswith("$") and key not in known:
+            near = [
+                name
+                for name in _system_typos().meant(key)
+                if not _declared(context, Space.VALUE, name)
+            ]
+            if near:
+                message = f"no system variable is called {symbol.name}"
+                fix = Fix(f"did you mean {' or '.join(near)}?")
+                yield context.finding(
+                    "unknown-system-name", symbol.span, message, severity="warning", fix=fix
+                )
+
+
+def _declared(context: Context, space: Space, name: str) -> Declared | None:
+    found = context.scope.find(space, name.upper())
+    if not isinstance(found, Found) or found.module is None:
+        return None
+    return Declared(found.module.path, space, found.symbol.key)
+
+
+@cache
+def _open_components() -> Typos:
+    """The components of those structures of the controller that may have more of them."""
+    types = System.load().types.values()
+    known = (one for one in types if isinstance(one, Structure) and one.is_open)
+    names = (member.name for one in known for member in one.members)
+    return Typos(names, 3, series=Series.DIGITS)
+
+
+@cache
+def _system_typos() -> Typos:
+    names = (name for name in System.load().variables if name.startswith("$"))
+    return Typos(names, 3, series=Series.DIGITS)
+
+
+def lacks_data_list(project: Project, module: Module, resolution: Resolution) -> bool:
+    """Whether the data list of a program is not at hand, and the program uses unknown variables."""
+    if module.suffix == ".dat" or project.data_of(module) is not None:
+        return False
+    return any(
+        use.space is Space.VALUE
+        and isinstance(use.answer, MaybeElsewhere)
+        and not use.name.text.startswith("$")
+        for use in resolution.open_uses
+    )
+
+
+def _unknown(context: Context, use: Use) -> Diagnostic:
+    space, name = use.space, use.name
+    assert space is not None, "members belong to types"
+    hidden = use.answer.hidden if isinstance(use.answer, NotFound) else None
+    word = WORDS[space]
+    if hidden and hidden.module and hidden.symbol.kind is not Kind.EXTERNAL:
+        message = f"{name.text} of {hidden.module.path} cannot be seen from here"
+        slug = "routine-not-global" if space is Space.ROUTINE else SLUGS[space]
+        return context.finding(slug, name, message, reason=_why_hidden(hidden))
+    fix = context.suggestions.suggest(name.text, _visible(context, space, name.span))
+    if name in context.constants:
+        fix = Fix(f"did you mean {context.constants[name]}?")
+    return context.finding(SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
+
+
+def _why_hidden(hidden: Found) -> str:
+    module = hidden.module
+    if hidden.symbol.kind is Kind.ROUTINE or module is None or module.table is None:
+        return "it is not GLOBAL"
+    if module.table.is_public:
+        return "it is not GLOBAL"
+    return "its data list is not PUBLIC"
+
+
+def _visible(context: Context, space: Space, span: Span) -> Iterator[str]:
+    """The names that somebody may have meant, those nearby first."""
+    for routine in context.routines:
+        if routine.node.span[0] <= span[0] < routine.node.span[1]:
+            yield from _names(routine.table.table, space)
+    yield from _names(context.table.table, space)
+    data = context.project.data_of(context.module)
+    if data is not None and data.table is not None:
+        yield from _names(data.table.table, space)
+    for module in context.project.modules:
+        if module.table is not None and module not in (context.module, data):
+            yield from _names(module.table.table, space, Access.GLOBAL)
+    system = context.system
+    match space:
+        case Space.VALUE:
+            yield from (name for name in system.variables if name.startswith("$"))
+        case Space.ROUTINE:
+            yield from system.functions
+        case Space.TYPE:
+            yield from (*SCALARS, *system.types)
+
+
+def _names(table: Table, space: Space, access: Access | None = None) -> Iterator[str]:
+    for symbol in table.spaces[space].values():
+        if access is None or symbol.access is access:
+            yield symbol.name
+
+
+# ------------------------------------------------------------------------ what may be elsewhere
+
+
+def references(context: Context) -> tuple[UnresolvedName, ...]:
+    """The names in a file that other files may declare, in the order of their first places."""
+    open_: dict[tuple[Space, str], list[Use]] = {}
+    slips = _slipped_declarations(context)
+    for use in context.resolution.open_uses:
+        if use.space is Space.VALUE and use.name.key in slips:
+            continue
+        if use.space is None or use.space is Space.LABEL:
+            continue
+        if _may_be_elsewhere(use):
+            open_.setdefault((use.space, use.name.key), []).append(use)
+    own = cache(partial(_own_typos, context))
+    data = context.project.data_of(context.module) if open_ else None
+    unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
+    swapped = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
+    return (*_members(context), *_constants(context), *_others(context, open_, own, swapped))
+
+
+def _constants(context: Context) -> Iterator[UnresolvedName]:
+    """The constants that enumerations of the project lack."""
+    for enumeration, name, finding in context.unknown_constants:
+        at = _declared(context, Space.TYPE, enumeration.name)
+        near = Typos(enumeration.constants, 3, series=Series.DIGITS).meant(name)
+        yield UnresolvedName(
+            Space.TYPE,
+            f"{enumeration.name}#{name}",
+            finding.path,
+            finding.region,
+            1,
+            False,
+            near,
+            declared=replace(at, constant=near[0].upper()) if at and len(near) == 1 else None,
+            finding=finding,
+        )
+
+
+def _members(context: Context) -> Iterator[UnresolvedName]:
+    """The components of structures that are unknown, or of which more may exist than are known."""
+    open_ = [
+        use.name
+        for use in context.resolution.open_uses
+        if use.space is None and isinstance(use.answer, MaybeElsewhere)
+    ]
+    path = context.source.path
+    for names, known in ((context.resolution.unknown_members, None), (open_, _open_components())):
+        places: dict[str, list[ast.Name]] = {}
+        for name in names:
+            places.setdefault(name.key, []).append(name)
+        for some in places.values():
+            first = some[0]
+            near = known.meant(first.text) if known else ()
+            region = Region.of(context.source, first.span)
+            yield UnresolvedName(None, first.text, path, region, len(some), False, near)
+
+
+def _others(
+    context: Context,
+    uses: Mapping[tuple[Space, str], Sequence[Use]],
+    own: Callable[[Space], Typos],
+    swapped: Typos,
+) -> Iterator[UnresolvedName]:
+    is_certain = context.data is not None or context.project.data_of(context.module) is not None
+    for (space, key), some in uses.items():
+        may_be_swapped = space is Space.VALUE and not _may_be_unread(some[0])
+        unused = swapped.meant(some[0].name.text) if may_be_swapped else ()
+        near = _near(context, own, some[0])
+        is_swapped = len(unused) == 1 and near in ((), unused)
+        yield UnresolvedName(
+            space,
+            some[0].name.text,
+            context.source.path,
+            Region.of(context.source, some[0].name.span),
+            len(some),
+            space is Space.VALUE and key.startswith("$"),
+            near or (unused if is_swapped else ()),
+            is_swapped,
+            _declared(context, space, near[0]) if len(near) == 1 else None,
+            _is_all_read(context, some[0]),
+            is_certain,
+        )
+
+
+#: What is written in every program, so that one slip away from it there is nothing else.
+_WORDS_OF_KRL = {
+    Space.TYPE: Typos((*SCALARS, *"AXIS E6AXIS FRAME POS E6POS".split()), 2, series=Series.NONE),
+    Space.VALUE: Typos(("TRUE", "FALSE"), 3, series=Series.NONE),
+}
+
+
+def _may_be_elsewhere(use: Use) -> bool:
+    """Whether a name comes from a file that is not at hand; what several declare does not."""
+    if isinstance(use.answer, MaybeElsewhere):
+        return use.answer.reason is not Reason.AMBIGUOUS
+    return isinstance(use.answer, Found)  # only EXT announces it
+
+
+def _may_be_unread(use: Use) -> bool:
+    return isinstance(use.answer, MaybeElsewhere) and use.answer.reason is Reason.UNREADABLE
+
+
+def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[str, ...]:
+    """The names that are seen there and that this one may be a slip of."""
+    space = use.space
+    if space is None or isinstance(use.answer, Found):
+        return ()
+    name = use.name.text
+    if use.name in context.constants:
+        return (context.constants[use.name],)
+    if space is Space.VALUE and f"${use.name.key}" in context.system.variables:
+        return (f"${name}",)
+    bare = name.rstrip("0123456789")
+    if name.startswith("$") and bare != name and bare.upper() in context.system.variables:
+        return (bare,)
+    if name.startswith("$") and (meant := _system_typos().meant(name)):
+        return meant
+    if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
+        return meant
+    return own(space).meant(name) or context.project.typos[space].meant(name)
+
+
+def _own_typos(context: Context, space: Space) -> Typos:
+    """The names of the file itself, of its routines and of its data list."""
+    tables = [*_own_tables(context)]
+    data = context.project.data_of(context.module)
+    if data is not None and data.table is not None:
+        tables.append(data.table.table)
+    names = (name for table in tables for name in _names(table, space))
+    return Typos(names, series=Series.DIGITS)
+
+
+def _is_all_read(context: Context, use: Use) -> bool:
+    """Whether every file that a controller would look into for this name is at hand and read.
+
+    For a variable: its data list, if it has one, and $CONFIG. What else is GLOBAL lies in packages,
+    and these are known by what they declare, not by what some other file calls.
+    """
+    project = context.project
+    if not isinstance(use.answer, MaybeElsewhere) or _may_be_unread(use):
+        return False
+    if use.space in (Space.VALUE, Space.CHANNEL):
+        return project.has_config and not use.name.text.startswith("$")
+    return False

@@ -1,0 +1,334 @@
+"""The check of folders and archives: every file checked as part of its project.
+
+Files are grouped to projects by where they lie, before any is read (`grammar.semantics.link`).
+Projects are checked one after the other in parallel processes, a large one by all of them
+(`support.parallel.sticky_pool`). The findings come in order, whatever process they are from. What
+was found is kept: of a project in which nothing has changed, all of it, and of any other the
+results of those files that need not be checked again (`grammar.check.project.project_check`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from grammar.check.project.project_check import (
+    CheckOptions,
+    Content,
+    FileResult,
+    KnownFile,
+    check_part,
+    completed,
+    found_in_project,
+    needs,
+    read_part,
+    recheck,
+)
+from grammar.check.project.result_cache import (
+    ProjectResult,
+    known_files,
+    known_records,
+    read_result,
+    result_record,
+    state_of,
+)
+from grammar.check.project.suppression_comments import apply_suppressions
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
+from grammar.semantics.link import File, link
+from support.files import archives
+from support.files.decode import digest
+from support.files.discovery import Found, Skipped, discover, read
+from support.files.result_store import ResultStore
+from support.gc_pause import gc_paused
+from support.parallel.progress import Progress, no_progress
+from support.parallel.sticky_pool import StickyPool
+
+__all__ = ["CheckOptions", "CheckReport", "check_paths"]
+
+# Starting a process takes as long as checking so many bytes.
+_WORTH_A_PROCESS = 1_000_000
+# A project of so many bytes is shared by all processes.
+_LARGE = 400_000
+# So many bytes a process wait for their turn, so that memory stays flat.
+_MOST_WAITING = 2_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class CheckReport:
+    """Findings in order, and what was checked.
+
+    ``lines`` are source lines by path and number. ``files`` were checked, of ``bytes`` in all, in
+    ``projects``; of ``unchanged`` files the results were kept. ``skipped`` is what is no KRL,
+    ``paths`` what is, sorted.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    lines: Mapping[tuple[str, int], str]
+    skipped: tuple[Skipped, ...]
+    files: int
+    bytes: int
+    projects: int
+    unchanged: int
+    paths: tuple[str, ...]
+
+
+def check_paths(
+    roots: Sequence[Path],
+    options: CheckOptions,
+    *,
+    around: Sequence[Path] = (),
+    leaves_out: Callable[[Found], bool] | None = None,
+    jobs: int | None = None,
+    cache: Path | None = None,
+    on_found: Progress = no_progress,
+    on_done: Progress = no_progress,
+) -> CheckReport:
+    """Check everything below ``roots``.
+
+    ``around`` are the folders and archives of the projects that these belong to, if they are more:
+    what is there is read, and not reported. ``leaves_out`` says which files are not to be read.
+    ``jobs`` is the number of processes, by default one a core, or one where there is little to do.
+    ``cache`` is the folder where findings are kept for the next time; without one nothing is kept.
+    ``on_found`` is given the number of candidates once it is known, ``on_done`` how many
+    more are done.
+
+    Raises `support.files.discovery.IngestError` where there is nothing to check.
+    """
+
+    def is_left(one: Found | Skipped) -> bool:
+        return leaves_out is None or isinstance(one, Skipped) or not leaves_out(one)
+
+    asked = list(filter(is_left, discover(roots)))
+    skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
+    wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
+    there = filter(is_left, discover(around)) if around else asked
+    found = [one for one in there if isinstance(one, Found)]
+    names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
+    projects = [some for some in _projects(found) if any(one.path in names for one in some)]
+    on_found(sum(map(len, projects)) + len(skipped))
+    on_done(len(skipped))
+    size = sum(candidate.size for project in projects for candidate in project)
+    processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
+    results = []
+    with gc_paused(), ResultStore(cache, "check") as store, StickyPool(processes) as pool:
+        for result in _run(iter(projects), pool, store, options):
+            on_done(result.files + len(result.skipped))
+            results.append(_reported(result, names))
+    return _together(results, skipped)
+
+
+def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
+    """What is to be said of a project: that of the files with a name, under that."""
+    return replace(
+        result,
+        diagnostics=tuple(
+            replace(one, path=names[one.path]) for one in result.diagnostics if one.path in names
+        ),
+        lines={(names[at], n): line for (at, n), line in result.lines.items() if at in names},
+        skipped=tuple(
+            replace(one, path=names[one.path]) for one in result.skipped if one.path in names
+        ),
+        sizes={names[path]: size for path, size in result.sizes.items() if path in names},
+        kept=frozenset(names[path] for path in result.kept if path in names),
+    )
+
+
+def _place(found: Found) -> tuple[Path, str | None]:
+    """Where a file lies, however it was come by."""
+    return found.file, found.member
+
+
+def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
+    """The files of each project."""
+    by_path: dict[str, deque[Found]] = {}
+    for candidate in found:
+        by_path.setdefault(candidate.path, deque()).append(candidate)
+    files = [File(candidate.path, None, candidate.origin) for candidate in found]
+    for project in link(files).projects:
+        yield [by_path[module.path].popleft() for module in project.modules]
+
+
+def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
+    # a file that could be a program is a finding, not only skipped
+    start = Region(1, 1, 1, 1)
+    large = {
+        one: diagnose("too-large", one.path, start, one.reason) for one in skipped if _is_large(one)
+    }
+    left_out = [one for one in skipped if one not in large]
+    left_out += [one for result in results for one in result.skipped]
+    lines: dict[tuple[str, int], str] = {}
+    for result in results:
+        lines |= result.lines
+    return CheckReport(
+        tuple(in_order([*large.values(), *(one for all_ in results for one in all_.diagnostics)])),
+        lines,
+        tuple(sorted(left_out, key=lambda one: one.path)),
+        sum(result.files for result in results),
+        sum(sum(result.sizes.values()) for result in results),
+        len(results),
+        sum(len(result.kept & result.sizes.keys()) for result in results),
+        tuple(sorted(path for result in results for path in result.sizes)),
+    )
+
+
+def _is_large(skipped: Skipped) -> bool:
+    return skipped.reason == archives.too_large()
+
+
+# --------------------------------------------------------------------------------- one by one
+
+
+class _Project:
+    """A project that is being checked."""
+
+    def __init__(self, members: Sequence[Found], options: CheckOptions) -> None:
+        self.options = options
+        self.contents: list[Content] = []
+        self.places: list[str] = []
+        self.unread: list[Diagnostic] = []
+        for found in members:
+            data = read(found)
+            if isinstance(data, Skipped):
+                region = Region(1, 1, 1, 1)
+                self.unread.append(diagnose("unreadable", found.path, region, data.reason))
+            else:
+                self.contents.append(Content(found.path, found.origin, data))
+                self.places.append(_address(found))
+        self.place = digest("\n".join(map(_address, members)).encode())
+        self.size = sum(len(content.data) for content in self.contents)
+        self.state = state_of(self.contents, options)
+        self._known: Mapping[int, KnownFile] = {}
+        self._whole: Future[list[KnownFile]] | None = None
+        self._parts: list[Future[dict[int, FileResult]]] = []
+
+    def start(self, number: int, pool: StickyPool, store: ResultStore) -> None:
+        """Have the project checked; with several processes this waits until it has been read."""
+        known = self._known = known_files(store, self.places, self.contents, self.options)
+        new = {index: one for index, one in enumerate(self.contents) if index not in known}
+        size = sum(len(content.data) for content in new.values())
+        if pool.count == 1 or size < _LARGE:
+            process = pool.least_loaded(size)
+            self._whole = pool.submit(process, recheck, self.contents, self.options, known)
+            return
+        reading = [
+            pool.submit(process, read_part, number, share, self.options)
+            for process, share in enumerate(_shares(new, pool.count))
+        ]
+        looked = {index: one.read for index, one in known.items()}
+        for part in reading:
+            looked |= part.result()
+        self._read = looked
+        self._needs = needs(self.contents, looked)
+        stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
+        places = [(content.path, content.origin) for content in self.contents]
+        self._parts = [
+            pool.submit(process, check_part, number, places, looked, again, self.options)
+            for process, again in enumerate(_shares(stale, pool.count))
+        ]
+
+    @property
+    def is_done(self) -> bool:
+        """Whether `result` need not wait."""
+        return all(part.done() for part in ([self._whole] if self._whole else self._parts))
+
+    def keep(self, result: ProjectResult, store: ResultStore) -> None:
+        """Keep what was found, and what is now known of files."""
+        store.put(known_records(self.places, self._files, self._known, self.options))
+        store.put([(self.place, result_record(result, self.state))])
+
+    def result(self) -> ProjectResult:
+        """What was found; waits for it."""
+        if self._whole is not None:
+            self._files = self._whole.result()
+        else:
+            checked: dict[int, FileResult] = {}
+            for part in self._parts:
+                checked |= part.result()
+            self._files = completed(self.contents, self._read, self._known, checked, self._needs)
+        looked = [known.checked for known in self._files]
+        diagnostics = found_in_project(self.contents, self._files)
+        by_path: dict[str, list[Diagnostic]] = {content.path: [] for content in self.contents}
+        for diagnostic in diagnostics:
+            by_path[diagnostic.path].append(diagnostic)
+        found = list(self.unread)
+        lines: dict[tuple[str, int], str] = {}
+        skipped = []
+        sizes = {one.path: 0 for one in self.unread}
+        for content, one in zip(self.contents, looked, strict=True):
+            if one.skipped is not None:
+                skipped.append(Skipped(content.path, one.skipped, content.origin))
+                continue
+            sizes[content.path] = len(content.data)
+            lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
+            its = by_path.pop(content.path, [])  # of two with one path, together with the first
+            if late := {diagnostic.region.line for diagnostic in its} - (one.lines or {}).keys():
+                source = content.source
+                lines |= {(content.path, number): source.line(number) for number in late}
+            found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
+        kept = frozenset(
+            content.path
+            for index, content in enumerate(self.contents)
+            if self._files[index] is self._known.get(index)
+        )
+        return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), sizes, kept)
+
+
+def _address(found: Found) -> str:
+    """What tells a file, and how it was named, from all others."""
+    place = f"{found.file}\n{found.member}\n{found.path}\n{found.origin}"
+    return digest(place.encode("utf-8", "surrogatepass"))
+
+
+def _shares(contents: Mapping[int, Content], count: int) -> list[dict[int, Content]]:
+    """Files in shares of about the same size."""
+    shares: list[dict[int, Content]] = [{} for _ in range(count)]
+    sizes = [0] * count
+    for index, content in sorted(contents.items(), key=lambda item: -len(item[1].data)):
+        smallest = sizes.index(min(sizes))
+        sizes[smallest] += len(content.data)
+        shares[smallest][index] = content
+    return [dict(sorted(share.items())) for share in shares]
+
+
+def _run(
+    projects: Iterator[list[Found]],
+    pool: StickyPool,
+    store: ResultStore,
+    options: CheckOptions,
+) -> Iterator[ProjectResult]:
+    """The results of projects, in their order; only so many wait for their turn."""
+    waiting: deque[_Project | ProjectResult] = deque()
+    size = 0
+    most = _MOST_WAITING * pool.count
+
+    def is_done(project: _Project | ProjectResult) -> bool:
+        return isinstance(project, ProjectResult) or project.is_done
+
+    def first() -> ProjectResult:
+        nonlocal size
+        project = waiting.popleft()
+        if isinstance(project, ProjectResult):
+            return project
+        size -= project.size
+        result = project.result()
+        project.keep(result, store)
+        return result
+
+    for number, members in enumerate(projects):
+        project = _Project(members, options)
+        record = store.get_record(project.place)
+        known = None if record is None else read_result(record, project.state)
+        if known is not None:
+            waiting.append(known)
+        else:
+            project.start(number, pool, store)
+            waiting.append(project)
+            size += project.size
+        while waiting and (size > most or is_done(waiting[0])):
+            yield first()
+    while waiting:
+        yield first()

@@ -1,0 +1,373 @@
+"""The check of one project in one or several processes: reading its files, then checking them.
+
+A file is checked against the tables of all files of its project, and against no trees but its own.
+So files can be shared by processes: each reads its share and keeps the trees, the tables are sent
+to all, and each checks its share. For the same reason a file whose text is known need not be read
+again, and is checked again only where what it rests on has changed (`dependencies`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+from grammar.check.analysis.context import Context
+from grammar.check.flow import advance_stops
+from grammar.check.flow.effects import effects_of_unread
+from grammar.check.names.undeclared_names import uses_of_unread
+from grammar.check.project.dependencies import Contribution, Needs, contribution, needs_of
+from grammar.check.project.framework import Findings, check_module, check_project
+from grammar.check.project.suppression_comments import SuppressionComment, suppression_comments
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
+from grammar.diagnostics.error_recovery import recover
+from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.semantics.link import File, Project, link, words_of
+from grammar.semantics.predefined import System
+from grammar.semantics.scopes import REST, Module
+from grammar.semantics.symbol_table import table_of
+from grammar.semantics.symbols import ModuleTable
+from grammar.syntax import ast
+from grammar.syntax.build import builder
+from grammar.syntax.source import Source
+from support.files.decode import decode, digest
+from support.gc_pause import gc_paused
+
+#: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
+LARGEST = 24_000_000
+# Trees of so many bytes are kept between reading and checking; other files are read once more.
+_MOST_KEPT = 12_000_000
+# A longer line is not shown with its finding.
+_LONGEST_LINE = 20_000
+
+_NOTHING = Findings((), ())
+
+
+@dataclass(frozen=True, slots=True)
+class CheckOptions:
+    """What to look for: syntax alone, or also what stops the advance run.
+
+    With ``is_complete`` the files of each project are all there are; else their calls show whether
+    some are missing. ``packages`` are option packages that are there besides those that are called.
+    """
+
+    syntax_only: bool = False
+    stops: bool = False
+    is_complete: bool = False
+    packages: tuple[str, ...] = ()
+
+    @property
+    def wanted_codes(self) -> tuple[str, ...]:
+        """The prefixes of the codes that are wanted; see `suppression_comments`."""
+        if self.syntax_only:
+            return ("KRL0",)
+        return ("",) if self.stops else ("KSS", *(f"KRL{digit}" for digit in "01234579"))
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """A file of a project: its path as people see it, its origin, and its bytes."""
+
+    path: str
+    origin: str
+    data: bytes
+
+    @property
+    def source(self) -> Source:
+        """The text of a file that is known to have one."""
+        decoded = decode(self.data)
+        assert not isinstance(decoded, str), "it was decoded before"
+        return Source(decoded.text, self.path)
+
+
+@dataclass(frozen=True, slots=True)
+class FileResult:
+    """The result of one file.
+
+    ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
+    by number, ``comments`` those that silence, ``words`` the names in a text that cannot be read.
+    ``contribution`` is what it tells others; ``is_open``: it uses a name that nothing declares.
+    """
+
+    findings: Findings = _NOTHING
+    skipped: str | None = None
+    table: ModuleTable | None = None
+    lines: Mapping[int, str] | None = None
+    comments: tuple[SuppressionComment, ...] = ()
+    words: frozenset[str] | None = None
+    contribution: Contribution | None = None
+    is_open: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class KnownFile:
+    """A file that was checked before: what reading it gave, and checking it while it needed that.
+
+    ``digest`` is that of its content.
+    """
+
+    digest: str
+    read: FileResult
+    checked: FileResult
+    needs: Needs
+
+    def stands(self, needs: Needs) -> bool:
+        """Whether its findings are what another check would find."""
+        if self.read.table is None:  # its findings are those of its text alone
+            return True
+        return needs.keep(self.needs, is_open=self.checked.is_open)
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A file as the check reads it.
+
+    ``syntax`` is its tree, without the lines that cannot be read, whose findings are
+    ``diagnostics``; `None` where nothing of it can be read. ``words`` are the names in what cannot,
+    ``exchanged`` the lines that were read as something else.
+    """
+
+    syntax: ast.Module | None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    words: frozenset[str] | None = None
+    exchanged: frozenset[int] = frozenset()
+
+    def alone(self) -> Findings:
+        """What was found in reading, and what the text that was not read may do."""
+        unread = effects_of_unread(self.words or frozenset())
+        return Findings(self.diagnostics, (), unread, uses_of_unread(self.words or ()))
+
+    def completed(self, found: Findings) -> Findings:
+        """What was found in the tree, with what was found in reading; nothing in place of it."""
+        kept = (one for one in found.diagnostics if one.region.line not in self.exchanged)
+        references = tuple(
+            one
+            for one in found.references
+            if one.count > 1 or one.region.line not in self.exchanged
+        )
+        return replace(found, diagnostics=(*self.diagnostics, *kept), references=references)
+
+
+def read_source(source: Source) -> Reading:
+    """Read a file, as far as it can be read."""
+    tree = builder().read(source.text, source.path)
+    if isinstance(tree, ast.Module):
+        return Reading(tree)
+    if any(failure.reason for failure in tree):
+        return Reading(None, tuple(syntax_findings(tree, source)), words_of(source.text))
+    recovered = recover(source.text, source.path)
+    found = tuple(syntax_findings(recovered.failures, source))
+    words = words_of(recovered.dropped) | ({REST} if recovered.is_cut else set())
+    return Reading(recovered.syntax, found, words, recovered.exchanged)
+
+
+def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) -> list[Diagnostic]:
+    """All findings of a project whose files were checked, in order."""
+    indices = {contents[index].path: index for index in reversed(range(len(contents)))}
+
+    @cache
+    def file(path: str) -> tuple[ModuleTable | None, Source]:
+        return files[indices[path]].read.table, contents[indices[path]].source
+
+    return check_project((one.checked.findings for one in files), file)
+
+
+@dataclass(frozen=True, slots=True)
+class _Tree:
+    """What a process keeps of a file between reading and checking; not all have their trees."""
+
+    table: ModuleTable
+    source: Source
+    comments: tuple[SuppressionComment, ...]
+    reading: Reading
+
+
+#: By project, then by the index of the file in it.
+_KEPT: dict[int, dict[int, _Tree]] = {}
+
+
+def recheck(
+    contents: Sequence[Content], options: CheckOptions, known: Mapping[int, KnownFile]
+) -> list[KnownFile]:
+    """Check a project in this process, but for what stands of its ``known`` files."""
+    project = -1
+    new = {index: one for index, one in enumerate(contents) if index not in known}
+    looked = {index: one.read for index, one in known.items()}
+    looked |= read_part(project, new, options)
+    needed = needs(contents, looked)
+    stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
+    places = [(content.path, content.origin) for content in contents]
+    checked = check_part(project, places, looked, stale, options)
+    return completed(contents, looked, known, checked, needed)
+
+
+def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list[Needs]:
+    """What the findings of each file of a project rest on, from what reading all of them gave."""
+    places = [(content.path, content.origin) for content in contents]
+    found = [Needs("", "")] * len(contents)
+    by_path = {path: index for index, (path, _) in enumerate(places)}
+    for project in _linked(_files(places, looked, {}), CheckOptions()):
+        members = [by_path[module.path] for module in project.modules]
+        given = [looked[index].contribution for index in members]
+        for index, needed in zip(members, needs_of(project, given), strict=True):
+            found[index] = needed
+    return found
+
+
+def completed(
+    contents: Sequence[Content],
+    looked: Mapping[int, FileResult],
+    known: Mapping[int, KnownFile],
+    checked: Mapping[int, FileResult],
+    needed: Sequence[Needs],
+) -> list[KnownFile]:
+    """All files of a project as they are known now."""
+    found = []
+    for index, content in enumerate(contents):
+        before = known.get(index)
+        result = checked.get(index) or (before.checked if before else looked[index])
+        key = before.digest if before else digest(content.data)
+        if before is not None and result is before.checked and before.stands(needed[index]):
+            found.append(before)
+        else:
+            found.append(KnownFile(key, looked[index], result, needed[index]))
+    return found
+
+
+def read_part(
+    project: int, part: Mapping[int, Content], options: CheckOptions
+) -> dict[int, FileResult]:
+    """Read a share of the files of a project, and keep their trees for `check_part`."""
+    looked, _KEPT[project] = _read_all(part, options)
+    return looked
+
+
+def _read_all(
+    part: Mapping[int, Content], options: CheckOptions
+) -> tuple[dict[int, FileResult], dict[int, _Tree]]:
+    """What reading some files gave, and what is kept of them."""
+    looked, kept = {}, {}
+    size = 0
+    for index, content in part.items():
+        with gc_paused():
+            looked[index], tree = _read(content, options)
+        if tree is not None:
+            size += len(content.data)
+            if size > _MOST_KEPT:
+                tree = replace(tree, reading=replace(tree.reading, syntax=None))
+            kept[index] = tree
+    return looked, kept
+
+
+def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | None]:
+    path = content.path
+    if len(content.data) > LARGEST:
+        message = f"larger than {LARGEST // 1_000_000} MB, so it was not checked"
+        large = diagnose("too-large", path, Region(1, 1, 1, 1), message)
+        return FileResult(Findings((large,), (), uses=frozenset({REST}))), None
+    decoded = decode(content.data)
+    if isinstance(decoded, str):
+        return FileResult(skipped=decoded), None
+    source = Source(decoded.text, path)
+    if options.syntax_only and not builder().failures.find(source.text):
+        return FileResult(comments=suppression_comments(source)), None
+    reading = read_source(source)
+    found, tree = reading.diagnostics, reading.syntax
+    comments = suppression_comments(source)
+    if options.syntax_only or tree is None:
+        lines = _lines(source, (one.region.line for one in found))
+        given = contribution(path, source.text, None, reading.words)
+        looked = FileResult(reading.alone(), None, None, lines, comments, reading.words, given)
+        return looked, None
+    table = table_of(tree)
+    given = contribution(path, source.text, table, reading.words)
+    looked = FileResult(Findings(found, ()), None, table, None, comments, reading.words, given)
+    return looked, _Tree(table, source, comments, reading)
+
+
+def check_part(
+    project: int,
+    places: Sequence[tuple[str, str]],
+    looked: Mapping[int, FileResult],
+    again: Mapping[int, Content],
+    options: CheckOptions,
+) -> dict[int, FileResult]:
+    """Check those files of a project that `read_part` kept here, and some that were known.
+
+    ``places`` are path and origin of all its files, in order, and ``looked`` what reading them
+    gave, here or elsewhere: files that are no KRL belong to no project. ``again`` are files whose
+    text was known, so that none of them was read now.
+    """
+    kept = _KEPT.pop(project, {}) | _read_all(again, options)[1]
+    if not kept:
+        return {}
+    files = _files(places, looked, kept)
+    # modules are identified by their tables, which are the same objects
+    own = {id(tree.table): (index, tree) for index, tree in kept.items()}
+    checked = {}
+    for linked in _linked(files, options):
+        for module in linked.modules:
+            if id(module.table) in own:
+                index, tree = own[id(module.table)]
+                syntax = tree.reading.syntax or _again(tree.source)
+                whole = replace(module, syntax=syntax)
+                with gc_paused():
+                    checked[index] = _checked(linked, whole, tree, options)
+    return checked
+
+
+def _linked(files: Iterable[File], options: CheckOptions) -> tuple[Project, ...]:
+    is_complete = options.is_complete or None
+    return link(files, is_complete=is_complete, packages=frozenset(options.packages)).projects
+
+
+def _files(
+    places: Sequence[tuple[str, str]],
+    looked: Mapping[int, FileResult],
+    kept: Mapping[int, _Tree],
+) -> list[File]:
+    """The files of a project to link: those that are KRL."""
+    files = []
+    for index, (path, origin) in enumerate(places):
+        known, tree = looked[index], kept.get(index)
+        if known.skipped is None:
+            table = tree.table if tree else known.table
+            files.append(File(path, None, origin, table, known.words))
+    return files
+
+
+def _again(source: Source) -> ast.Module:
+    with gc_paused():
+        syntax = read_source(source).syntax
+    assert syntax is not None, "it could be read before"
+    return syntax
+
+
+def _checked(project: Project, module: Module, tree: _Tree, options: CheckOptions) -> FileResult:
+    done = check_module(project, module, tree.source)
+    findings = done.findings
+    if options.stops:
+        context = Context(
+            project,
+            module,
+            tree.source,
+            done.resolution,
+            System.load(),
+            dict(done.types),
+            dict(done.enumerations),
+            dict(done.values),
+        )
+        found = in_order([*findings.diagnostics, *advance_stops.check(context)])
+        findings = replace(findings, diagnostics=tuple(found))
+    findings = tree.reading.completed(findings)
+    numbers = {one.region.line for one in findings.diagnostics}
+    numbers |= {one.region.line for one in findings.references}
+    lines = _lines(tree.source, numbers)
+    is_open = bool(done.resolution.open_uses)
+    return FileResult(findings, lines=lines, comments=tree.comments, is_open=is_open)
+
+
+def _lines(source: Source, numbers: Iterable[int]) -> dict[int, str]:
+    """Source lines to show with findings."""
+    lines = {number: source.line(number) for number in numbers}
+    return {number: line for number, line in lines.items() if len(line) <= _LONGEST_LINE}

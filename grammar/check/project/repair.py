@@ -1,0 +1,74 @@
+"""Syntax errors mended by the edits that their findings carry, each tried before it is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from grammar.check.project.project_check import read_source
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.syntax.source import Source
+
+# A line with more errors one behind the other is for people.
+_MOST_STEPS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """A text with some of its findings mended, those in the order of the text."""
+
+    text: str
+    mended: tuple[Diagnostic, ...]
+
+
+def repair(source: Source, is_wanted: Callable[[Diagnostic], bool] = lambda _: True) -> Repair:
+    """Apply the edits after which fewer lines of the file cannot be read; no other is kept.
+
+    ``is_wanted`` chooses among the findings. What cannot be mended stays as it is.
+    """
+    found = _wrong(source)
+    mended: list[Diagnostic] = []
+    for one in reversed(found):  # from the end, so that the places of the others stay
+        done = _mended(source, one, len(found), is_wanted)
+        if done is not None:
+            source, steps = done
+            mended = [*steps, *mended]
+            found = _wrong(source)
+    return Repair(source.text, tuple(mended))
+
+
+def _mended(
+    source: Source, found: Diagnostic, before: int, is_wanted: Callable[[Diagnostic], bool]
+) -> tuple[Source, list[Diagnostic]] | None:
+    """The text without the errors of a line, and what was mended in it; ``None`` if that fails.
+
+    Behind one error of a line there may be another.
+    """
+    steps: list[Diagnostic] = []
+    here: Diagnostic | None = found
+    while here is not None and len(steps) < _MOST_STEPS and is_wanted(here):
+        text = edited(source, here)
+        if text is None:
+            return None
+        steps.append(here)
+        source = Source(text, source.path)
+        left = _wrong(source)
+        if len(left) < before:
+            return source, steps
+        line = (one for one in left if one.region.line == found.region.line)
+        here = next((one for one in line if one.region > here.region), None)
+    return None
+
+
+def edited(source: Source, found: Diagnostic) -> str | None:
+    """The text with the edit of a finding; ``None`` for one without."""
+    fix = found.fix
+    if fix is None or fix.region is None or fix.replacement is None:
+        return None
+    start = source.offset(fix.region.line, fix.region.column)
+    end = source.offset(fix.region.end_line, fix.region.end_column)
+    return source.text[:start] + fix.replacement + source.text[end:]
+
+
+def _wrong(source: Source) -> tuple[Diagnostic, ...]:
+    return read_source(source).diagnostics

@@ -1,0 +1,1 @@
+"""Structure: where declarations, statements and spline segments may stand, and folds."""

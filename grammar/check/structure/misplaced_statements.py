@@ -1,0 +1,142 @@
+"""What stands where it must not: in submit programs, in interrupt routines, before declarations.
+
+What an interrupt calls is known in its own module only: a routine of another module may be called
+by interrupts that are unknown here, and is left alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from grammar.check.analysis.context import Context, RoutineBody
+from grammar.check.analysis.statement_heads import head
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.motion_kinds import SPLINE_MOTIONS
+from grammar.syntax import ast
+from grammar.syntax.walk import walk
+
+#: The one motion that is not the robot's but of external axes on their own.
+_ASYNCHRONOUS = "ASYPTP"
+_WORKSPACES = frozenset({"WSPACEGIVE", "WSPACETAKE"})
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """Findings about the places of declarations and statements."""
+    interrupts = _interrupt_routines(context)
+    for routine in context.routines:
+        yield from _declarations(context, routine)
+        if context.module.suffix == ".sub":
+            yield from _in_submit(context, routine)
+        declaration = interrupts.get(routine.node.name.key)
+        if declaration is not None:
+            yield from _in_interrupt(context, routine, declaration)
+
+
+# ----------------------------------------------------------------------------------- declarations
+
+
+def _declarations(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    first: ast.Node | None = None
+    for placed in routine.statements:
+        statement = placed.statement
+        if not isinstance(statement, ast.Definition):
+            first = first or statement
+            continue
+        if placed.inside is not None:
+            yield context.finding(
+                "misplaced-declaration",
+                statement,
+                "declarations come first, and not inside a block",
+            )
+        elif first is not None:
+            line = context.source.place(first.span[0])[0]
+            message = f"declarations come first, and line {line} is an instruction"
+            yield context.finding("misplaced-declaration", statement, message)
+
+
+# ------------------------------------------------------------------------------- submit programs
+
+
+def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    for placed in routine.statements:
+        statement = placed.statement
+        if placed.is_in_spline:
+            continue  # the block itself is reported
+        match statement:
+            case ast.Motion(kind=kind) if kind != _ASYNCHRONOUS:
+                message = f"{kind} in a submit program"
+                yield context.finding("motion-in-submit", statement, message)
+            case ast.SplineBlock(keyword=keyword):
+                message = f"{keyword} in a submit program"
+                yield context.finding("motion-in-submit", head(context.source, statement), message)
+            case ast.EmilyMotion():
+                yield context.finding("motion-in-submit", statement, "MOVE_EMI in a submit program")
+            case ast.Assignment(target=ast.Subscript(base=ast.Variable(name=name)) as target) if (
+                name.key == "$OUT_C"
+            ):
+                message = "$OUT_C in a submit program, which has no main run to be in step with"
+                yield context.finding("out-c-not-allowed", target, message, is_unconfirmed=True)
+            case ast.Trigger():
+                yield context.finding(
+                    "trigger-not-allowed",
+                    statement,
+                    "TRIGGER in a submit program",
+                    rules=("TRG-09", "SUB-06", "MSG-09"),
+                )
+    for node in walk(routine.node):
+        if isinstance(node, ast.Call) and node.name.key in _WORKSPACES:
+            message = f"{node.name.text} in a submit program"
+            yield context.finding("workspace-in-submit", node, message)
+
+
+# ------------------------------------------------------------------------------ interrupt routines
+
+
+def _interrupt_routines(context: Context) -> Mapping[str, ast.InterruptDeclaration]:
+    """The routines of this module that its interrupts call; where one is GLOBAL, that."""
+    own = {routine.node.name.key for routine in context.routines}
+    found: dict[str, ast.InterruptDeclaration] = {}
+    for routine in context.routines:
+        for placed in routine.statements:
+            declaration = placed.statement
+            if not isinstance(declaration, ast.InterruptDeclaration):
+                continue
+            if isinstance(declaration.action, ast.CallStatement):
+                key = declaration.action.call.name.key
+                if key in own and (key not in found or declaration.is_global):
+                    found[key] = declaration
+    return found
+
+
+def _in_interrupt(
+    context: Context, routine: RoutineBody, declaration: ast.InterruptDeclaration
+) -> Iterator[Diagnostic]:
+    source, name = context.source, routine.node.name.text
+    line = source.place(declaration.span[0])[0]
+    reason = f"the interrupt of line {line} calls {name}"
+    for placed in routine.statements:
+        statement = placed.statement
+        if placed.is_in_spline:
+            continue
+        slug, message = _forbidden(statement, declaration.is_global)
+        if slug:
+            rules = ("TRG-09", "MSG-09") if isinstance(statement, ast.Trigger) else None
+            yield context.finding(
+                slug, head(source, statement), message, reason=reason, rules=rules
+            )
+
+
+def _forbidden(statement: ast.Node, is_global: bool) -> tuple[str, str]:
+    """The slug and the message for what an interrupt routine may not do; empty for the rest."""
+    match statement:
+        case ast.Motion(kind=kind) if kind in SPLINE_MOTIONS:
+            return "spline-in-interrupt", f"{kind} in an interrupt routine"
+        case ast.SplineBlock(keyword=keyword):
+            return "spline-in-interrupt", f"{keyword} in an interrupt routine"
+        case ast.Trigger():
+            return "trigger-not-allowed", "TRIGGER in an interrupt routine"
+        case ast.Assignment(target=ast.Variable(name=name)) if name.key == "$ADVANCE":
+            return "advance-in-interrupt", "an interrupt routine changes $ADVANCE"
+        case ast.Resume() if is_global:
+            return "resume-in-global-interrupt", "RESUME in the routine of a global interrupt"
+    return "", ""

@@ -1,0 +1,1 @@
+"""Types: of expressions, in declarations, data lists and statements."""

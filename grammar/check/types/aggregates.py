@@ -1,0 +1,61 @@
+"""Aggregates: whether their components are there, each once, and fit [TYP-19, TYP-20]."""
+
+from __future__ import annotations
+
+from grammar.check.analysis.type_checker import TypeChecker
+from grammar.semantics.assignability import index, initial
+from grammar.semantics.operations import component, subscript
+from grammar.semantics.types import INT, UNKNOWN, Aggregate, Structure, Type
+from grammar.syntax import ast
+
+
+def aggregate(checker: TypeChecker, node: ast.Aggregate, expected: Type) -> Type:
+    """The type of an aggregate; its structure is that of its prefix, or else of its place.
+
+    The components are checked here, so the type names none that the structure lacks.
+    """
+    structure = expected if isinstance(expected, Structure) else None
+    if node.type is not None:
+        found = checker.context.found(node.type)
+        named = checker.type_of(found) if found else UNKNOWN
+        structure = named if isinstance(named, Structure) else None
+    names: dict[str, str] = {}
+    for part in node.components:
+        key = part.name.text.upper()
+        if key in names and part.indices is None:
+            checker.report("component-twice", part.name, f"{part.name.text} is given twice")
+        to: Type | None = UNKNOWN
+        if structure is not None:
+            to = structure.member(part.name.text)
+            if to is None:
+                _report_missing(checker, structure, part.name)
+        if to is None:
+            to = UNKNOWN
+        else:
+            names[key] = part.name.text
+        checker.check(
+            to if part.indices is None else _indexed(checker, to, part), part.value, initial
+        )
+    made = Aggregate(tuple(names.values()), structure if node.type else None)
+    checker.context.types[node] = structure or made
+    return UNKNOWN if node.type is not None and structure is None else made
+
+
+def _report_missing(checker: TypeChecker, structure: Structure, name: ast.Name) -> None:
+    verdict = component(structure, name.text).verdict
+    fix = checker.context.suggestions.suggest(
+        name.text, [member.name for member in structure.members]
+    )
+    checker.reject_part(name, verdict, structure, fix)
+
+
+def _indexed(checker: TypeChecker, array: Type, part: ast.Component) -> Type:
+    """The type of ``NAME[]`` or ``LIST[2]`` as a component."""
+    given = part.indices or ()
+    for one in given:
+        if one is not None:
+            checker.check(INT, one, lambda _to, value: index(value), "not-a-number-here")
+    typed = subscript(array, [one is not None for one in given])
+    if not typed.verdict:
+        checker.reject("wrong-indices", part.name, typed.verdict)
+    return typed.type

@@ -1,0 +1,61 @@
+"""Assignments: what may be written, and with which values."""
+
+from __future__ import annotations
+
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.signal_direction import side_of
+from grammar.check.analysis.type_checker import TypeChecker
+from grammar.check.limits.motion_limits import check_motion_limit
+from grammar.semantics.predefined import SystemVariable
+from grammar.semantics.symbols import Kind, SignalSymbol
+from grammar.syntax import ast
+from grammar.syntax.walk import root_variable
+
+
+def assign(checker: TypeChecker, node: ast.Assignment) -> None:
+    """Check an assignment in a routine."""
+    to = checker.infer_target(node.target)
+    _check_writable(checker, node.target)
+    checker.check(to, node.value)
+    variable = _system_variable(checker, node.target)
+    if variable is not None and variable.limits is not None:
+        _check_limits(checker, variable, variable.limits, node)
+    elif variable is not None:
+        check_motion_limit(checker, node)
+
+
+def _system_variable(checker: TypeChecker, node: ast.Expression) -> SystemVariable | None:
+    """What is known of the variable of the controller that an expression is part of."""
+    root = root_variable(node)
+    if root is not None and root.name.text.startswith("$"):
+        return checker.context.system.variables.get(root.name.key)
+    return None
+
+
+def _check_writable(checker: TypeChecker, node: ast.Expression) -> None:
+    root = root_variable(node)
+    symbol = checker.root_symbol(node)
+    if symbol is not None and symbol.kind is Kind.CONSTANT:
+        checker.report("write-protected", node, f"{symbol.name} is a constant", rules=("TYP-07",))
+        return
+    if isinstance(symbol, SignalSymbol) and root and side_of(checker.context, root) == "inputs":
+        # No source says so of signals, and one public archive does it.
+        message = f"{symbol.name} is an input, which cannot be written"
+        checker.report("write-protected", node, message, is_unconfirmed=True)
+        return
+    variable = _system_variable(checker, node)
+    if variable is not None and variable.access == "read":
+        message = f"{variable.name} cannot be written"
+        checker.report("write-protected", node, message, is_unconfirmed=variable.access_unconfirmed)
+
+
+def _check_limits(
+    checker: TypeChecker, variable: SystemVariable, limits: tuple[int, int], node: ast.Assignment
+) -> None:
+    value = constant(checker.context, node.value)
+    if type(value) not in (int, float) or isinstance(value, str) or value is None:
+        return
+    low, high = limits
+    if not low <= value <= high:
+        message = f"{variable.name} reaches from {low} to {high}"
+        checker.report("invalid-system-value", node.value, message)

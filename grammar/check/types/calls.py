@@ -1,0 +1,141 @@
+"""Calls: how many arguments, of which types, and whether there is a value.
+
+An argument passed :IN is converted where that loses nothing but a fraction, a variable passed :OUT
+has the type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; only the
+controller's own functions are known to need them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.check.analysis.signal_direction import side_of
+from grammar.check.analysis.type_checker import TypeChecker
+from grammar.semantics.assignability import misfit, passable
+from grammar.semantics.package_scope import PackageScope
+from grammar.semantics.scopes import Found, Scope, SystemScope
+from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
+from grammar.semantics.types import UNKNOWN, Type, Verdict
+from grammar.syntax import ast
+
+
+def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
+    """The type of the value of a call, `UNKNOWN` where there is none; its arguments are checked."""
+    found = checker.context.found(node.name)
+    if found is None or not isinstance(found.symbol, RoutineSymbol) or _is_unread(found):
+        for argument in node.arguments:
+            if argument is not None:
+                checker.infer(argument)
+        value: Type = UNKNOWN
+    else:
+        _check_arguments(checker, node, found.symbol, found.scope)
+        value = _value(checker, node, found, is_value=is_value)
+    checker.context.types[node] = value
+    return value
+
+
+def _is_unread(found: Found) -> bool:
+    """Whether the line that names the parameters cannot be read."""
+    return found.module is not None and found.module.is_head_unread(found.symbol.key)
+
+
+def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:
+    """Whether the parameters are known from recollection only, or those of an option package."""
+    if isinstance(scope, PackageScope):
+        return True
+    if not isinstance(scope, SystemScope):
+        return False
+    return scope.system.functions[symbol.name].is_unconfirmed
+
+
+def _value(checker: TypeChecker, node: ast.Call, found: Found, *, is_value: bool) -> Type:
+    symbol = found.symbol
+    if symbol.type is not None or symbol.given is not None:
+        if not is_value:
+            message = f"the value of {symbol.name} is dropped"
+            checker.report("value-unused", node.name, message)
+        return checker.type_of(found)
+    if is_value:
+        message = f"{symbol.name} has no value"
+        reason = "" if isinstance(found.scope, SystemScope) else "it is a DEF and no DEFFCT"
+        checker.report("no-value", node, message, reason=reason)
+    return UNKNOWN
+
+
+def _check_arguments(
+    checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol, scope: Scope
+) -> None:
+    given, wanted = node.arguments, symbol.parameters
+    is_uncertain = _is_uncertain(symbol, scope)
+    if len(given) > len(wanted) and not symbol.has_more:
+        many = "no arguments" if not wanted else _counted(len(wanted))
+        message = f"{symbol.name} takes {many}, and this is one more"
+        if len(given) > len(wanted) + 1:
+            message = f"{symbol.name} takes {many}, and these are {len(given)}"
+        first = next(filter(None, given[len(wanted) :]), node)
+        checker.report("too-many-arguments", first, message, is_unconfirmed=is_uncertain)
+    if isinstance(scope, SystemScope):
+        _check_missing(checker, node, symbol)
+    for parameter, argument in zip(wanted, given, strict=False):
+        if argument is not None:
+            _check(checker, symbol, parameter, scope, argument, is_uncertain=is_uncertain)
+    for argument in given[len(wanted) :]:
+        if argument is not None:
+            checker.infer(argument)
+    _check_output(checker, node, symbol, scope)
+
+
+def _counted(number: int) -> str:
+    return "one argument" if number == 1 else f"{number} arguments"
+
+
+def _check_missing(checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol) -> None:
+    """The controller's own functions need their arguments.
+
+    KUKA's own programs leave some of them empty, but end no list early.
+    """
+    missing = [parameter.name for parameter in symbol.parameters[len(node.arguments) :]]
+    if missing:
+        message = f"{symbol.name} needs {_counted(len(symbol.parameters))}"
+        reason = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
+        checker.report("argument-missing", node, message, reason=reason)
+
+
+def _check(
+    checker: TypeChecker,
+    symbol: RoutineSymbol,
+    parameter: ParameterSymbol,
+    scope: Scope,
+    argument: ast.Expression,
+    *,
+    is_uncertain: bool,
+) -> None:
+    wanted = checker.type_of_symbol(parameter, scope)
+    is_out = parameter.mode == "OUT"
+    is_variable = isinstance(argument, ast.Variable | ast.Subscript | ast.Member)
+    if is_variable and is_out:
+        root = checker.root_symbol(argument)
+        is_variable = root is None or root.kind is not Kind.CONSTANT
+
+    def accepts(to: Type, value: Type) -> Verdict:
+        verdict = passable(to, value, is_out=is_out, is_variable=is_variable)
+        if not verdict.is_misfit:
+            return verdict
+        where = f"for {parameter.name} of {symbol.name}"
+        return replace(verdict, reason=misfit(to, value, where))
+
+    checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
+    if is_out and not is_variable and checker.context.types[argument] != UNKNOWN:
+        message = f"the parameter {parameter.name} is :OUT, so it needs a variable here"
+        checker.report("nothing-to-change", argument, message)
+
+
+def _check_output(
+    checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol, scope: Scope
+) -> None:
+    """PULSE acts on an output [IOT-07]."""
+    if symbol.name != "PULSE" or not isinstance(scope, SystemScope) or not node.arguments:
+        return
+    output = node.arguments[0]
+    if output is not None and side_of(checker.context, output) == "inputs":
+        checker.report("not-an-output", output, "PULSE acts on an output, and this is an input")

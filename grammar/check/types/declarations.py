@@ -1,0 +1,178 @@
+"""Declarations: sizes of arrays, GLOBAL, signals, imports, parameters, names of modules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Context, RoutineBody
+from grammar.check.analysis.type_checker import TypeChecker
+from grammar.check.types.expressions import type_checker
+from grammar.check.types.signals import check_signal
+from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.semantics.assignability import declarable
+from grammar.semantics.scopes import NotFound
+from grammar.semantics.symbols import Kind
+from grammar.semantics.types import INT, REAL, UNKNOWN
+from grammar.syntax import ast
+
+
+def check(context: Context) -> Iterator[Diagnostic]:
+    """What is wrong with the declarations of a file."""
+    checker = type_checker(context)
+    _check_name(checker)
+    _check_use(checker)
+    data = context.data
+    if data is not None:
+        _check_globals(checker, data)
+        for item in data.items:
+            if not isinstance(item, ast.Assignment):
+                _check_definition(checker, item, open_sizes=frozenset())
+    for routine in context.routines:
+        _check_parameters(checker, routine)
+        _check_body(checker, routine)
+    yield from checker.diagnostics
+
+
+# ------------------------------------------------------------------------------------- names
+
+
+def _check_name(checker: TypeChecker) -> None:
+    """A module is known by the name of its file [SCO-01]."""
+    module, table = checker.context.module, checker.context.table
+    if not module.is_misnamed:
+        return
+    what = "data list" if table.is_data else "first routine"
+    message = f"the {what} is called {table.name}, and the file {module.name}"
+    fix = Fix("give both the same name")
+    checker.report("module-name", table.span, message, fix=fix)
+
+
+def _check_use(checker: TypeChecker) -> None:
+    """A data list that is not PUBLIC is that of the program of the same name [SCO-01, SCO-05]."""
+    context = checker.context
+    table, module = context.table, context.module
+    if not table.is_data or table.is_public or table.is_system:
+        return
+    lists = map(context.project.data_of, context.project.modules)
+    if not any(one is not None and one.path == module.path for one in lists):
+        message = f"nothing can use this data list: no program is called {table.name}"
+        fix = Fix("PUBLIC behind its name would open it to others")
+        checker.report("orphan-data-list", table.span, message, fix=fix)
+
+
+# ------------------------------------------------------------------------------- declarations
+
+
+def _check_globals(checker: TypeChecker, data: ast.DataList) -> None:
+    """What is GLOBAL in a data list that is not PUBLIC, told once: one word is missing [SCO-04]."""
+    is_public = data.is_public or checker.context.module.is_head_unread(data.name.key)
+    if is_public or checker.context.table.is_system:
+        return
+    found = [
+        one
+        for one in data.items
+        if not isinstance(one, ast.Assignment) and getattr(one, "is_global", False)
+    ]
+    if found:
+        more = f", and so do {len(found) - 1} below" if len(found) > 1 else ""
+        message = f"GLOBAL needs DEFDAT {data.name.text} PUBLIC{more}"
+        checker.report("global-not-public", _name_of(found[0]), message)
+
+
+def _name_of(node: ast.Definition) -> ast.Node:
+    if isinstance(node, ast.VariableDeclaration):
+        return node.declarators[0].name
+    return node.declarator.name if isinstance(node, ast.Importation) else node.name
+
+
+def _check_body(checker: TypeChecker, routine: RoutineBody) -> None:
+    parameters = frozenset(parameter.name.key for parameter in routine.node.parameters)
+    for placed in routine.statements:
+        if type(placed.statement) in _DEFINITIONS:
+            _check_definition(checker, placed.statement, open_sizes=parameters)
+
+
+def _check_definition(checker: TypeChecker, node: ast.Node, *, open_sizes: frozenset[str]) -> None:
+    """Check one declaration; the names in ``open_sizes`` are arrays that need no size."""
+    match node:
+        case ast.VariableDeclaration():
+            for declarator in node.declarators:
+                _check_sizes(checker, declarator, declarator.name.key in open_sizes)
+        case ast.Structure():
+            for group in node.groups:
+                for declarator in group.declarators:
+                    _check_sizes(checker, declarator, is_open=False)
+        case ast.Signal():
+            check_signal(checker, node)
+        case ast.ChannelDefinition():
+            checker.infer(node.description)
+        case ast.Importation():
+            _check_import(checker, node)
+
+
+_DEFINITIONS: frozenset[type[Any]] = frozenset(
+    {ast.VariableDeclaration, ast.Structure, ast.Signal, ast.ChannelDefinition, ast.Importation}
+)
+
+
+def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool) -> None:
+    """Every dimension of an array has a size, but for parameters [TYP-08]."""
+    for size in declarator.indices or ():
+        if size is None:
+            if not is_open:
+                message = f"the array {declarator.name.text} needs a size for each dimension"
+                checker.report("size-missing", declarator, message)
+                return
+            continue
+        kind, value = checker.infer(size), constant(checker.context, size)
+        if kind not in (INT, REAL, UNKNOWN):
+            checker.report(
+                "wrong-size", size, f"the size of an array is an INT, and this is {kind}"
+            )
+        elif isinstance(value, int | float) and (value < 1 or value != int(value)):
+            message = f"an array has at least one element and not {value}"
+            checker.report("wrong-size", size, message)
+        elif value is None and kind != UNKNOWN:
+            message = "the size of an array is a constant"
+            checker.report("wrong-size", size, message, is_unconfirmed=True)
+
+
+def _check_import(checker: TypeChecker, node: ast.Importation) -> None:
+    """What is imported is data of another list, which has to be PUBLIC [ADV-05]."""
+    context = checker.context
+    found = context.found(node.declarator.name)
+    if found is None or found.symbol.kind is not Kind.IMPORT:
+        return
+    answer = context.project.imported(found)
+    if isinstance(answer, NotFound):
+        module = node.path[-1].text
+        reason = "its data list is not PUBLIC" if answer.hidden else ""
+        message = f"the data list {module} has nothing of that name for others"
+        checker.report("unknown-name", node.source, message, reason=reason)
+
+
+# --------------------------------------------------------------------------------- parameters
+
+
+def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
+    """Parameters are declared in the body; whole arrays are passed :OUT [SCO-06, SCO-07]."""
+    symbols = routine.table.routine.parameters
+    undeclared: list[ast.Parameter] = []
+    for node, parameter in zip(routine.node.parameters, symbols, strict=True):
+        context = checker.context
+        is_unread = parameter.key in (context.module.words or ()) or context.is_cut(routine)
+        if parameter.type is None and not is_unread:
+            undeclared.append(node)
+        type_ = checker.type_of_symbol(parameter, routine.scope)
+        verdict = declarable(type_, is_out=parameter.mode == "OUT")
+        if not verdict:
+            checker.reject("array-by-value", node, verdict)
+    if undeclared:
+        names = ", ".join(node.name.text for node in undeclared)
+        what = "the parameter" if len(undeclared) == 1 else "the parameters"
+        verb = "is" if len(undeclared) == 1 else "are"
+        message = f"{what} {names} {verb} not declared in the routine"
+        fix = Fix("declare each with its type, DECL INT NAME for instance, before any instruction")
+        checker.report("parameter-undeclared", undeclared[0], message, fix=fix)

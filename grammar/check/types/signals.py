@@ -1,0 +1,44 @@
+"""Signals: names for inputs, outputs, and groups of them [IOT-03]."""
+
+from __future__ import annotations
+
+from grammar.check.analysis.constant_folding import integer_of
+from grammar.check.analysis.signal_direction import written_side
+from grammar.check.analysis.type_checker import TypeChecker
+from grammar.syntax import ast
+
+_WIDEST = 32
+
+
+def check_signal(checker: TypeChecker, node: ast.Signal) -> None:
+    """Check the declaration of a signal."""
+    checker.infer(node.first)
+    key, context = node.name.key, checker.context
+    if key.startswith("$") and not context.table.is_system and key not in context.system.variables:
+        message = f"{node.name.text} is no predefined signal"
+        checker.report("not-predefined-signal", node.name, message, is_unconfirmed=True)
+    if node.last is None:
+        return
+    checker.infer(node.last)
+    sides = written_side(node.first), written_side(node.last)
+    if None not in sides and sides[0] != sides[1]:
+        message = f"{node.name.text} reaches from {sides[0]} to {sides[1]}"
+        checker.report("signal-mixed", node.last, message)
+        return
+    first, last = _number(checker, node.first), _number(checker, node.last)
+    if first is None or last is None:
+        return
+    width = last - first + 1
+    if width < 1:
+        message = f"{node.name.text} goes from {first} down to {last}"
+        checker.report("signal-order", node.last, message, is_unconfirmed=True)
+    elif width > _WIDEST:
+        message = f"{node.name.text} has {width} bits, and a signal has at most {_WIDEST}"
+        checker.report("signal-too-wide", node.last, message)
+
+
+def _number(checker: TypeChecker, node: ast.Expression) -> int | None:
+    """The number of an input or output."""
+    if isinstance(node, ast.Subscript) and len(node.indices) == 1:
+        return integer_of(checker.context, node.indices[0])
+    return None

@@ -1,0 +1,154 @@
+"""Numbers of interrupts, limits of triggers, cyclical flags, lengths of names; by rule."""
+
+from collections.abc import Callable
+
+import pytest
+
+from grammar.check.limits.value_limits import is_priority
+
+Agrees = Callable[..., None]
+
+
+def routine(*lines: str) -> str:
+    return "\n".join(["DEF NEG()", *lines, "END", "DEF WORK()", "END"])
+
+
+def test_priorities() -> None:
+    """Programs have 1, 2, 4 to 39 and 81 to 128, the system has the others [INT-02]."""
+    own = {number for number in range(-5, 200) if is_priority(number)}
+    assert {1, 2, *range(4, 40), *range(81, 129)} == own
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "INTERRUPT DECL 1 WHEN $IN[1] DO WORK()",
+        "INTERRUPT DECL 128 WHEN $IN[1] DO WORK()",
+        "INTERRUPT DECL I WHEN $IN[1] DO WORK()",
+        "INTERRUPT DECL 3 WHEN $STOPMESS == TRUE DO WORK()",
+        "INTERRUPT DECL 3 WHEN $IN[1] DO WORK() ;> KRL503?",
+        "INTERRUPT DECL 40 WHEN $IN[1] DO WORK() ;> KRL503",
+        "INTERRUPT DECL 38 + 2 WHEN $IN[1] DO WORK() ;> KRL503",
+        "INTERRUPT DECL -1 WHEN $IN[1] DO WORK() ;> KRL503",
+    ],
+)
+def test_numbers_of_interrupts(agrees: Agrees, line: str) -> None:
+    """A number that is known is judged; 3 belongs to the stop that every program sets up."""
+    agrees(routine("DECL INT I", "I = 5", line))
+
+
+@pytest.mark.parametrize(
+    ("rule", "line"),
+    [
+        ("TRG-01", "WHEN DISTANCE=1 DELAY=-20 DO $OUT[1]=TRUE"),
+        ("TRG-01", "WHEN DISTANCE=I DELAY=0 DO $OUT[1]=TRUE"),
+        ("TRG-01", "WHEN DISTANCE=0.5 DELAY=0 DO $OUT[1]=TRUE ;> KRL509"),
+        ("TRG-03", "WHEN DISTANCE=0 DELAY=10000000 DO $OUT[1]=TRUE"),
+        ("TRG-03", "WHEN DISTANCE=0 DELAY=-10000001 DO $OUT[1]=TRUE ;> KRL509"),
+        ("TRG-04", "WHEN PATH=-10000000 DELAY=0 DO $OUT[1]=TRUE"),
+        ("TRG-04", "WHEN PATH=10000001 DELAY=0 DO $OUT[1]=TRUE ;> KRL509"),
+        ("TRG-05", "WHEN DISTANCE=0 DELAY=0 DO PULSE($OUT[1], TRUE, 0.5)"),
+        ("TRG-05", "WHEN DISTANCE=0 DELAY=0 DO I=1 ;> KRL511"),
+        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() PRIO=-1"),
+        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() PRIO=39"),
+        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() PRIO=3 ;> KRL510"),
+        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() ;> KRL510"),
+    ],
+)
+def test_triggers(agrees: Agrees, rule: str, line: str) -> None:
+    """What a trigger is given lies within its limits."""
+    assert rule.startswith("TRG")
+    agrees(routine("DECL INT I", "I = 5", f"TRIGGER {line}", "LIN $POS_ACT"))
+
+
+PATH = "TRIGGER WHEN PATH=-5 DELAY=0 DO $OUT[1]=TRUE"
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        (PATH, "LIN $POS_ACT"),
+        (f"{PATH} ;> KRL512", "PTP $POS_ACT"),
+        (f"{PATH} ;> KRL512", f"{PATH} ;> KRL512", "$OUT[2] = TRUE", "PTP_REL {{A1 5}}"),
+        (PATH, "SLIN $POS_ACT", "PTP $POS_ACT"),
+        (PATH, "WORK()", "PTP $POS_ACT"),
+        (PATH, "IF $IN[1] THEN", "LIN $POS_ACT", "ENDIF", "PTP $POS_ACT"),
+        (PATH, "SPLINE", "SPL $POS_ACT", "ENDSPLINE", "PTP $POS_ACT"),
+    ],
+)
+def test_path_needs_a_path(agrees: Agrees, lines: tuple[str, ...]) -> None:
+    """PATH before PTP is told where it is certain which motion is the next [TRG-04]."""
+    agrees(routine(*(line.replace("{{", "{").replace("}}", "}") for line in lines)))
+
+
+def test_cyclical_flags(agrees: Agrees) -> None:
+    """Neither functions nor data of the routine, but anything that lasts [IOT-11]."""
+    agrees(
+        {
+            "NEG.src": "\n".join(
+                [
+                    "DEF NEG()",
+                    "DECL BOOL MINE",
+                    "MINE = TRUE",
+                    "$CYCFLAG[1] = $IN[1] AND OURS",
+                    "$CYCFLAG[2] = MINE ;> KSS1609",
+                    "$CYCFLAG[3] = READY() ;> KSS1608",
+                    "$FLAG[3] = READY() AND MINE",
+                    "END",
+                    "DEFFCT BOOL READY()",
+                    "RETURN TRUE",
+                    "ENDFCT",
+                ]
+            ),
+            "NEG.dat": "DEFDAT NEG\nDECL BOOL OURS=TRUE\nENDDAT",
+        }
+    )
+
+
+LONG = "A234567890123456789012345"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        f"DECL INT {LONG[:24]}",
+        f"DECL INT {LONG} ;> KRL105",
+        f"DECL INT A, {LONG}[5] ;> KRL105",
+        f"SIGNAL {LONG} $IN[1] ;> KRL105",
+        f"STRUC {LONG} INT A ;> KRL105",
+        f"STRUC PART INT {LONG} ;> KRL105",
+        f"ENUM COLOUR RED, {LONG} ;> KRL105",
+    ],
+)
+def test_names_of_data(agrees: Agrees, line: str) -> None:
+    """Names have 24 characters at most [TYP-05]."""
+    agrees(f"DEFDAT NEG\n{line}\nENDDAT")
+
+
+def test_names_in_programs(agrees: Agrees) -> None:
+    """Routines, labels and parameters too; a parameter is told once [TYP-05]."""
+    agrees(
+        "\n".join(
+            [
+                "DEF NEG()",
+                f"{LONG}: ;> KRL105",
+                "END",
+                f"DEF B{LONG}(C{LONG}:IN) ;> KRL105 KRL105",
+                f"DECL INT C{LONG}",
+                f"$OUT[1] = C{LONG} == 1",
+                "END",
+            ]
+        )
+    )
+
+
+def test_name_of_a_module(agrees: Agrees) -> None:
+    """The name of the file is that of its first routine, so the fault is told once [TYP-05]."""
+    agrees({f"{LONG}.src": f"DEF {LONG}() ;> KSS3157\nEND"})
+
+
+@pytest.mark.parametrize(("count", "mark"), [(255, ""), (256, " ;> KSS2710")])
+def test_number_of_local_routines(agrees: Agrees, count: int, mark: str) -> None:
+    """A module has 255 local routines at most [SCO-02]."""
+    routines = [f"DEF R{number}()\nEND" for number in range(1, count)]
+    agrees("\n".join(["DEF NEG()\nEND", *routines, f"DEF LAST(){mark}", "END"]))

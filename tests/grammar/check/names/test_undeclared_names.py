@@ -1,0 +1,356 @@
+"""A name is unknown when what could declare it has been read, however much else is missing."""
+
+from collections.abc import Callable
+
+import pytest
+
+from grammar.check.project.framework import check
+from grammar.check.project.project_check import CheckOptions, Content, found_in_project, recheck
+from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.link import File, link, words_of
+from grammar.syntax.build import read_module
+from grammar.syntax.source import Source
+
+Agrees = Callable[..., None]
+
+CONFIG = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nENDDAT\n"
+DATA = "DEFDAT CELL\nDECL INT GRIPPED=0\nENDDAT\n"
+
+
+def test_a_backup_with_its_config_knows_its_variables(agrees: Agrees) -> None:
+    """With $CONFIG read an undeclared variable is an error, though a package is missing."""
+    cell = """DEF CELL()
+  PACKAGE_CALL(1) ;> KRL701-
+  GRIPPED = 1
+  GRIPED = 1 ;> KRL101
+  PARTS = WHOLLY_UNKNOWN ;> KRL101
+END"""
+    files = {"R1/System/$config.dat": CONFIG, "R1/cell.dat": DATA, "R1/cell.src": cell}
+    agrees(files, is_complete=None)
+
+
+def test_without_config_only_a_slip_is_told(agrees: Agrees) -> None:
+    """Where $CONFIG is missing a slip is a warning, and any other name is a note."""
+    cell = """DEF CELL()
+  GRIPPED = 1
+  GRIPED = 1 ;> KRL101?
+  GRIPPED = WHOLLY_UNKNOWN ;> KRL701-
+  $OV_RPO = 1 ;> KRL113?
+END"""
+    agrees({"cell.dat": DATA, "cell.src": cell}, is_complete=None)
+
+
+def test_a_constant_without_its_mark_is_told() -> None:
+    """A name that nothing declares where a constant of that name fits is told with its #."""
+    text = "DEF CELL()\n$IPO_MODE = BASE\n$ORI_TYPE = VAR\nEND\n"
+    syntax = read_module(text, "cell.src")
+    assert not isinstance(syntax, list)
+    found = check(link([File("cell.src", syntax)]), lambda _: Source(text, "cell.src"))
+    assert ["did you mean #BASE?", "did you mean #VAR?"] == [
+        one.fix.text for one in found if one.code == "KRL101" and one.fix
+    ]
+
+
+def test_a_slip_of_a_routine_is_a_warning(agrees: Agrees) -> None:
+    """A routine that is not there is probably the one that is called nearly so."""
+    cell = """DEF CELL()
+  OPEN_GRIPPER()
+  OPEN_GRIPER() ;> KRL102?
+END
+DEF OPEN_GRIPPER()
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+def test_what_is_used_again_and_again_is_no_slip(agrees: Agrees) -> None:
+    """A name that is written more than twice is called so; one that is near it is the slip."""
+    cell = """DEF CELL()
+  SPEEDS = 1 ;> KRL701-
+  SPEEDS = 2
+  SPEEDS = 3
+  SPEDS = 4 ;> KRL101?
+END"""
+    agrees({"cell.src": cell, "cell.dat": DATA}, is_complete=None)
+
+
+def test_names_in_series_are_no_slips(agrees: Agrees) -> None:
+    """Several names near one and the same are a series of which some are elsewhere."""
+    cell = """DEF CELL()
+  FINEST()
+  FINERT() ;> KRL701-
+  FINEAT() ;> KRL701-
+  FINEXT() ;> KRL701-
+END
+DEF FINEST()
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+@pytest.mark.parametrize(("name", "severity"), [("HIDDEN", "note"), ("ABSENT", "warning")])
+def test_a_damaged_list_declares_none_but_its_words(name: str, severity: str) -> None:
+    """Of a data list that cannot be read only the words in it may be declared."""
+    damaged = "DEFDAT OTHER PUBLIC\nDECL GLOBAL INT HIDDEN=\nENDDAT\n"
+    cell = f"DEF CELL()\n  {name} = 1\nEND\n"
+    files = [File("R1/other.dat", None, words=words_of(damaged))]
+    for path, text in (("R1/System/$config.dat", CONFIG), ("R1/cell.src", cell)):
+        module = read_module(text, path)
+        assert not isinstance(module, list)
+        files.append(File(path, module))
+    found = check(link(files), lambda module: Source(cell, module.path))
+    assert [severity] == [one.severity for one in found if name in one.message]
+
+
+def test_a_slip_in_the_declaration(finds: Callable[..., list[Diagnostic]]) -> None:
+    """What nothing uses and is one letter off what is used again and again is declared wrongly."""
+    lines = ["DEF U()", "INT CUNTER, LIMIT", "COUNTER = 1", "COUNTER = COUNTER + LIMIT", "END"]
+    found = finds({"U.src": "\n".join(lines)}, is_complete=None)
+    grave = [(one.region.line, one.code, one.severity) for one in found if one.severity != "note"]
+    assert (2, "KRL101", "warning") in grave
+    assert {2} == {line for line, code, _ in grave if code == "KRL101"}
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("DECL E6PO P", "KRL103"),
+        ("DECL IINT N", "KRL103"),
+        ("$OUT[1] = FALS", "KRL101"),
+        ("$OUT[1] = TRUEE", "KRL101"),
+        ("ER_RCLEAR($ERR)", "KRL102"),
+        ("$OUT305[1] = TRUE", "KRL113"),
+        ("PTP $POS_AC", "KRL113"),
+        ("BOUT[1] = TRUE", "KRL101"),
+        ("FDAT_AC = FHOME", "KRL101"),
+        ("DECL IT N", "KRL103"),
+        ("FDAT_ACT.TOOL_N = 1", "KSS2125"),
+    ],
+)
+def test_slips_of_words_of_the_language(
+    finds: Callable[..., list[Diagnostic]], line: str, code: str
+) -> None:
+    """What is one letter away from what every program has is that, though files are missing."""
+    found = finds({"U.src": f"DEF U()\n{line}\nEND\n"}, is_complete=None)
+    assert [("warning", code)] == [(one.severity, one.code) for one in found if one.code == code]
+
+
+def test_the_rarer_of_two_spellings_is_the_slip(finds: Callable[..., list[Diagnostic]]) -> None:
+    """Of two names that differ by a slip, and that no file at hand declares, one is used more."""
+    text = "DEF U()\nSTATION = 1\nSTAITON = 2\nSTATION = 3\nEND\n"
+    found = finds({"U.src": text}, is_complete=None)
+    assert [3] == [one.region.line for one in found if one.severity == "warning"]
+
+
+def test_slips_in_lists_of_the_controller(finds: Callable[..., list[Diagnostic]]) -> None:
+    """A list of the controller that declares nearly what the tables have declares it wrongly."""
+    text = "DEFDAT $MACHINE PUBLIC\nSIGNAL $BRAKS_OK $IN[3]\nINT $NOT_IN_ANY_TABLE=3\nENDDAT\n"
+    found = finds({"$machine.dat": text}, is_complete=None)
+    assert [2] == [one.region.line for one in found if one.code == "KRL113"]
+
+
+def test_slips_in_components_of_unknown_structures(
+    finds: Callable[..., list[Diagnostic]],
+) -> None:
+    """A component that is written once, and nearly so again and again, is a slip."""
+    lines = [f"M[{n}].PLACEPOS = {n}" for n in range(1, 4)]
+    text = "\n".join(["DEF U()", *lines, "M[4].PLCAEPOS = 4", "M[5].OTHER = 5", "END"])
+    found = finds({"U.src": text}, is_complete=None)
+    assert [(5, "KSS2125", "warning")] == [
+        (one.region.line, one.code, one.severity) for one in found if one.severity != "note"
+    ]
+
+
+def test_a_program_without_its_list_is_not_certain(
+    finds: Callable[..., list[Diagnostic]],
+) -> None:
+    """With $CONFIG and its own list read a name is unknown for certain; without its list likely."""
+    files = {
+        "R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
+        "R1/Program/u.src": "DEF U()\nABSENT = 1\nELSEWHERE()\nEND\n",
+    }
+    without = finds(files, is_complete=None)
+    whole = finds({**files, "R1/Program/u.dat": "DEFDAT U\nENDDAT\n"}, is_complete=None)
+    severities = [
+        [one.severity for one in found if one.code == "KRL101"] for found in (without, whole)
+    ]
+    assert [["warning"], ["error"]] == severities
+
+
+def test_many_names_that_nothing_declares_are_missed_not_misspelt(agrees: Agrees) -> None:
+    """More than a few unknown names mean that what declares them is missing; a slip is told yet."""
+    cell = """DEF CELL()
+  GRIPED = 1 ;> KRL101
+  WHITE = 1 ;> KRL701-
+  YELLOW = 1 ;> KRL701-
+  ORANGE = 1 ;> KRL701-
+  PURPLE = 1 ;> KRL701-
+  PACKAGE_CALL(1) ;> KRL701-
+END"""
+    data = "DEFDAT CELL\nDECL INT GRIPPED=0\nENDDAT\n"
+    files = {"R1/System/$config.dat": CONFIG, "R1/cell.dat": data, "R1/cell.src": cell}
+    agrees(files, is_complete=None)
+
+
+def test_two_names_that_are_used_once_each_and_one_slip_apart(agrees: Agrees) -> None:
+    """Where nothing declares either the second is told, but not of names that people pair."""
+    cell = """DEF CELL() ;> KRL702-
+  CONVEYOR = 1 ;> KRL701-
+  CONVEOYR = 1 ;> KRL101?
+  LEFT_A = 1 ;> KRL701-
+  LEFT_B = 1 ;> KRL701-
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+def test_a_slip_in_the_data_list(agrees: Agrees) -> None:
+    """What the program uses often and its list does not have is one slip away from what it has."""
+    data = "DEFDAT CELL\nDECL INT RECIEVED=0 ;> KRL101?\nENDDAT\n"
+    lines = ["DEF CELL()", *["RECEIVED = 2"] * 5, "END"]
+    agrees({"cell.dat": data, "cell.src": "\n".join(lines)}, is_complete=None)
+
+
+def test_a_slip_in_what_is_global(agrees: Agrees) -> None:
+    """What nothing uses and is one slip away from what others use often is declared wrongly."""
+    cell = "\n".join(["DEF CELL()", *["RESETCLOCK()"] * 4, "END"])
+    clock = "DEF RESETCLOK() ;> KRL102?\nEND"
+    agrees({"cell.src": cell, "resetclok.src": clock}, is_complete=None)
+    used = cell.replace("CLOCK()", "CLOCK() ;> KRL701-", 1)
+    files = {"cell.src": used, "resetclok.src": clock.replace(";> KRL102?", "")}
+    agrees({**files, "user.src": "DEF USER()\nRESETCLOK()\nEND"}, is_complete=None)
+
+
+ENUM = "DEFDAT $CONFIG PUBLIC\nGLOBAL ENUM JOB PICK, PLCAE ;> KSS2296\nDECL GLOBAL JOB J\nENDDAT\n"
+PLACES = "DEF A()\nJ = #PLACE\nIF J==#PLACE THEN\nHALT\nENDIF\nEND\n"
+
+
+def test_a_slip_in_a_constant_is_told_where_it_is_declared(agrees: Agrees) -> None:
+    """What several places call otherwise, and nothing as it is declared, is one finding."""
+    b = PLACES.replace("A()", "B()")
+    agrees({"$config.dat": ENUM, "a.src": PLACES, "b.src": b}, is_complete=None)
+
+
+def test_each_list_has_its_own_slips(agrees: Agrees) -> None:
+    """What one list declares is not what other programs call alike."""
+    files: dict[str, str] = {}
+    for name in "AB":
+        data = f"DEFDAT {name}\nENUM JOB PICK, PLCAE ;> KSS2296\nDECL JOB J\n"
+        data += "DECL INT RECIEVED=0 ;> KRL101?\nENDDAT\n"
+        program = PLACES.replace("A()", f"{name}()\n" + "RECEIVED = 1\n" * 5)
+        files |= {f"{name}.dat": data, f"{name}.src": program}
+    other = "DEF C() ;> KRL702-\nRECEIVED = 1 ;> KRL701-\nEND\n"
+    agrees({**files, "C.src": other}, is_complete=None)
+
+
+def test_a_slip_in_the_use_of_a_constant(agrees: Agrees) -> None:
+    """Where the constant is used as it is declared, its other uses are wrong."""
+    b = "DEF B()\nJ = #PLCAE\nEND\n"
+    a = PLACES.replace("PLACE\n", "PLACE ;> KSS2296\n").replace("THEN", "THEN ;> KSS2296")
+    agrees(
+        {"$config.dat": ENUM.replace(";> KSS2296", ""), "a.src": a, "b.src": b}, is_complete=None
+    )
+
+
+@pytest.mark.parametrize(
+    ("declared", "name"), [("XP17233", "XP1723"), ("kOBOT_ON", "ROBOT_ON"), ("TAKE_2", "TAKE_22")]
+)
+def test_any_slip_is_one_where_the_list_has_what_nothing_uses(
+    agrees: Agrees, declared: str, name: str
+) -> None:
+    """Names that could be of a series are slips where the program leaves what is declared out."""
+    data = f"DEFDAT CELL\nDECL INT {declared}=0\nENDDAT\n"
+    cell = f"DEF CELL()\n{name} = 1 ;> KRL101?\nEND"
+    agrees({"cell.dat": data, "cell.src": cell}, is_complete=None)
+
+
+def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
+    """The errors and warnings in files that need not be readable."""
+    contents = [Content(path, "", text.encode()) for path, text in files.items()]
+    found = found_in_project(contents, recheck(contents, CheckOptions(), {}))
+    return [(one.path, one.region.line, one.code) for one in found if one.severity != "note"]
+
+
+CUT = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nDECL GLOBAL IN"
+UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
+
+
+@pytest.mark.parametrize("other", ["J = = #PLCAE\nEND\n", "HALT\n"])
+def test_what_cannot_be_read_may_use_a_declaration(other: str) -> None:
+    """Then it has no slip for certain, and the uses are told."""
+    found = told({"$config.dat": ENUM, "a.src": PLACES, "b.src": f"DEF B()\n{other}"})
+    assert [2, 3] == [line for path, line, _ in found if path == "a.src"]
+    assert "$config.dat" not in [path for path, *_ in found]
+
+
+@pytest.mark.parametrize(("more", "count"), [("", 1), (", PLAEC", 0)])
+def test_a_slip_has_one_name_that_is_near(more: str, count: int) -> None:
+    """Of two declarations that are near neither is wrong for certain."""
+    found = told({"$config.dat": ENUM.replace("PLCAE", f"PLCAE{more}"), "a.src": PLACES})
+    assert count == [path for path, *_ in found].count("$config.dat")
+
+
+def test_a_slip_in_a_declaration_that_moved() -> None:
+    """Findings that were kept lead to the file that declares it now."""
+    slip = "DECL GLOBAL INT RECIEVED=0\n"
+    program = "DEF A()\n" + "RECEIVED = 1\n" * 5 + "END\n"
+    one, two = (
+        [
+            Content(path, "", text.encode())
+            for path, text in (
+                ("a.src", program),
+                ("b.dat", f"DEFDAT B PUBLIC\n{first}ENDDAT\n"),
+                ("c.dat", f"DEFDAT C PUBLIC\n{second}ENDDAT\n"),
+            )
+        ]
+        for first, second in ((slip, ""), ("", slip))
+    )
+    known = recheck(one, CheckOptions(), {})
+    found = found_in_project(two, recheck(two, CheckOptions(), {0: known[0]}))
+    assert ["c.dat"] == [diagnostic.path for diagnostic in found if diagnostic.severity != "note"]
+
+
+WATCHED = "DEF A()\nINTERRUPT DECL 5 WHEN $IN[1] DO B()\n"
+MAIN = "DEF MAIN()\n  GRIPPED = 1\n  PARTS = OTHERS\n  CELL(1)\nEND\n"
+
+
+OPEN = "DEFDAT $CONFIG PUBLIC\nGLOBAL ENUM JOB PICK, {}\nGLOBAL STRUC BOX INT SIDE, {}\nENDDAT\n"
+JOBS = "DEF A()\nDECL JOB J\nDECL BOX B\nJ=#PICK\nJ=#PALCE\nJ=5\nB.HIGH=1\nB.SIDE=TRUE\nEND\n"
+
+
+def test_a_type_whose_line_is_damaged_is_one_with_other_members() -> None:
+    """What is read of its line is known, and what is lost may be anything."""
+    damaged = told({"$config.dat": OPEN.format("5", "REAL"), "a.src": JOBS})
+    config = [("$config.dat", line, "KRL001") for line in (2, 3)]
+    wrong = [("a.src", line, "KSS1446") for line in (6, 8)]
+    assert [*config, *wrong] == damaged
+
+
+@pytest.mark.parametrize(
+    ("files", "expected"),
+    [
+        ({"R1/System/$config.dat": CUT, "R1/main.src": MAIN}, [("R1/System/$config.dat", 3)]),
+        ({"cell.dat": UNREAD, "main.src": MAIN}, [("cell.dat", 1)]),
+        ({"cell.src": "DEF CELL(A:IN =)\nEND\n", "main.src": MAIN}, [("cell.src", 1)]),
+        ({"a.src": "DEF A()\nGOTO FAR\nX = 1\n;FOLD\n"}, [("a.src", 4)]),
+        ({"a.src": WATCHED}, [("a.src", 2)]),
+        ({"a.src": f"{WATCHED}INTERRUPT ON ON 5\nEND\nDEF B()\nEND\n"}, [("a.src", 3)]),
+        (
+            {"a.src": f"{WATCHED}END\n", "b.src": "DEFFCT (\nINTERRUPT ON 5\n$OUT[1]=TRUE\n"},
+            [("b.src", 1)],
+        ),
+    ],
+)
+def test_what_is_damaged_is_told_alone(
+    files: dict[str, str], expected: list[tuple[str, int]]
+) -> None:
+    """What a damaged line or a cut file may have declared is missed nowhere else."""
+    assert expected == [(path, line) for path, line, _ in told(files)]
+
+
+def test_a_missing_data_list_may_hide_what_is_global() -> None:
+    """Where a program lacks its own data, those of others with such names have no certain type."""
+    config = "DEFDAT $CONFIG\nDECL GLOBAL INT I[20]\nENDDAT\n"
+    main = "DEF MAIN()\n  UNKNOWN_A = UNKNOWN_B\n  I = 1\nEND\n"
+    files = {"R1/System/$config.dat": config, "R1/main.src": main}
+    assert [] == told(files)
+    assert [("R1/main.src", 3, "KSS2052")] == told(
+        {**files, "R1/main.dat": "DEFDAT MAIN\nDECL INT UNKNOWN_A\nDECL INT UNKNOWN_B=0\nENDDAT\n"}
+    )
