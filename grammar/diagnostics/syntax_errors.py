@@ -128,6 +128,9 @@ def _unexpected(site: ErrorSite) -> _Mistake:
         and _ENDS_VALUE.search(site.word(site.place - 1))
         and (site.text[0].isalnum() or site.text[0] in "$#_")
     ):
+        missing = [one for one in _JOINING if site.expects(one) and one not in site.words]
+        if missing:
+            return _Mistake(f"{missing[0]} is missing before {_shown(site)}")
         before = site.tokens[site.place - 1][0]
         return _Mistake(f"an operator is missing between {before} and {_shown(site)}")
     if words == "the end of the line" and site.place > 0:
@@ -310,7 +313,12 @@ def _signs(site: ErrorSite) -> _Mistake | None:
 
 
 def _decimal_points(site: ErrorSite) -> _Mistake | None:
-    """A decimal point without digits on both sides."""
+    """A decimal point without digits on both sides, or a comma in its place."""
+    at = site.place if site.text == "," else site.place - 1
+    if site.word(at) == "," and site.word(at - 1).isdigit() and site.word(at + 1).isdigit():
+        number = f"{site.word(at - 1)}.{site.word(at + 1)}"
+        if number.replace(".", ",") in site.code:
+            return _Mistake("a number has a decimal point", site.swap(number, at - 1, at + 1))
     if site.text != ".":
         return None
     if site.word(site.place + 1)[:1].isdigit() and site.expects("INTEGER"):
@@ -321,6 +329,8 @@ def _decimal_points(site: ErrorSite) -> _Mistake | None:
     return None
 
 
+# Words between the parts of a statement.
+_JOINING = ("WHEN", "TO", "DO", "THEN")
 _OF_C = {
     "!=": "<>", "!": "NOT ", "&&": "AND", "||": "OR", "&": "B_AND", "|": "B_OR", "^": "B_EXOR",
     "~": "B_NOT ", "XOR": "EXOR",

@@ -4,13 +4,14 @@ Stricter than `grammar.diagnostics.did_you_mean`, which only words a hint: here 
 it. One slip is a letter too many, too few or wrong, or two that changed places. Names that people
 make in series are no slips of one another: those that differ in a digit, in the last letter of a
 word (``PICKA``, ``PICKB``), in a prefix (``XHOME`` of ``HOME``), or as GET and SET. Where all of
-a series would be known, only digits tell names apart: `Series` says so for each name.
+a series would be known, only digits tell names apart: `Series` says so for each name. Small letters
+before a capital (``gnPart``) are a prefix only where other names have it too.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from enum import Enum
 
 # Shorter names are near too many others.
@@ -24,6 +25,8 @@ _PAIR = {"GET", "SET"}
 _SHORTEST_TO_END = 6
 # What inline forms put before the name of a point to name its data: XP1, FP1, PPDAT1, LCPDAT1.
 _PREFIXES = frozenset("XFPL")
+# Small letters that say what a name is: gnPart, a number that is global.
+_SMALL_PREFIX = re.compile(r"[a-z]+(?=[A-Z])")
 
 
 class Series(Enum):
@@ -50,27 +53,34 @@ class Typos:
         self._shortest = shortest
         self._names: dict[str, tuple[str, Series]] = {}
         self._keys: dict[str, list[str]] = {}
+        self.prefixes: set[str] = set()
         self.add(names, series)
 
     def add(self, names: Iterable[str], series: Series) -> None:
         """Enter names; letter case makes no difference, the first spelling counts."""
         for name in names:
             key = name.upper()
+            self.prefixes.add(small_prefix(name))
             if key not in self._names and self._shortest <= len(key) <= _LONGEST:
                 self._names[key] = name, series
                 for shorter in _shortened(key):
                     self._keys.setdefault(shorter, []).append(key)
 
-    def meant(self, name: str) -> tuple[str, ...]:
-        """The names that ``name`` may be a slip of, in the order of the alphabet."""
+    def meant(self, name: str, prefixes: Container[str] | None = None) -> tuple[str, ...]:
+        """The names that ``name`` may be a slip of, in the order of the alphabet.
+
+        ``prefixes`` are the `small_prefix` of all other names that are written, if these are known.
+        """
         wrong = name.upper()
         if not self._shortest <= len(wrong) + 1 <= _LONGEST:
             return ()
+        small = small_prefix(name)
+        has_slipped = bool(small) and prefixes is not None and small not in prefixes
         near = {
             right
             for shorter in _shortened(wrong)
             for right in self._keys.get(shorter, ())
-            if right != wrong and _is_slip(name, *self._names[right])
+            if right != wrong and _is_slip(name, *self._names[right], has_slipped)
         }
         return tuple(self._names[right][0] for right in sorted(near))
 
@@ -81,8 +91,18 @@ def _shortened(key: str) -> Iterator[str]:
         yield key[:index] + key[index + 1 :]
 
 
-def _is_slip(misspelt: str, name: str, series: Series) -> bool:
-    """Whether two names that share a key are one slip apart, and in no series."""
+def small_prefix(name: str) -> str:
+    """The small letters before the first capital of a name; ``""`` where it begins with one."""
+    found = _SMALL_PREFIX.match(name)
+    return found[0] if found else ""
+
+
+def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> bool:
+    """Whether two names that share a key are one slip apart, and in no series.
+
+    ``has_slipped``: the wrong one begins with small letters that are no prefix of other names.
+    """
+    has_slipped = has_slipped and bool(small_prefix(name))
     wrong, right = misspelt.upper(), name.upper()
     pairs = enumerate(zip(wrong, right, strict=False))
     start = next((i for i, (a, b) in pairs if a != b), min(len(wrong), len(right)))
@@ -98,13 +118,13 @@ def _is_slip(misspelt: str, name: str, series: Series) -> bool:
         if longer is wrong and letter == "S" and start == len(shorter):
             return False  # one of several, and all of them
         if start == 0:
-            return longer is right and _loses_its_first(name, series)
+            return has_slipped or (longer is right and _loses_its_first(name, series))
         spelt = misspelt if longer is wrong else name
         return not _numbers(spelt, start, series, _SHORTEST_TO_END)
     if wrong[start + 1 :] == right[start + 1 :]:
         if series is Series.NONE:
             return True
-        if _is_prefix(misspelt, name, start):
+        if not has_slipped and _is_prefix(misspelt, name, start):
             return False
         if series is Series.DIGITS:
             return not (wrong[start].isdigit() and right[start].isdigit())
@@ -112,7 +132,7 @@ def _is_slip(misspelt: str, name: str, series: Series) -> bool:
             return False
         return not (_numbers(misspelt, start, series) or _numbers(name, start, series))
     swapped = right[start + 1 : start + 2] + right[start : start + 1] + right[start + 2 :]
-    return wrong[start:] == swapped and not any(map(str.isdigit, swapped[:2]))
+    return wrong[start:] == swapped and not swapped[:2].isdigit()
 
 
 def _is_capitalised(name: str) -> bool:

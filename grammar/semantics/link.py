@@ -245,6 +245,7 @@ def link(
     system: System | None = None,
     is_complete: bool | None = None,
     packages: frozenset[str] | None = None,
+    before: Workspace | None = None,
 ) -> Workspace:
     """Group files to projects. Linear in the number of files and of what they declare.
 
@@ -252,13 +253,26 @@ def link(
     all projects. ``is_complete`` tells whether no file is missing; where it is not told, a project
     counts as complete when it has what every backup has and calls nothing that is not there: a
     package that is missing may bring data as well as routines. ``packages`` are option packages
-    that are there besides those whose routines are called; where they are not told, none is.
+    that are there besides those whose routines are called; where they are not told, none is. Of
+    what was linked ``before`` in the same way, projects whose files are the same are taken over.
     """
     projects, scope = [], SystemScope(system or System.load())
+    known = {one.modules[0].path: one for one in before.projects} if before else {}
     for root, is_controller, members in _grouped(files):
-        modules = [_module(file) for file in members]
-        projects.append(Project(root, is_controller, modules, scope, is_complete, packages))
+        project = known.get(members[0].path)
+        if project is None or not _is_of(members, project) or root != project.root:
+            modules = [_module(file) for file in members]
+            project = Project(root, is_controller, modules, scope, is_complete, packages)
+        projects.append(project)
     return Workspace(tuple(projects))
+
+
+def _is_of(files: Sequence[File], project: Project) -> bool:
+    """Whether these are the files of a project, read no more than once."""
+    return len(files) == len(project.modules) and all(
+        file.path == one.path and file.table is one.table and file.words is one.words
+        for file, one in zip(files, project.modules, strict=True)
+    )
 
 
 def extended(project: Project, files: Iterable[File]) -> Project:

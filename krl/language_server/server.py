@@ -144,6 +144,7 @@ class _Handlers:
         path = path_of(given.text_document.uri)
         self._open.add(path)
         self._project.change(path, given.text_document.text)
+        self._project.changed()  # an editor need not watch the settings
         self._publish()
 
     def changed(self, given: lsp.DidChangeTextDocumentParams) -> None:

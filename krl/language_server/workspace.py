@@ -20,7 +20,7 @@ from grammar.check.project.project_check import Reading, read_source
 from grammar.check.project.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.suppression import Selection
-from grammar.semantics.link import File, Project, link
+from grammar.semantics.link import File, Project, Workspace, link
 from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, Scope
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
@@ -106,10 +106,13 @@ class OpenProject:
     def __init__(self) -> None:
         self._files: dict[str, _Read] = {}
         self._linked: Mapping[str, tuple[Project, Module]] | None = None
+        self._workspaces: dict[Settings, Workspace] = {}
+        self._caught_up: set[Project] = set()
         self._looked: dict[str, Looked] = {}
         self._judged: dict[str, _Judged] = {}
         self._origins: dict[Path, str] = {}
         self._agreed: dict[Path, Settings] = {}
+        self._groups: dict[str, tuple[Settings, str] | None] = {}
 
     def add_folder(self, folder: Path) -> Iterator[str]:
         """Take in the KRL files below a folder, one a step; their paths. A missing folder has none.
@@ -127,6 +130,7 @@ class OpenProject:
             if one.member is not None:
                 continue
             self._origins.setdefault(one.file.absolute().parent, one.origin)
+            self._groups.clear()
             if path not in self._files:
                 self.reload(path)
                 yield path
@@ -151,19 +155,23 @@ class OpenProject:
             self._files[path] = _read(path, text)
         if path in self._judged:
             self._judged[path] = replace(self._judged[path], needs=None)
-        self.changed()
+        self._unlink()
 
     def changed(self) -> None:
-        """Something that files depend on is another now: a text, settings."""
+        """Settings are others now."""
+        self._unlink()
+        self._groups.clear()
+        self._agreed.clear()
+
+    def _unlink(self) -> None:
         self._linked = None
         self._looked.clear()
-        self._agreed.clear()
 
     def forget(self, path: str) -> None:
         """A file is gone."""
         if self._files.pop(path, None) is not None:
             self._judged.pop(path, None)
-            self.changed()
+            self._unlink()
 
     def paths(self) -> list[str]:
         """All files, in order."""
@@ -231,7 +239,9 @@ class OpenProject:
         changes meanwhile.
         """
         linked = self._projects()
-        for project in dict.fromkeys(project for project, _ in linked.values()):
+        projects = dict.fromkeys(project for project, _ in linked.values())
+        self._caught_up &= projects.keys()
+        for project in [one for one in projects if one not in self._caught_up]:
             if self._linked is not linked:
                 return
             files = [self._files[module.path] for module in project.modules]
@@ -247,22 +257,34 @@ class OpenProject:
                     continue
                 self._check(known, project, module, needs)
                 yield module.path
+            self._caught_up.add(project)
         self._looked.clear()
 
     def _projects(self) -> Mapping[str, tuple[Project, Module]]:
         if self._linked is None:
             groups: dict[Settings, list[File]] = {}
             for path, one in self._files.items():
-                agreed = self._settings(path)
-                if not _is_left_out(path, agreed):
-                    file = replace(one.file, origin=self._origin(path))
-                    groups.setdefault(agreed, []).append(file)
-            linked: dict[str, tuple[Project, Module]] = {}
-            for agreed, files in groups.items():
-                packages = frozenset(agreed.packages)
-                workspace = link(files, is_complete=agreed.complete or None, packages=packages)
-                linked |= {module.path: (at, module) for at, module in workspace.modules()}
-            self._linked = linked
+                if path not in self._groups:
+                    agreed = self._settings(path)
+                    is_left_out = _is_left_out(path, agreed)
+                    self._groups[path] = None if is_left_out else (agreed, self._origin(path))
+                if (group := self._groups[path]) is not None:
+                    file = replace(one.file, origin=group[1])
+                    groups.setdefault(group[0], []).append(file)
+            self._workspaces = {
+                agreed: link(
+                    files,
+                    is_complete=agreed.complete or None,
+                    packages=frozenset(agreed.packages),
+                    before=self._workspaces.get(agreed),
+                )
+                for agreed, files in groups.items()
+            }
+            self._linked = {
+                module.path: (project, module)
+                for workspace in self._workspaces.values()
+                for project, module in workspace.modules()
+            }
         return self._linked
 
     def _origin(self, path: str) -> str:

@@ -83,6 +83,20 @@ def test_places_of_a_name_are_those_of_its_declaration(project: OpenProject) -> 
     assert ["OTHER.src:2", "OTHER.src:3", "OTHER.src:4"] == listed(project, "OTHER.src", "PARTS")
 
 
+def test_a_change_leaves_other_projects_as_they_are(tmp_path: Path) -> None:
+    """Typing links and asks the files of one project, not all that are at hand."""
+    made = OpenProject()
+    paths = [f"{tmp_path.as_posix()}/{n}/KRC/R1/Program/OTHER.src" for n in "AB"]
+    for path in paths:
+        made.change(path, OTHER)
+    assert paths == list(made.catch_up())
+    linked = [looked.project for path in paths if (looked := made.look(path))]
+    made.change(paths[0], OTHER.replace("INT", "REAL"))
+    assert paths[:1] == list(made.catch_up())
+    again = [looked.project for path in paths if (looked := made.look(path))]
+    assert [False, True] == [one is other for one, other in zip(again, linked, strict=True)]
+
+
 def test_a_line_that_cannot_be_read_hides_no_place(project: OpenProject) -> None:
     """Its name keeps its other places, and is not renamed, as that line would keep the old one."""
     path = next(one for one in project.paths() if one.endswith("CELL.src"))
@@ -235,7 +249,7 @@ def test_settings_count_in_an_editor(project: OpenProject, tmp_path: Path) -> No
     assert looked is not None
     assert ["KRL001", "KRL401"] == [one.code for one in looked.diagnostics]
     (tmp_path / "krl.toml").write_text('ignore = ["KRL4"]', encoding="utf-8")
-    project.change(path, f"{text}\n")
+    project.changed()
     looked = project.look(path)
     assert looked is not None
     assert ["KRL001"] == [one.code for one in looked.diagnostics]

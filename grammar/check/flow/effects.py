@@ -154,7 +154,7 @@ class _Collector:
         match node:
             case ast.InterruptDeclaration(number=number):
                 known = integer_of(self._context, number)
-                if known is not None:
+                if known is not None and 1 <= known <= 128:  # others are told there
                     self._interrupts.append(self._place(number, str(known)))
             case ast.InterruptSwitch(action="ON" | "ENABLE", number=number):
                 known = None if number is None else integer_of(self._context, number)

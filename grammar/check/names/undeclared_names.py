@@ -7,7 +7,8 @@ those of all files are graded together (`grammar.check.names.unresolved_names`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import cache, partial
 
@@ -20,7 +21,7 @@ from grammar.check.names.unresolved_names import (
     slipped_declaration,
 )
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
-from grammar.diagnostics.typos import Series, Typos
+from grammar.diagnostics.typos import Series, Typos, small_prefix
 from grammar.semantics.link import Project
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
@@ -241,10 +242,12 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
         if _may_be_elsewhere(use):
             open_.setdefault((use.space, use.name.key), []).append(use)
     own = cache(partial(_own_typos, context))
+    prefixes = _prefixes(context) if open_ else frozenset()
     data = context.project.data_of(context.module) if open_ else None
     unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
     swapped = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
-    return (*_members(context), *_constants(context), *_others(context, open_, own, swapped))
+    others = _others(context, open_, own, swapped, prefixes)
+    return (*_members(context), *_constants(context), *others)
 
 
 def _constants(context: Context) -> Iterator[UnresolvedName]:
@@ -289,12 +292,13 @@ def _others(
     uses: Mapping[tuple[Space, str], Sequence[Use]],
     own: Callable[[Space], Typos],
     swapped: Typos,
+    prefixes: Set[str],
 ) -> Iterator[UnresolvedName]:
     is_certain = context.data is not None or context.project.data_of(context.module) is not None
     for (space, key), some in uses.items():
         may_be_swapped = space is Space.VALUE and not _may_be_unread(some[0])
         unused = swapped.meant(some[0].name.text) if may_be_swapped else ()
-        near = _near(context, own, some[0])
+        near = _near(context, own, prefixes, some[0])
         is_swapped = len(unused) == 1 and near in ((), unused)
         yield UnresolvedName(
             space,
@@ -329,7 +333,9 @@ def _may_be_unread(use: Use) -> bool:
     return isinstance(use.answer, MaybeElsewhere) and use.answer.reason is Reason.UNREADABLE
 
 
-def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[str, ...]:
+def _near(
+    context: Context, own: Callable[[Space], Typos], prefixes: Set[str], use: Use
+) -> tuple[str, ...]:
     """The names that are seen there and that this one may be a slip of."""
     space = use.space
     if space is None or isinstance(use.answer, Found):
@@ -346,7 +352,16 @@ def _near(context: Context, own: Callable[[Space], Typos], use: Use) -> tuple[st
         return meant
     if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
         return meant
-    return own(space).meant(name) or context.project.typos[space].meant(name)
+    everywhere = context.project.typos[space]
+    prefixes |= everywhere.prefixes
+    return own(space).meant(name, prefixes) or everywhere.meant(name, prefixes)
+
+
+def _prefixes(context: Context) -> frozenset[str]:
+    """The small prefixes that several names in a file have."""
+    names = {name.key: name.text for name in context.resolution.answers}
+    counts = Counter(map(small_prefix, names.values()))
+    return frozenset(prefix for prefix, count in counts.items() if count > 1)
 
 
 def _own_typos(context: Context, space: Space) -> Typos:

@@ -106,12 +106,14 @@ def check_paths(
     skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
     wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
     there = filter(is_left, discover(around)) if around else asked
-    found = [one for one in there if isinstance(one, Found)]
+    members = [one for one in there if isinstance(one, Found) or _is_large(one)]
+    found = [one for one in members if isinstance(one, Found)]
     names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
-    projects = [some for some in _projects(found) if any(one.path in names for one in some)]
-    on_found(sum(map(len, projects)) + len(skipped))
+    projects = [some for some in _projects(members) if any(one.path in names for one in some)]
+    sizes = [one.size for some in projects for one in some if isinstance(one, Found)]
+    on_found(len(sizes) + len(skipped))
     on_done(len(skipped))
-    size = sum(candidate.size for project in projects for candidate in project)
+    size = sum(sizes)
     processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     results = []
     with gc_paused(), ResultStore(cache, "check") as store, StickyPool(processes) as pool:
@@ -142,9 +144,9 @@ def _place(found: Found) -> tuple[Path, str | None]:
     return found.file, found.member
 
 
-def _projects(found: Sequence[Found]) -> Iterator[list[Found]]:
-    """The files of each project."""
-    by_path: dict[str, deque[Found]] = {}
+def _projects(found: Sequence[Found | Skipped]) -> Iterator[list[Found | Skipped]]:
+    """The files of each project; those that are too large may declare and use any name of it."""
+    by_path: dict[str, deque[Found | Skipped]] = {}
     for candidate in found:
         by_path.setdefault(candidate.path, deque()).append(candidate)
     files = [File(candidate.path, None, candidate.origin) for candidate in found]
@@ -175,8 +177,8 @@ def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> C
     )
 
 
-def _is_large(skipped: Skipped) -> bool:
-    return skipped.reason == archives.too_large()
+def _is_large(one: Found | Skipped) -> bool:
+    return isinstance(one, Skipped) and one.reason == archives.too_large()
 
 
 # --------------------------------------------------------------------------------- one by one
@@ -185,20 +187,21 @@ def _is_large(skipped: Skipped) -> bool:
 class _Project:
     """A project that is being checked."""
 
-    def __init__(self, members: Sequence[Found], options: CheckOptions) -> None:
+    def __init__(self, members: Sequence[Found | Skipped], options: CheckOptions) -> None:
         self.options = options
         self.contents: list[Content] = []
-        self.places: list[str] = []
         self.unread: list[Diagnostic] = []
-        for found in members:
-            data = read(found)
-            if isinstance(data, Skipped):
+        for member in members:
+            data = read(member) if isinstance(member, Found) else member
+            if isinstance(data, bytes):
+                self.contents.append(Content(member.path, member.origin, data))
+                continue
+            self.contents.append(Content(member.path, member.origin, data.reason.encode(), True))
+            if data is not member:
                 region = Region(1, 1, 1, 1)
-                self.unread.append(diagnose("unreadable", found.path, region, data.reason))
-            else:
-                self.contents.append(Content(found.path, found.origin, data))
-                self.places.append(_address(found))
-        self.place = digest("\n".join(map(_address, members)).encode())
+                self.unread.append(diagnose("unreadable", member.path, region, data.reason))
+        self.places = list(map(_address, members))
+        self.place = digest("\n".join(self.places).encode())
         self.size = sum(len(content.data) for content in self.contents)
         self.state = state_of(self.contents, options)
         self._known: Mapping[int, KnownFile] = {}
@@ -259,6 +262,8 @@ class _Project:
         skipped = []
         sizes = {one.path: 0 for one in self.unread}
         for content, one in zip(self.contents, looked, strict=True):
+            if content.is_unread:
+                continue
             if one.skipped is not None:
                 skipped.append(Skipped(content.path, one.skipped, content.origin))
                 continue
@@ -277,9 +282,10 @@ class _Project:
         return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), sizes, kept)
 
 
-def _address(found: Found) -> str:
+def _address(found: Found | Skipped) -> str:
     """What tells a file, and how it was named, from all others."""
-    place = f"{found.file}\n{found.member}\n{found.path}\n{found.origin}"
+    file = _place(found) if isinstance(found, Found) else ()
+    place = f"{file}\n{found.path}\n{found.origin}"
     return digest(place.encode("utf-8", "surrogatepass"))
 
 
@@ -295,7 +301,7 @@ def _shares(contents: Mapping[int, Content], count: int) -> list[dict[int, Conte
 
 
 def _run(
-    projects: Iterator[list[Found]],
+    projects: Iterator[list[Found | Skipped]],
     pool: StickyPool,
     store: ResultStore,
     options: CheckOptions,

@@ -66,11 +66,15 @@ class CheckOptions:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """A file of a project: its path as people see it, its origin, and its bytes."""
+    """A file of a project: its path as people see it, its origin, and its bytes.
+
+    Of one that ``is_unread`` they say why.
+    """
 
     path: str
     origin: str
     data: bytes
+    is_unread: bool = False
 
     @property
     def source(self) -> Source:
@@ -261,10 +265,12 @@ def _read_all(
 
 def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | None]:
     path = content.path
+    if content.is_unread:
+        return FileResult(Reading(None, (), frozenset({REST})).alone()), None
     if len(content.data) > LARGEST:
         message = f"larger than {LARGEST // 1_000_000} MB, so it was not checked"
         large = diagnose("too-large", path, Region(1, 1, 1, 1), message)
-        return FileResult(Findings((large,), (), uses=frozenset({REST}))), None
+        return FileResult(Reading(None, (large,), frozenset({REST})).alone()), None
     decoded = decode(content.data)
     if isinstance(decoded, str):
         return FileResult(skipped=decoded), None

@@ -198,6 +198,8 @@ def test_the_token_that_mends_a_line_is_told(wrong: str, message: str, right: st
         ("CASE", "a value is missing behind CASE"),
         ("INT", "a name is missing behind INT"),
         ("N = A B", "an operator is missing between A and B"),
+        ("FOR N = 1 10", "TO is missing before 10"),
+        ("WAIT SEC 0,5", "a number has a decimal point"),
         ("HALT 5", "5 is too much on this line"),
     ],
 )

@@ -21,6 +21,7 @@ WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
         ("hangeStation", "ChangeStation"),
         ("XApp2Plac", "XApp2Place"),
         ("T$IMER_STOP", "$TIMER_STOP"),
+        ("stScrewLea9f0", "stScrewLeaf90"),
     ],
 )
 def test_slips(wrong: str, right: str) -> None:
@@ -51,6 +52,15 @@ def test_series_are_no_slips(one: str, other: str) -> None:
     """Numbers, letters that stand alone, prefixes and very short names are no slips."""
     assert () == Typos([other]).meant(one)
     assert () == Typos([one]).meant(other)
+
+
+@pytest.mark.parametrize("wrong", ["jbToolReady", "bToolReady", "xgbToolReady"])
+def test_small_letters_are_a_prefix_where_other_names_have_it(wrong: str) -> None:
+    """What no other name begins with is a slip of a prefix."""
+    known = Typos(["gbToolReady"])
+    assert ("gbToolReady",) == known.meant(wrong, {"gb", "lb"})
+    assert () == known.meant(wrong, {"gb", "jb", "b", "xgb"})
+    assert () == known.meant("ToolReady", {"gb"})
 
 
 @pytest.mark.parametrize("wrong", ["$POS_AC", "$POS_ACX", "$POSS_ACT", "?POS_ACT", "gPOS_ACT"])

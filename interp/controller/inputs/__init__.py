@@ -1,1 +1,0 @@
-"""Inputs: scripts, channels, the operator, and inputs that change by themselves."""

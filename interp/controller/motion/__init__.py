@@ -1,1 +1,0 @@
-"""Motion: the advance run, motions and their queue, positions, override and braking."""

@@ -1,1 +1,0 @@
-"""Requests of executors and their answers: waits, motions, variables, predefined routines."""

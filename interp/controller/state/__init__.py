@@ -1,1 +1,0 @@
-"""State: clock, trace, variables, signals, messages, tasks, profile: what all parts share."""
