@@ -19,7 +19,7 @@ from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.suite.expectations import KINDS, Expectation
 from conformance.suite.registry import Rule, basis, registry
 from grammar.syntax.build import read_module
-from interp.controller.input_script import Script, ScriptError
+from interp.controller.inputs.input_script import Script, ScriptError
 
 #: The suites, in the order in which they are shown.
 SUITES: Final = (

@@ -21,7 +21,7 @@ from conformance.evaluation.verdicts import verdict_of
 from conformance.runner import CaseResult, Result
 from conformance.suite.case import Case
 from conformance.suite.registry import registry
-from interp.controller.trace import KINDS
+from interp.controller.state.trace import KINDS
 from interp.robot.simulation.tracking import PathRecord
 from support.files.untrusted import json_of, read_bytes
 

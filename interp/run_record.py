@@ -12,8 +12,8 @@ from typing import Any, Final, NotRequired, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from interp.controller.motion_queue import PlannedPoint
-from interp.controller.trace import TraceEvent
+from interp.controller.motion.motion_queue import PlannedPoint
+from interp.controller.state.trace import TraceEvent
 from interp.port.requests import At
 from interp.program.load import CheckedProgram
 from interp.robot.kinematics.machine_data import MachineData

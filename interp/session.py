@@ -15,10 +15,10 @@ from grammar.syntax import ast
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 from interp.controller.controller import Controller
-from interp.controller.input_script import Script
-from interp.controller.profile import Profile
+from interp.controller.inputs.input_script import Script
 from interp.controller.scheduler import HOUR, RunOutcome
-from interp.controller.trace import WORLD_KINDS, TaskSink, Trace, TraceEvent
+from interp.controller.state.profile import Profile
+from interp.controller.state.trace import WORLD_KINDS, TaskSink, Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
 from interp.port.events import EVERY_KIND, Kind
 from interp.port.executor import Executor
@@ -159,7 +159,7 @@ def run_program(
     ``take`` receives each event as it happens, in place of being kept; ``on_time`` is told the
     virtual time now and then. A ``debugger`` calls this as often as it needs
     (`interp.debugging.debugger.Debugger.run`). Raises `LinkError` for a program that cannot begin,
-    `interp.controller.input_script.ScriptError` for a script about what does not exist, and
+    `interp.controller.inputs.input_script.ScriptError` for a script about what does not exist, and
     `ImportError` for a robot that is not installed.
     """
     if isinstance(prepared, CheckedProgram):

@@ -7,7 +7,7 @@ from typing import Final, cast
 
 import typer
 
-from interp.controller.trace import TaskName
+from interp.controller.state.trace import TaskName
 from interp.debugging.client import (
     Back,
     Breakpoint,

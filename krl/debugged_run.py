@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable
 
-from interp.controller.trace import TraceEvent
+from interp.controller.state.trace import TraceEvent
 from interp.debugging.debugger import Debugger
 from interp.executors import Prepared
 from interp.program.load import CheckedProgram

@@ -24,7 +24,7 @@ from krl.errors import InputError, as_input_errors
 if TYPE_CHECKING:
     import pandas as pd
 
-    from interp.controller.trace import TraceEvent
+    from interp.controller.state.trace import TraceEvent
     from interp.program.load import CheckedProgram
     from interp.robot.simulation.tracking import PathRecord
     from interp.session import RunResult, RunSetup
@@ -170,9 +170,9 @@ def run(
     ``full`` tells every line and assignment too; with ``strict`` nothing stands in for what the
     project lacks. Raises `InputError`.
     """
-    from interp.controller.automatic_inputs import OPERATOR
-    from interp.controller.input_script import Script
-    from interp.controller.profile import Profile
+    from interp.controller.inputs.automatic_inputs import OPERATOR
+    from interp.controller.inputs.input_script import Script
+    from interp.controller.state.profile import Profile
     from interp.session import RunSetup, available, run_program
     from interp.values.faults import RuntimeFailure
     from krl.program_loading import load_program

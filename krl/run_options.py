@@ -167,9 +167,9 @@ def prepared_run(
     In a terminal inputs are automatic by default. ``is_full`` and ``is_told`` are those of the
     setup. Raises `InputError`, and within `expected_errors` what it turns into that.
     """
-    from interp.controller.automatic_inputs import OPERATOR
-    from interp.controller.input_script import Script
-    from interp.controller.profile import Profile
+    from interp.controller.inputs.automatic_inputs import OPERATOR
+    from interp.controller.inputs.input_script import Script
+    from interp.controller.state.profile import Profile
     from interp.program.load import Limits
     from interp.session import RunSetup, available, submit_of
 

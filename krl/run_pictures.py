@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from interp.controller.trace import TraceEvent
+from interp.controller.state.trace import TraceEvent
 from interp.program.load import CheckedProgram
 from interp.robot.simulation.cell import Cell
 from interp.robot.simulation.scene import Scene

@@ -25,9 +25,9 @@ from grammar.semantics.scopes import Module
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp import session
-from interp.controller.input_script import Script, ScriptError
-from interp.controller.profile import Profile
-from interp.controller.trace import TraceEvent
+from interp.controller.inputs.input_script import Script, ScriptError
+from interp.controller.state.profile import Profile
+from interp.controller.state.trace import TraceEvent
 from interp.executors import COMPILED, EXECUTORS, Prepared, is_available
 from interp.port.events import Sink
 from interp.port.executor import Executor

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any, Final
 
 from conformance.sensitivity.planted_fault import Fault, group_of, on
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.messages import Messages
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.motion_requests import MotionRequests
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.requests.motion_requests import MotionRequests
+from interp.controller.requests.waits import Waits
 from interp.controller.scheduler import Scheduler
-from interp.controller.tasks import Blocked
-from interp.controller.waits import Waits
+from interp.controller.state.messages import Messages
+from interp.controller.state.tasks import Blocked
 
 _AHEAD: Final = ("advance", "program")
 

@@ -10,12 +10,12 @@ from conformance.sensitivity.planted_fault import (
     group_in,
     on,
 )
-from interp.controller.interrupt_unit import InterruptUnit
-from interp.controller.interrupts import Interrupts
-from interp.controller.levels import Levels
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.motions import MotionBuilder
-from interp.controller.tasks import PROGRAM, Task
+from interp.controller.interrupts.interrupt_unit import InterruptUnit
+from interp.controller.interrupts.levels import Levels
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.motion.motions import MotionBuilder
+from interp.controller.state.interrupts import Interrupts
+from interp.controller.state.tasks import PROGRAM, Task
 
 _SUITES: Final = ("interrupt", "program")
 

@@ -64,21 +64,21 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
     "controller": (
         ("interp.controller.*",),
         (
-            "interp.controller.automatic_inputs",
+            "interp.controller.inputs.automatic_inputs",
             "interp.controller.controller._listed",
             *(
                 f"interp.controller.controller.Controller.{name}"
                 for name in ("arm", "assign", "levels", "look", "unfulfilled")
             ),
-            "interp.controller.input_script",
-            "interp.controller.motion_requests.MotionRequests._skip",
-            "interp.controller.motions._load",
-            "interp.controller.predefined_routines.PredefinedRoutines._unsupported",
-            "interp.controller.profile",
-            "interp.controller.script_player",
-            "interp.controller.state.ControllerState.skip",
-            "interp.controller.trace",
-            "interp.controller.variables.Variables.part_type",
+            "interp.controller.inputs.input_script",
+            "interp.controller.requests.motion_requests.MotionRequests._skip",
+            "interp.controller.motion.motions._load",
+            "interp.controller.requests.predefined_routines.PredefinedRoutines._unsupported",
+            "interp.controller.state.profile",
+            "interp.controller.inputs.script_player",
+            "interp.controller.state.state.ControllerState.skip",
+            "interp.controller.state.trace",
+            "interp.controller.state.variables.Variables.part_type",
         ),
     ),
     # left out: files of machine data, what checks them, and torques; motions written in Python and

@@ -14,7 +14,7 @@ from conformance.sensitivity.planted_fault import (
     group_in,
     on,
 )
-from interp.controller.motions import MotionBuilder
+from interp.controller.motion.motions import MotionBuilder
 from interp.robot.kinematics.placement import Placement
 from interp.robot.path import targets_in_force
 from interp.robot.path.axis_path import JointLine

@@ -6,12 +6,12 @@ import math
 from typing import Any, Final
 
 from conformance.sensitivity.planted_fault import Fault, group_of, on
-from interp.controller.clock import Clock
-from interp.controller.cyclic_evaluation import CyclicEvaluation
-from interp.controller.signals import Signals
-from interp.controller.timers import Timers
-from interp.controller.variable_access import VariableAccess
-from interp.controller.waits import Waits
+from interp.controller.interrupts.cyclic_evaluation import CyclicEvaluation
+from interp.controller.requests.variable_access import VariableAccess
+from interp.controller.requests.waits import Waits
+from interp.controller.state.clock import Clock
+from interp.controller.state.signals import Signals
+from interp.controller.state.timers import Timers
 
 _IO: Final = ("io", "program")
 

@@ -21,10 +21,10 @@ from grammar.syntax import ast
 from grammar.syntax.references import calls_in
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
-from interp.controller.automatic_inputs import OPERATOR
-from interp.controller.input_script import Script, ScriptError
-from interp.controller.profile import Profile
-from interp.controller.trace import TraceEvent
+from interp.controller.inputs.automatic_inputs import OPERATOR
+from interp.controller.inputs.input_script import Script, ScriptError
+from interp.controller.state.profile import Profile
+from interp.controller.state.trace import TraceEvent
 from interp.executors import Prepared
 from interp.program.load import CheckedProgram, load_all
 from interp.program.routine_callers import with_caller

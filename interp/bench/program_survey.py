@@ -134,7 +134,7 @@ def survey(
     """The results of each origin as soon as they are there; the largest are begun first.
 
     ``on_found`` is told how many programs more are known of, ``on_done`` of each that has run.
-    ``cache`` is a folder for results. Raises `interp.controller.input_script.ScriptError` for a
+    ``cache`` is a folder for results. Raises `input_script.ScriptError` for a
     script that names what does not exist.
     """
     key = code_digest("grammar", "interp", "support")

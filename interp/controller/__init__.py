@@ -5,11 +5,11 @@ what happens around it, `Profile` the release of the controller.
 """
 
 from interp.controller.controller import Controller
-from interp.controller.input_script import Script, ScriptError
-from interp.controller.motion_queue import PlannedPoint
-from interp.controller.profile import Profile, ProfileError, profile_names
+from interp.controller.inputs.input_script import Script, ScriptError
+from interp.controller.motion.motion_queue import PlannedPoint
 from interp.controller.scheduler import Ending, RunOutcome
-from interp.controller.trace import KINDS, TaskSink, Trace, TraceEvent
+from interp.controller.state.profile import Profile, ProfileError, profile_names
+from interp.controller.state.trace import KINDS, TaskSink, Trace, TraceEvent
 
 __all__ = [
     "KINDS",

@@ -8,34 +8,34 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from grammar.semantics.types import Type
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.arm_control import ArmControl
-from interp.controller.automatic_inputs import AutomaticInputs
-from interp.controller.channels import Channels
-from interp.controller.computed_variables import connect_computed
-from interp.controller.cyclic_evaluation import CyclicEvaluation
-from interp.controller.input_script import Script
-from interp.controller.interrupt_unit import InterruptUnit
-from interp.controller.interrupts import Interrupts, interrupt_list
-from interp.controller.levels import Levels
-from interp.controller.motion_queue import MotionQueue, PlannedPoint
-from interp.controller.motion_requests import MotionRequests
-from interp.controller.operator_panel import OperatorPanel
-from interp.controller.output_switch import OutputSwitch
-from interp.controller.positions import FramesInForce, Positions
-from interp.controller.predefined_routines import PredefinedRoutines
-from interp.controller.profile import Profile
+from interp.controller.inputs.automatic_inputs import AutomaticInputs
+from interp.controller.inputs.channels import Channels
+from interp.controller.inputs.input_script import Script
+from interp.controller.inputs.operator_panel import OperatorPanel
+from interp.controller.inputs.script_player import ScriptPlayer
+from interp.controller.interrupts.cyclic_evaluation import CyclicEvaluation
+from interp.controller.interrupts.interrupt_unit import InterruptUnit
+from interp.controller.interrupts.levels import Levels
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motion_queue import MotionQueue, PlannedPoint
+from interp.controller.motion.output_switch import OutputSwitch
+from interp.controller.motion.positions import FramesInForce, Positions
 from interp.controller.quiet_time import QuietTime
-from interp.controller.request_table import RequestTable
+from interp.controller.requests.computed_variables import connect_computed
+from interp.controller.requests.motion_requests import MotionRequests
+from interp.controller.requests.predefined_routines import PredefinedRoutines
+from interp.controller.requests.request_table import RequestTable
+from interp.controller.requests.variable_access import VariableAccess
+from interp.controller.requests.waits import Waits
 from interp.controller.scheduler import HOUR, RunOutcome, Scheduler
-from interp.controller.script_player import ScriptPlayer
 from interp.controller.spline_stops import SplineStops
-from interp.controller.state import ControllerState
-from interp.controller.tasks import LevelKind, Task
-from interp.controller.trace import TaskName, TaskSink, Trace
-from interp.controller.variable_access import VariableAccess
-from interp.controller.variables import Computed
-from interp.controller.waits import Waits
+from interp.controller.state.interrupts import Interrupts, interrupt_list
+from interp.controller.state.profile import Profile
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import LevelKind, Task
+from interp.controller.state.trace import TaskName, TaskSink, Trace
+from interp.controller.state.variables import Computed
 from interp.port import requests
 from interp.port.executor import Executor
 from interp.port.requests import At, Path, Value

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from interp.controller.automatic_inputs import AutomaticInputs
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Task
-from interp.controller.waits import IDLE_AFTER
+from interp.controller.inputs.automatic_inputs import AutomaticInputs
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.requests.waits import IDLE_AFTER
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Task
 from interp.port.executor import Recurrent
 from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
 

@@ -12,20 +12,20 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, Literal
 
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.arm_control import ArmControl
-from interp.controller.cyclic_evaluation import CyclicEvaluation
-from interp.controller.interrupt_unit import InterruptUnit
-from interp.controller.levels import Levels
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.operator_panel import OperatorPanel
+from interp.controller.inputs.operator_panel import OperatorPanel
+from interp.controller.inputs.script_player import ScriptPlayer
+from interp.controller.interrupts.cyclic_evaluation import CyclicEvaluation
+from interp.controller.interrupts.interrupt_unit import InterruptUnit
+from interp.controller.interrupts.levels import Levels
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.quiet_time import REPEATABLE, QuietTime
-from interp.controller.request_table import RequestTable
-from interp.controller.script_player import ScriptPlayer
+from interp.controller.requests.request_table import RequestTable
+from interp.controller.requests.waits import Waits
 from interp.controller.spline_stops import SplineStops
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Answer, Blocked, Task
-from interp.controller.waits import Waits
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import At, Crash, End, Fail, Request, Slice, StopAdvance
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from interp.controller.arm_control import ArmControl
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.operator_panel import OperatorPanel
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Task
+from interp.controller.inputs.operator_panel import OperatorPanel
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Task
 from interp.port.requests import SplineStop
 
 

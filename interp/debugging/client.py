@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from interp.controller.trace import TaskName
+from interp.controller.state.trace import TaskName
 from interp.port.requests import At
 from interp.values.values import Value
 

@@ -15,8 +15,8 @@ from typing import Any, Final, Protocol, TypeVar
 
 from grammar.semantics.types import UNKNOWN, Type
 from interp.controller.controller import ArmState
-from interp.controller.tasks import LevelKind
-from interp.controller.trace import TaskName
+from interp.controller.state.tasks import LevelKind
+from interp.controller.state.trace import TaskName
 from interp.debugging.client import (
     Back,
     Breakpoint,

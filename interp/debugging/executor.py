@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from interp.controller.trace import TaskName
+from interp.controller.state.trace import TaskName
 from interp.port.events import Sink
 from interp.port.executor import Executor, Reader
 from interp.port.inspection import Inspectable

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from interp.controller.trace import TaskName
+from interp.controller.state.trace import TaskName
 from interp.debugging.client import Position
 from interp.debugging.executor import DebuggedExecutor
 from interp.port.requests import Path

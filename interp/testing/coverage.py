@@ -12,7 +12,7 @@ from typing import Final, TypedDict
 
 from grammar.syntax import ast
 from grammar.syntax.walk import bodies
-from interp.controller.trace import TraceEvent
+from interp.controller.state.trace import TraceEvent
 from interp.program.load import CheckedProgram, Unit
 from interp.program.statement_paths import statement_lines
 from interp.standins.uses import FOLDER

@@ -29,7 +29,7 @@ from krl.run_options import (
 from support.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
-    from interp.controller.trace import TraceEvent
+    from interp.controller.state.trace import TraceEvent
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
 

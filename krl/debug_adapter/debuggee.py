@@ -12,7 +12,7 @@ from queue import SimpleQueue
 from threading import Event, Thread
 from typing import Final
 
-from interp.controller.trace import TaskName
+from interp.controller.state.trace import TaskName
 from interp.debugging.client import Command, Go, Quit, Stop
 from interp.debugging.debugger import Debugger
 from interp.debugging.value_text import value_text

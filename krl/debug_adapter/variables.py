@@ -6,7 +6,7 @@ from itertools import islice, product
 from typing import Final
 
 from grammar.semantics.types import CHAR
-from interp.controller.trace import TaskName
+from interp.controller.state.trace import TaskName
 from interp.debugging.debugger import Debugger
 from interp.debugging.value_text import value_text
 from interp.values.faults import RuntimeFailure

@@ -15,8 +15,8 @@ from conformance.evaluation.execution import observed
 from conformance.evaluation.observation import Observation
 from conformance.suite.expectations import Expectation, ExpectationError
 from grammar.syntax.source import Source
-from interp.controller.input_script import ScriptError
-from interp.controller.profile import Profile, ProfileError
+from interp.controller.inputs.input_script import ScriptError
+from interp.controller.state.profile import Profile, ProfileError
 from interp.executors import Prepared, available
 from interp.program.load import CheckedProgram, load
 from interp.robot.simulation.scene import SceneError, read_scene

@@ -10,7 +10,7 @@ import difflib
 import re
 from collections.abc import Iterator, Mapping
 
-from interp.controller.trace import TraceEvent
+from interp.controller.state.trace import TraceEvent
 from interp.run_record import tip_of
 from interp.session import RunResult
 from krl.program_tests.test_files import ProgramTest

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from conformance.suite.expectations import Expectation, ExpectationError, read_expectation
-from interp.controller.input_script import Script, ScriptError
+from interp.controller.inputs.input_script import Script, ScriptError
 from interp.testing.drivers import RESULT
 from support.files.untrusted import DocumentError, read_text, toml_of
 

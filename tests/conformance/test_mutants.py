@@ -32,7 +32,7 @@ from conformance.sensitivity.mutants import (
 )
 from conformance.sensitivity.mutation_operators import changes
 from conformance.suite.case import CASES, Case, read_case
-from interp.controller import clock, interrupts
+from interp.controller.state import clock, interrupts
 from interp.tree import statements as tree_statements
 from interp.values import operators
 
@@ -120,7 +120,7 @@ def test_a_lambda_is_run_at_another_time() -> None:
     (change,) = changes(ast.parse("T = (\n    lambda a: not a,\n)\n"))
     assert (-2, -2) == change.lines
     mutant = _mutant(
-        "interp.controller.computed_variables",
+        "interp.controller.requests.computed_variables",
         "connect_computed",
         "state.mode == 'T1'",
         "state.mode != 'T1'",
@@ -148,7 +148,7 @@ def test_a_name_of_no_mutant() -> None:
 def test_a_mutant_is_there_only_while_it_is_in_place() -> None:
     """The clock has another next tick within the context, and the usual one behind it."""
     mutant = _mutant(
-        "interp.controller.clock",
+        "interp.controller.state.clock",
         "Clock.next_tick",
         "self.tick + self.cycle",
         "self.tick - self.cycle",
@@ -168,12 +168,12 @@ def test_functions_in_tables_are_changed_too() -> None:
 
 def test_module_level_names_are_changed_wherever_they_are() -> None:
     """The modules that use the name have another value, for as long as the context lasts."""
-    mutant = _mutant("interp.controller.interrupts", "_RANGES", "40", "41")
+    mutant = _mutant("interp.controller.state.interrupts", "_RANGES", "40", "41")
     assert not interrupts.is_usable(40)
     with put_in_place(mutant):
         assert interrupts.is_usable(40)
     assert not interrupts.is_usable(40)
-    uses = uses_of(mutant)["interp.controller.interrupts"]
+    uses = uses_of(mutant)["interp.controller.state.interrupts"]
     text = Path(str(interrupts.__file__)).read_text(encoding="utf-8").splitlines()
     assert all("_RANGES" in text[line - 1] for line in uses)
 
@@ -181,7 +181,7 @@ def test_module_level_names_are_changed_wherever_they_are() -> None:
 def test_modules_decide_semantics() -> None:
     """What only records or is only compared with is not changed."""
     assert "interp.values.operators" in modules()
-    assert "interp.controller.trace" not in modules()
+    assert "interp.controller.state.trace" not in modules()
     module = "interp.tree.executor"
     names = set(all_mutants())
     functions = [one for one, _, _ in _changes(module)]
@@ -213,7 +213,7 @@ def test_cases_that_run_what_a_statement_names_come_first() -> None:
 
 def test_cases_that_state_what_the_code_cites_are_tried() -> None:
     """Of cases that run the same lines that of INT-15 is, which the class of the position cites."""
-    unit = "interp.controller.interrupt_unit"
+    unit = "interp.controller.interrupts.interrupt_unit"
     mutant = _mutant(unit, "InterruptUnit.watch", "self._positions.keep('INT')", "pass")
     names = ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose", "motion/lin_smooth")
     cases = [_case(name) for name in (*names, "motion/lin_limits", "interrupt/positions_of_event")]
@@ -230,7 +230,7 @@ def test_cases_that_state_what_the_code_cites_are_tried() -> None:
         ("data/int_division", "values.operators:_divided", "left < 0", "left <= 0", "equivalent"),
         (
             "io/analog_range",
-            "controller.signals:Signals._put_analog",
+            "controller.state.signals:Signals._put_analog",
             "-1.0 <= value <= 1.0",
             "-1.0 < value <= 1.0",
             "soft",
@@ -250,7 +250,7 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
 def test_a_mutant_that_makes_a_case_fail() -> None:
     """It is red where the rule of the case is sure."""
     was, now = "self.now + max(duration, 0)", "self.now - max(duration, 0)"
-    mutant = _mutant("interp.controller.clock", "Clock.tick_after", was, now)
+    mutant = _mutant("interp.controller.state.clock", "Clock.tick_after", was, now)
     (trial,) = try_mutants([mutant], reach_of([_case("advance/wait_sec_stops")], _SETUP))
     assert "red" == trial.fate
 
@@ -268,7 +268,7 @@ def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) 
 @needs_fork
 def test_what_is_kept_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that goes on takes over lines and trials, and has the same result."""
-    mutants = [named("interp.controller.clock:0"), named("interp.controller.clock:1")]
+    mutants = [named("interp.controller.state.clock:0"), named("interp.controller.state.clock:1")]
     cases = [_case("control/if_else")]
 
     def tried() -> list[Trial]:

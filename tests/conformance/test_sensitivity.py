@@ -8,7 +8,7 @@ from conformance.sensitivity import bench
 from conformance.sensitivity.planted_fault import Fault, constant, on, several
 from conformance.sensitivity.trial import all_faults, try_faults
 from conformance.suite.case import CASES, Case, read_case
-from interp.controller.clock import Clock
+from interp.controller.state.clock import Clock
 from interp.executors import is_available
 from interp.robot.planning import blending
 

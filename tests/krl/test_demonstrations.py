@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from interp.controller.input_script import Script
-from interp.controller.trace import TraceEvent
+from interp.controller.inputs.input_script import Script
+from interp.controller.state.trace import TraceEvent
 from interp.executors import Prepared, available
 from interp.session import RunResult, RunSetup, run_program
 from krl.program_loading import load_program

@@ -156,7 +156,7 @@ def test_motions_that_cannot_be(run: Run, body: str, number: int | None, said: s
 @pytest.mark.parametrize(("missing", "number"), [("$TOOL", 1419), ("$BASE", 1516)])
 def test_missing_frames(run: Run, tmp_path: Path, missing: str, number: int) -> None:
     """Where the profile has none, a Cartesian target needs a tool and a base first [MOT-15]."""
-    text = resources.files("interp.controller").joinpath("profiles", "kss8.toml").read_text("utf-8")
+    text = resources.files("interp.controller.state").joinpath("profiles/kss8.toml").read_text()
     lines = [
         f'"{missing}" = false' if line.startswith(f'"{missing}"') else line
         for line in text.splitlines()

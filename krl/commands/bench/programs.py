@@ -116,7 +116,7 @@ def programs(
     Exit status 1 after a defect of ours.
     """
     from interp.bench.program_survey import Bounds, Chance, damaged, remaining, survey
-    from interp.controller.input_script import ScriptError
+    from interp.controller.inputs.input_script import ScriptError
     from interp.executors import available
 
     check_files(json_file)

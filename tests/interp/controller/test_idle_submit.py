@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from grammar.syntax.source import Source
 from interp.bytecode.vm.executor import Machine
 from interp.controller import Profile
-from interp.controller.automatic_inputs import OPERATOR
-from interp.controller.input_script import Script
+from interp.controller.inputs.automatic_inputs import OPERATOR
+from interp.controller.inputs.input_script import Script
 from interp.controller.quiet_time import QuietTime
 from interp.program.load import CheckedProgram, Limits, load
 from interp.session import RunResult, RunSetup, available, run_program

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from interp.controller import Script, ScriptError
-from interp.controller.input_script import (
+from interp.controller.inputs.input_script import (
     Answer,
     Asked,
     Assign,

@@ -33,7 +33,7 @@ def test_unknown_name() -> None:
 
 def test_file(tmp_path: Path) -> None:
     """A profile may be a file of one's own, such as one with a cycle of 4 ms [MOT-19]."""
-    folder = Path(__file__).parents[3] / "interp/controller/profiles"
+    folder = Path(__file__).parents[3] / "interp/controller/state/profiles"
     text = (folder / "kss8.toml").read_text(encoding="utf-8")
     file = tmp_path / "fast.toml"
     file.write_text(text.replace("cycle = 12_000", "cycle = 4_000"), encoding="utf-8")
@@ -57,7 +57,7 @@ def test_file(tmp_path: Path) -> None:
 )
 def test_wrong_files(tmp_path: Path, before: str, after: str, words: str) -> None:
     """What is wrong is told in one line."""
-    folder = Path(__file__).parents[3] / "interp/controller/profiles"
+    folder = Path(__file__).parents[3] / "interp/controller/state/profiles"
     text = (folder / "kss8.toml").read_text(encoding="utf-8")
     assert before in text
     file = tmp_path / "x.toml"

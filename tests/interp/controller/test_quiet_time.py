@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.controller.automatic_inputs import OPERATOR
-from interp.controller.input_script import Script
+from interp.controller.inputs.automatic_inputs import OPERATOR
+from interp.controller.inputs.input_script import Script
 from interp.controller.quiet_time import QuietTime
-from interp.controller.waits import Waits
+from interp.controller.requests.waits import Waits
 from interp.program.load import load
 from interp.session import RunResult, RunSetup, available, run_program
 

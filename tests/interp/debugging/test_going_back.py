@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
-from interp.controller.input_script import Script
+from interp.controller.inputs.input_script import Script
 from interp.debugging.client import (
     Back,
     Breakpoint,

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
-from interp.controller.profile import Profile
+from interp.controller.state.profile import Profile
 from interp.program.load import CheckedProgram, load
 from interp.session import EXECUTORS, RunResult, RunSetup, run_program
 

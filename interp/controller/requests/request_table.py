@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from interp.controller.tasks import Answer, Task
+from interp.controller.state.tasks import Answer, Task
 from interp.port.requests import Request
 from interp.values.faults import Fault
 

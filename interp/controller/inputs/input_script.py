@@ -9,8 +9,8 @@
     fulfil waits after 1
     stop at 10
 
-`Script.read` makes a `Script` of such a text; `interp.controller.script_player` plays it. The same
-language stands behind ``;@ io:`` in conformance cases.
+`Script.read` makes a `Script` of such a text; `script_player` plays it. The same language stands
+behind ``;@ io:`` in conformance cases.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from __future__ import annotations
 import re
 from typing import Final, NoReturn
 
-from interp.controller.clock import microseconds
+from interp.controller.state.clock import microseconds
 from interp.port.requests import Path
 from interp.values.faults import RuntimeFailure
 from support.lazy_dataclass import dataclass
@@ -135,7 +135,7 @@ class Script:
     """The steps in their order, and the time in µs at which the run stops, if it says one.
 
     ``fulfils``: after so many µs of a WAIT FOR its inputs change until it goes on, if at all
-    (`interp.controller.automatic_inputs`).
+    (`interp.controller.inputs.automatic_inputs`).
     """
 
     steps: tuple[ScriptStep, ...] = ()

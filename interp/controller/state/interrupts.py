@@ -13,7 +13,7 @@ from typing import Final, Literal
 
 from grammar.semantics.predefined import System
 from grammar.semantics.types import Array, Structure
-from interp.controller.messages import own_fault
+from interp.controller.state.messages import own_fault
 from interp.port.requests import At, CodeHandle, DeclareInterrupt
 from interp.values.values import ArrayValue, StructureValue, set_text, zero
 

@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
 
-from interp.controller.predefined_values import empty_structure
-from interp.controller.state import ControllerState
-from interp.controller.variables import Computed, Snapshot, Variables
+from interp.controller.state.predefined_values import empty_structure
+from interp.controller.state.state import ControllerState
+from interp.controller.state.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.automatic_inputs import AutomaticInputs
-from interp.controller.clock import microseconds
-from interp.controller.interrupts import module_name
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.predefined_values import word
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Answer, Task
+from interp.controller.inputs.automatic_inputs import AutomaticInputs
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.state.clock import microseconds
+from interp.controller.state.interrupts import module_name
+from interp.controller.state.predefined_values import word
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Answer, Task
 from interp.port.requests import Read, SwitchSignal, Write
 from interp.values.faults import fault
 from interp.values.values import ArrayValue, StructureValue, set_text

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Answer, Blocked, Task
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Continue, Request, StopAdvance
 from interp.values.faults import Fault
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections import deque
 
-from interp.controller.clock import Clock
-from interp.controller.signals import Change, Signals
-from interp.controller.variables import Variables
+from interp.controller.state.clock import Clock
+from interp.controller.state.signals import Change, Signals
+from interp.controller.state.variables import Variables
 from interp.port.requests import Path, Value
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from interp.controller.clock import Clock
+from interp.controller.state.clock import Clock
 from interp.port.requests import Path, Value
 from interp.values.faults import fault
 from interp.values.values import StructureValue

@@ -14,9 +14,9 @@ from dataclasses import field
 from typing import Final
 
 from grammar.semantics.types import CHAR, REAL, Array
-from interp.controller.clock import Clock, microseconds
-from interp.controller.messages import own_fault
-from interp.controller.predefined_values import empty_structure, word
+from interp.controller.state.clock import Clock, microseconds
+from interp.controller.state.messages import own_fault
+from interp.controller.state.predefined_values import empty_structure, word
 from interp.port.requests import Value
 from interp.values.faults import fault
 from interp.values.formats import sread, swrite

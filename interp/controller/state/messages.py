@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.semantics.predefined import System
-from interp.controller.trace import TaskName, Trace
+from interp.controller.state.trace import TaskName, Trace
 from interp.port.requests import At
 from interp.values.faults import Fault
 

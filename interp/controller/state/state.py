@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from interp.controller.clock import ActionQueue, Clock, TimedAction
-from interp.controller.messages import Messages
-from interp.controller.profile import Profile
-from interp.controller.signals import Signals
-from interp.controller.timers import Timers
-from interp.controller.trace import TaskName, Trace
-from interp.controller.variables import Variables
+from interp.controller.state.clock import ActionQueue, Clock, TimedAction
+from interp.controller.state.messages import Messages
+from interp.controller.state.profile import Profile
+from interp.controller.state.signals import Signals
+from interp.controller.state.timers import Timers
+from interp.controller.state.trace import TaskName, Trace
+from interp.controller.state.variables import Variables
 from interp.port.requests import At, Path, Value
 from interp.robot.kinematics.machine_data import MachineData
 from interp.values.json_form import to_json

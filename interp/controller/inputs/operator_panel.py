@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from interp.controller.arm_control import ArmControl
-from interp.controller.messages import Messages
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Task
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.state.messages import Messages
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Task
 
 #: The kind of messages that stop the arm until they are acknowledged.
 _STOPPING: Final = "acknowledgement"

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.arm_control import ArmControl
-from interp.controller.levels import Levels
-from interp.controller.messages import message_fault, own_fault
-from interp.controller.motion_queue import MotionQueue, TriggerCall
-from interp.controller.positions import Positions
-from interp.controller.state import ControllerState
-from interp.controller.tasks import ALWAYS, Answer, Blocked, Level, Task
+from interp.controller.interrupts.levels import Levels
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motion_queue import MotionQueue, TriggerCall
+from interp.controller.motion.positions import Positions
+from interp.controller.state.messages import message_fault, own_fault
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, Task
 from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
 from interp.robot.api.commands import CallCommand
 

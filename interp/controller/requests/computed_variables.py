@@ -6,21 +6,21 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from interp.controller.channels import COMMANDS
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.predefined_values import empty_structure, word
-from interp.controller.signals import Signals
-from interp.controller.state import ControllerState
-from interp.controller.timers import date_members
-from interp.controller.trace import TaskName
-from interp.controller.variables import Computed
+from interp.controller.inputs.channels import COMMANDS
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.state.predefined_values import empty_structure, word
+from interp.controller.state.signals import Signals
+from interp.controller.state.state import ControllerState
+from interp.controller.state.timers import date_members
+from interp.controller.state.trace import TaskName
+from interp.controller.state.variables import Computed
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.values.values import single
 
 
 def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQueue) -> None:
-    """Connect them all; those of positions are connected by `interp.controller.positions`."""
+    """Connect them all; those of positions are connected by `motion.positions`."""
     arm, clock, profile, states = core.arm, state.clock, state.profile, state.program_states
     computed: Mapping[str, Callable[[], Value]] = {
         "$DATE": partial(_date, state),

@@ -11,15 +11,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.types import INT, UNKNOWN
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.arm_control import ArmControl
-from interp.controller.channels import Channels, Waiting
-from interp.controller.messages import message_fault, own_fault
-from interp.controller.motions import target_of
-from interp.controller.positions import FramesInForce, axes_value, pose_of, pose_value, word_of
-from interp.controller.predefined_values import empty_structure
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Answer, Blocked, Task
+from interp.controller.inputs.channels import Channels, Waiting
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motions import target_of
+from interp.controller.motion.positions import (
+    FramesInForce,
+    axes_value,
+    pose_of,
+    pose_value,
+    word_of,
+)
+from interp.controller.state.messages import message_fault, own_fault
+from interp.controller.state.predefined_values import empty_structure
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement

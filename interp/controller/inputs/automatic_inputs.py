@@ -15,9 +15,9 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Final
 
-from interp.controller.input_script import Assign, Script
-from interp.controller.state import ControllerState
-from interp.controller.trace import path_text
+from interp.controller.inputs.input_script import Assign, Script
+from interp.controller.state.state import ControllerState
+from interp.controller.state.trace import path_text
 from interp.port.requests import At, Path
 
 #: What the person at the panel and the cell do, as lines of a script.

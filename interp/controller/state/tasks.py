@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import field
 from typing import Final, Literal
 
-from interp.controller.interrupts import Interrupt, Interrupts
-from interp.controller.trace import TaskName, TaskSink
+from interp.controller.state.interrupts import Interrupt, Interrupts
+from interp.controller.state.trace import TaskName, TaskSink
 from interp.port.executor import Executor, Reader
 from interp.port.requests import At, CodeHandle, Request, SetTrigger, SwitchSignal, Value
 from interp.robot.api.commands import CallCommand

@@ -13,14 +13,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 from grammar.motion_kinds import WITHOUT_PATH
-from interp.controller.arm_control import ArmControl
-from interp.controller.messages import message_fault, own_fault
-from interp.controller.motions import MotionBuilder, PlannedMotion
-from interp.controller.output_switch import OutputSwitch
-from interp.controller.positions import FramesInForce, Positions
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Task
-from interp.controller.trace import path_text
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motions import MotionBuilder, PlannedMotion
+from interp.controller.motion.output_switch import OutputSwitch
+from interp.controller.motion.positions import FramesInForce, Positions
+from interp.controller.state.messages import message_fault, own_fault
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Task
+from interp.controller.state.trace import path_text
 from interp.port.requests import (
     At,
     CodeHandle,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from interp.controller.clock import Clock
-from interp.controller.variables import Variables
+from interp.controller.state.clock import Clock
+from interp.controller.state.variables import Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 

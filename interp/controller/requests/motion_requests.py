@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from interp.controller.messages import own_fault
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Answer, Blocked, Task
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.state.messages import own_fault
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import At, Move, MoveEmily, MoveSpline
 from interp.values.faults import Fault
 

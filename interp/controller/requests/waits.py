@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.automatic_inputs import AutomaticInputs
-from interp.controller.clock import microseconds
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.operator_panel import OperatorPanel
-from interp.controller.script_player import ScriptPlayer
-from interp.controller.state import ControllerState
-from interp.controller.tasks import Answer, Blocked, Task
+from interp.controller.inputs.automatic_inputs import AutomaticInputs
+from interp.controller.inputs.operator_panel import OperatorPanel
+from interp.controller.inputs.script_player import ScriptPlayer
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.state.clock import microseconds
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Confirm, Halt, Poll, Read, Request, Slice, Wait
 from interp.values.json_form import to_json
 

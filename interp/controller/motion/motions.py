@@ -11,10 +11,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
-from interp.controller.messages import message_fault, own_fault
-from interp.controller.positions import FramesInForce, pose_of, word_of
-from interp.controller.state import ControllerState
-from interp.controller.variables import Snapshot
+from interp.controller.motion.positions import FramesInForce, pose_of, word_of
+from interp.controller.state.messages import message_fault, own_fault
+from interp.controller.state.state import ControllerState
+from interp.controller.state.variables import Snapshot
 from interp.port.requests import (
     At,
     Move,

@@ -6,8 +6,8 @@ from collections import defaultdict
 from functools import partial
 
 from grammar.semantics.types import Enumeration
-from interp.controller.channels import Channels
-from interp.controller.input_script import (
+from interp.controller.inputs.channels import Channels
+from interp.controller.inputs.input_script import (
     Answer,
     Asked,
     Assign,
@@ -25,8 +25,8 @@ from interp.controller.input_script import (
     Shown,
     Word,
 )
-from interp.controller.operator_panel import OperatorPanel
-from interp.controller.state import ControllerState
+from interp.controller.inputs.operator_panel import OperatorPanel
+from interp.controller.state.state import ControllerState
 from interp.port.requests import Path, Value
 from interp.values.faults import Fault, LinkError
 from interp.values.values import constant, single

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from interp.controller.advance_run import AdvanceRun
-from interp.controller.levels import Levels
-from interp.controller.messages import message_fault, own_fault
-from interp.controller.state import ControllerState
-from interp.controller.tasks import ALWAYS, Answer, Task
+from interp.controller.interrupts.levels import Levels
+from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.state.messages import message_fault, own_fault
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import ALWAYS, Answer, Task
 from interp.port.requests import CodeHandle, Path, SetCyclicFlag, SwitchSignal
 from interp.values.faults import Fault
 

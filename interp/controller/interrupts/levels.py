@@ -6,12 +6,12 @@ runs. When it ends the request below is made again, and what it waited for goes 
 
 from __future__ import annotations
 
-from interp.controller.arm_control import ArmControl
-from interp.controller.interrupts import Interrupt
-from interp.controller.motion_queue import MotionQueue
-from interp.controller.positions import Positions
-from interp.controller.state import ControllerState
-from interp.controller.tasks import ALWAYS, Answer, Blocked, Level, LevelKind, Task
+from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.motion_queue import MotionQueue
+from interp.controller.motion.positions import Positions
+from interp.controller.state.interrupts import Interrupt
+from interp.controller.state.state import ControllerState
+from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, LevelKind, Task
 from interp.port.requests import At, CodeHandle, End, SwitchSignal
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final
 
-from interp.controller.clock import Clock, TimedAction
-from interp.controller.profile import Profile
+from interp.controller.state.clock import Clock, TimedAction
+from interp.controller.state.profile import Profile
 from interp.port.requests import Path, Value
 from interp.values.faults import fault
 from interp.values.values import single

@@ -17,7 +17,7 @@ from typing import Any, Final, Protocol
 
 from grammar.semantics.predefined import System, SystemVariable
 from grammar.semantics.types import INT, UNKNOWN, Array, Structure, Type
-from interp.controller.profile import Profile, ProfileError
+from interp.controller.state.profile import Profile, ProfileError
 from interp.port.requests import Path, Value
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.json_form import from_json

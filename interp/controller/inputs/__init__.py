@@ -1,0 +1,1 @@
+"""Inputs: scripts, channels, the operator, and inputs that change by themselves."""

@@ -1,0 +1,1 @@
+"""What runs on top of a program: interrupt routines, calls of triggers, cyclic evaluation."""

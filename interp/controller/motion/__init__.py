@@ -1,0 +1,1 @@
+"""Motion: the advance run, motions and their queue, positions, override and braking."""

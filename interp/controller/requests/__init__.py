@@ -1,0 +1,1 @@
+"""Requests of executors and their answers: waits, motions, variables, predefined routines."""

@@ -1,0 +1,1 @@
+"""State: clock, trace, variables, signals, messages, tasks, profile: what all parts share."""
