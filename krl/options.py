@@ -14,19 +14,21 @@ if TYPE_CHECKING:
 
 #: Where a command's record goes; `krl.output_files.check_files` sees to it before the work.
 JsonOption = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", help="Write the record here.")
+    Path | None, typer.Option("--json", metavar="FILE", help="Write the record to FILE.")
 ]
 #: The same for commands that have written it into a folder anyway.
 JsonTooOption = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
+    Path | None, typer.Option("--json", metavar="FILE", help="Also write the record to FILE.")
 ]
 JobsOption = Annotated[
-    int | None, typer.Option(min=1, metavar="N", help="Processes; default: one a core.")
+    int | None, typer.Option(min=1, metavar="N", help="Processes; default: one per core.")
 ]
 #: The same where little work is done in this process.
 JobsOrOneOption = Annotated[
     int | None,
-    typer.Option(min=1, metavar="N", help="Processes; default: one a core, or one for little."),
+    typer.Option(
+        min=1, metavar="N", help="Processes; default: one per core, or one for little input."
+    ),
 ]
 #: What a bench measures on; see `programs_or_ours`.
 ProgramsArgument = Annotated[

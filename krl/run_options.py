@@ -38,7 +38,7 @@ class Executor(StrEnum):
 
 
 class Robot(StrEnum):
-    """What moves."""
+    """The arm that moves."""
 
     NONE = "none"
     KINEMATIC = "kinematic"
@@ -57,7 +57,7 @@ FileArgument = Annotated[
     typer.Argument(metavar="FILE", help="The program; archive.zip/path/name.src in an archive."),
 ]
 ExecutorOption = Annotated[
-    Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
+    Executor | None, typer.Option(help="Default: native, or vm if native is not built.")
 ]
 
 
@@ -69,10 +69,10 @@ class RunOptions:
     """
 
     routine: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Where to begin; default: its first routine.")
+        str | None, typer.Option(metavar="NAME", help="Where to start; default: the first routine.")
     ] = None
     executor: ExecutorOption = None
-    robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE
+    robot: Annotated[Robot, typer.Option(help="The arm that moves.")] = Robot.NONE
     profile: Annotated[
         str | None,
         typer.Option(
@@ -84,7 +84,7 @@ class RunOptions:
         Path | None,
         typer.Option(
             metavar="SCRIPT",
-            help="What inputs do, and when; auto fulfils waits and presses START and CONFIRM. "
+            help="Sets inputs at given times; auto fulfils waits and presses START and CONFIRM. "
             "Default: auto in a terminal, else nothing.",
         ),
     ] = None
@@ -92,11 +92,11 @@ class RunOptions:
         str | None,
         typer.Option(
             metavar="NAME",
-            help="A routine of the project for the submit; with --io auto its SPS by default.",
+            help="The submit program, a routine of the project; with --io auto its SPS by default.",
         ),
     ] = None
     machine: Annotated[
-        Path | None, typer.Option(metavar="$machine.dat", help="Another arm than the project's.")
+        Path | None, typer.Option(metavar="$machine.dat", help="Use this arm, not the project's.")
     ] = None
     urdf: Annotated[
         Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
@@ -106,11 +106,11 @@ class RunOptions:
     ] = None
     scene: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.toml", help="What stands around the arm; contacts are told."),
+        typer.Option(metavar="FILE.toml", help="Objects around the arm; contacts are reported."),
     ] = None
-    motion: Annotated[
-        Motion, typer.Option(help="Plan motions as they come, or as the paper did in batches.")
-    ] = Motion.LOOKAHEAD
+    motion: Annotated[Motion, typer.Option(help="Plan motions as they arrive, or in batches.")] = (
+        Motion.LOOKAHEAD
+    )
     max_time: Annotated[
         float | None,
         typer.Option(
@@ -118,19 +118,21 @@ class RunOptions:
             "--until",
             min=0.0,
             metavar="S",
-            help="Stop after so much virtual time; default: 3600, with --io auto 600.",
+            help="Stop after S seconds of virtual time; default: 3600, with --io auto 600.",
         ),
     ] = None
     statements: Annotated[
         int,
         typer.Option(
-            min=1, max=2**31 - 1, help="So many each program may begin until it counts as endless."
+            min=1,
+            max=2**31 - 1,
+            help="Statements each program may execute before it counts as endless.",
         ),
     ] = 10_000_000
     strict: Annotated[
         bool,
         typer.Option(
-            "--strict", help="Run nothing while the checker finds an error; nothing stands in."
+            "--strict", help="Do not run if the checker finds an error, and use no stand-ins."
         ),
     ] = False
 

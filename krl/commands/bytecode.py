@@ -27,18 +27,18 @@ def compile_file(
         typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
     ] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Write nothing while the checker finds an error.")
+        bool, typer.Option("--strict", help="Write nothing if the checker finds an error.")
     ] = False,
     native: Annotated[
         bool,
-        typer.Option("--native", help="Make native code too, for krl run --executor compiled."),
+        typer.Option("--native", help="Add native code, for krl run --executor compiled."),
     ] = False,
 ) -> int:
     """Compile a program with its whole project to bytecode, verify it, and write its image.
 
-    It can begin with any routine of the file that has no parameters, and has those of the submit
-    programs too. What ends the program when it is reached is reported on stderr, with exit status
-    1: a routine that no file has, a variable of no known type. The image is written all the same.
+    The image can start with any routine of the file without parameters, or of a submit program.
+    What would end a run is reported on stderr with exit status 1, such as a routine that is in no
+    file or a variable of unknown type; the image is still written.
     """
     from interp.values.faults import LinkError
 
@@ -105,7 +105,7 @@ def assemble_file(
 def disassemble_image(
     image: Annotated[Path, typer.Argument(metavar="IMAGE", help="An image.")],
     steps: Annotated[
-        bool, typer.Option("--steps", help="Print what the machine in C makes of it instead.")
+        bool, typer.Option("--steps", help="Print the register code of the machine in C instead.")
     ] = False,
 ) -> None:
     """Print an image as the text that `krl asm` makes it from."""

@@ -24,7 +24,7 @@ app = typer.Typer(help="List the programs of the corpus, fetch the public ones, 
 
 @app.command("list")
 def show() -> int:
-    """Show our own cells and the public repositories, and how much of them is here."""
+    """List our own programs and the public repositories, and which files are here."""
     from recovery.corpus.public import absent
 
     sources = _sources()
@@ -48,17 +48,17 @@ def fetch(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Take the repositories from git mirrors in this folder (OWNER/NAME, OWNER__NAME "
-            "or OWNER+NAME), and nothing from the network.",
+            help="Use git mirrors of the repositories in this folder (OWNER/NAME, OWNER__NAME "
+            "or OWNER+NAME), not the network.",
         ),
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where the files go, one folder a repository.")
+        Path, typer.Option(metavar="DIR", help="Where to write, one folder per repository.")
     ] = CORPUS / "open",
 ) -> int:
     """Fetch the KRL files of the public repositories, each verified by its checksum.
 
-    The files belong to other people. Exit status 1 when some could not be had.
+    The files belong to other people. Exit status 1 if a file could not be fetched.
     """
     from krl.progress import progress_bar
     from recovery.corpus import public
@@ -94,17 +94,17 @@ def fetch(
 @app.command("synth")
 def synth(
     size: Annotated[
-        str, typer.Option(metavar="BYTES", help="How much: 500000, 300kB, 10MB, 1.5GB.")
+        str, typer.Option(metavar="BYTES", help="Total size: 500000, 300kB, 10MB, 1.5GB.")
     ] = "1MB",
-    seed: Annotated[int, typer.Option(metavar="N", help="Another number, other programs.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the programs.")] = 1,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Where they go; default: a folder in reports/out/synth."),
+        typer.Option(metavar="DIR", help="Where to write; default: a folder in reports/out/synth."),
     ] = None,
 ) -> int:
-    """Write valid programs made by chance, whole cells of them, for tests of scale.
+    """Write random valid programs, in whole cells, for tests of scale.
 
-    The same size and seed give the same files everywhere. They are no evidence for any grammar.
+    The same size and seed give the same files everywhere. They are not evidence for a grammar.
     """
     from grammar.generation.cells.writing import write_cells
     from krl.progress import progress_bar

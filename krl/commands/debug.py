@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def debug(
     file: Annotated[
         Path | None,
-        typer.Argument(metavar="[FILE]", help="The program; with --dap the client may name it."),
+        typer.Argument(metavar="[FILE]", help="The program; with --dap the client can name it."),
     ] = None,
     *,
     options: RunOptions,
@@ -32,15 +32,18 @@ def debug(
     port: Annotated[
         int | None,
         typer.Option(
-            min=0, max=65535, metavar="N", help="With --dap: on this port of 127.0.0.1; 0 picks."
+            min=0,
+            max=65535,
+            metavar="N",
+            help="With --dap: use this port of 127.0.0.1; 0 picks one.",
         ),
     ] = None,
 ) -> int:
     """Run a program under a debugger: breakpoints, steps forwards and back, variables, the arm.
 
-    Commands come from a prompt or, where it is no terminal, from standard input; `help` lists them.
-    Exit status 1 where the run has ended by a fault, or a command from a file was wrong.
-    docs/debugging.md says more.
+    Commands are read from a prompt, or from standard input if it is not a terminal; `help` lists
+    them. Exit status 1 if the run ended with a fault or a command from a file was wrong. See
+    docs/debugging.md.
     """
     if dap:
         from krl.debug_adapter.server import serve

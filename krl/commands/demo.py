@@ -19,17 +19,17 @@ _PLACES = (
 
 
 def demo(
-    html: Annotated[Path, typer.Option(metavar="FILE", help="Where the page goes.")] = Path(
+    html: Annotated[Path, typer.Option(metavar="FILE", help="The page to write.")] = Path(
         "krl-demo.html"
     ),
     opened: Annotated[
         bool, typer.Option("--open/--no-open", help="Open the page in the browser.")
     ] = True,
 ) -> int:
-    """Run a program that searches for parts by touch and carries them, and open its page.
+    """Run an example that finds parts by touch and carries them, and open its page.
 
-    An arm with six axes in MuJoCo, inputs from a script; some seconds. The page shows the arm in
-    motion, the line that is executed, signals and axes over time.
+    A six-axis arm in MuJoCo, with inputs from a script; takes a few seconds. The page shows the arm
+    in motion, the line being executed, signals and axes over time.
     """
     folder = next((place for place in _PLACES if place.is_dir()), None)
     if folder is None:

@@ -30,27 +30,25 @@ class Format(StrEnum):
 
 def diff(
     old: Annotated[Path, typer.Argument(metavar="OLD", help="A file, folder or .zip archive.")],
-    new: Annotated[
-        Path | None, typer.Argument(metavar="[NEW]", help="The same, as it is now.")
-    ] = None,
+    new: Annotated[Path | None, typer.Argument(metavar="[NEW]", help="The newer version.")] = None,
     format_: Annotated[
         Format, typer.Option("--format", help="How to write the differences.")
     ] = Format.TEXT,
     json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the record here too.")
+        Path | None, typer.Option("--json", metavar="FILE", help="Also write the record to FILE.")
     ] = None,
     html: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write a page into this folder, or FILE.html."),
+        typer.Option(metavar="DIR", help="Write a page to this folder, or to FILE.html."),
     ] = None,
     textconv: Annotated[
-        bool, typer.Option("--textconv", help="Print OLD alone, without what is noise: for git.")
+        bool, typer.Option("--textconv", help="Print OLD without comments and layout, for git.")
     ] = False,
 ) -> int:
-    """Compare programs: routines moved, renamed and changed; and apart from these points and data.
+    """Compare two versions of programs: routines, then taught points and data.
 
-    Headers, comments, folds and layout make no difference, nor does letter case. Exit status 1
-    where there are differences.
+    Headers, comments, folds, layout and letter case are ignored. Exit status 1 if there are
+    differences.
     """
     from grammar.comparison.backups import compare
 

@@ -38,10 +38,10 @@ def format_programs(
         ),
     ],
     check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; name the files that would change.")
+        bool, typer.Option("--check", help="Write nothing; list the files that would change.")
     ] = False,
 ) -> int:
-    """Set out programs: indentation, blanks, keywords in upper case.
+    """Format programs: indentation, spaces, keywords in upper case.
 
     Comments, folds, headers, lines and their ends, encoding, and what a program says stay as they
     are. Exit status 1 where a file has syntax errors and was left alone, and where one would change

@@ -18,15 +18,13 @@ _SHOWN = 5
 
 
 def fuzz(
-    programs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="How many programs to make and run.")
-    ] = 1_000,
-    seed: Annotated[int, typer.Option(metavar="N", help="Chooses the programs.")] = 1,
+    programs: Annotated[int, typer.Option(min=1, metavar="N", help="Number of programs.")] = 1_000,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the programs.")] = 1,
     executor: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="tree, vm, native or compiled; may be repeated; the first is the reference; "
+            help="tree, vm, native or compiled; repeatable; the first is the reference; "
             "default: all but compiled.",
         ),
     ] = None,
@@ -37,12 +35,12 @@ def fuzz(
         typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the programs."),
     ] = None,
 ) -> int:
-    """Make programs at random, run each on all executors, compare every request and event.
+    """Generate random programs, run each on all executors, and compare every request and event.
 
-    The world answers at random too, and interferes with interrupts, triggers and faults; all of it
-    follows from the seed. A program on which two executors diverge is made as small as possible.
-    Exit status 1 where there is one. A rule of KRL is reached by a program that executes all that
-    every conformance case of this rule, or clause of one, uses.
+    Replies, interrupts, triggers and faults are random too; all of it follows from the seed. A
+    program on which two executors diverge is reduced as far as possible; exit status 1 if there is
+    one. A program reaches a rule of KRL if it executes everything that all conformance cases of
+    this rule, or of a clause of it, have in common.
     """
     from conformance.differential.campaign import fuzz as run
     from conformance.differential.campaign import record_of

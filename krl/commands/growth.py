@@ -36,7 +36,7 @@ def growth(
     jobs: JobsOrOneOption = None,
     constructs: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="The ledger; default: that of the grammar in force."),
+        typer.Option(metavar="DIR", help="The ledger; default: that of the current grammar."),
     ] = None,
 ) -> int:
     """Replay the ledger over KRL source: parse rate and metrics of the grammar, step by step."""

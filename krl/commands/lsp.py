@@ -17,12 +17,12 @@ _LONGEST_LINE = 1_000
 
 def lsp(
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Tell on stderr what is asked and answered.")
+        bool, typer.Option("--verbose", help="Log requests and replies to stderr.")
     ] = False,
 ) -> int:
     """Serve an editor over standard input and output: findings, hover, definitions, formatting.
 
-    Speaks the Language Server Protocol; docs/editors.md says how to set an editor up.
+    Speaks the Language Server Protocol; docs/editors.md explains the set-up of editors.
     """
     logging.basicConfig(stream=sys.stderr, level=logging.INFO if verbose else logging.CRITICAL)
     with expected_extras():

@@ -49,35 +49,33 @@ class _Step:
 def nightly(
     paths: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[PATH]...", help="What is surveyed; default: corpus/."),
+        typer.Argument(metavar="[PATH]...", help="Files and folders to survey; default: corpus/."),
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where the dated folder goes.")
+        Path, typer.Option(metavar="DIR", help="Parent of the dated folder.")
     ] = _DEFAULT_OUT,
     history: Annotated[
-        Path, typer.Option(metavar="FILE", help="The history that gets one line more.")
+        Path, typer.Option(metavar="FILE", help="The history; one line is appended.")
     ] = _DEFAULT_HISTORY,
-    minutes: Annotated[
-        float, typer.Option(min=1, metavar="N", help="How long the run may take.")
-    ] = 60,
+    minutes: Annotated[float, typer.Option(min=1, metavar="N", help="Time limit of the run.")] = 60,
     memory: Annotated[
         int,
-        typer.Option(min=100, metavar="MB", help="What each process of a step may have, on Linux."),
+        typer.Option(min=100, metavar="MB", help="Memory limit of each process, on Linux."),
     ] = 8_000,
     date: Annotated[
         str | None, typer.Option(metavar="DATE", help="The name of the run; default: today.")
     ] = None,
     only: Annotated[
-        list[str] | None, typer.Option(metavar="STEP", help="Only this step; may be repeated.")
+        list[str] | None, typer.Option(metavar="STEP", help="Only this step; repeatable.")
     ] = None,
 ) -> int:
-    """Survey, growth, conformance, fuzzing and benches; then what changed since the last run.
+    """Run survey, growth, conformance, fuzzing and benches, and report what changed.
 
-    A run that was broken off goes on where it was: steps whose record is there are not done again.
-    A step or case that fails is tried once more. DIR/DATE/summary.md sums the run up for an issue
-    or a mail, DIR/index.html leads to the last run. Pages of the last 30 runs are kept, records a
-    year, results to begin with once. On a terminal each step shows how far it is. Exit status 1
-    where a step failed, a case failed or no longer passes, a law was broken, or executors diverge.
+    An interrupted run continues where it stopped: steps that have a record are not repeated. A step
+    or case that fails is tried once more. DIR/DATE/summary.md is a summary for an issue or an
+    e-mail, DIR/index.html leads to the last run. Pages of the last 30 runs are kept, records for a
+    year, cached results of the last run only. On a terminal each step shows its progress. Exit
+    status 1 if a step or a case fails, a law is broken, or executors diverge.
     """
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():

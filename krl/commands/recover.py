@@ -37,7 +37,7 @@ def recover(
     paths: CorpusArgument = None,
     grammar: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="The .g4 to read under; default: the grammar in force."),
+        typer.Option(metavar="FILE", help="The .g4 to parse with; default: the current grammar."),
     ] = None,
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Where index.html and survey.json go.")
@@ -52,63 +52,63 @@ def recover(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Programs that every proposal must keep rejected; default: corpus/negatives,"
-            " with --auto only those that are generated.",
+            help="Invalid programs that proposals must still reject; default: corpus/negatives,"
+            " with --auto only generated ones.",
         ),
     ] = None,
     start: Annotated[
         bool,
         typer.Option(
             "--start/--no-start",
-            help="Survey under the restrictive start too, and report what answered its clusters.",
+            help="Also survey under the restrictive start, and list which constructs resolved its "
+            "clusters.",
         ),
     ] = True,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Exit with 1 when a file does not parse.")
+        bool, typer.Option("--strict", help="Exit with status 1 if a file does not parse.")
     ] = False,
     auto: Annotated[
         bool,
-        typer.Option("--auto", help="Let the grammar grow by itself, from preliminary.g4 or FILE."),
+        typer.Option("--auto", help="Infer a grammar automatically, from preliminary.g4 or FILE."),
     ] = False,
     without: Annotated[
         int,
         typer.Option(
             metavar="N",
             min=0,
-            help="With --auto: start from the grammar in force less N constructs, drawn by --seed.",
+            help="With --auto: start from the current grammar without N constructs, drawn by "
+            "--seed.",
         ),
     ] = 0,
     hold_out: Annotated[
         float,
         typer.Option(
-            metavar="FRACTION", help="With --auto: origins to be read and not learnt from."
+            metavar="FRACTION", help="With --auto: share of origins used only to measure."
         ),
     ] = 0.0,
     seed: Annotated[
-        int, typer.Option(metavar="N", help="With --auto: draws what is held out or taken out.")
+        int, typer.Option(metavar="N", help="With --auto: seed of what is held out or removed.")
     ] = 1,
     target: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE", help="With --auto: compare what has grown with this .g4 at the end."
-        ),
+        typer.Option(metavar="FILE", help="With --auto: compare the result with this .g4."),
     ] = None,
     suffix: Annotated[
         str,
         typer.Option(
             metavar=".EXT",
-            help="With --auto --grammar FILE: files of another language than KRL, by how they end.",
+            help="With --auto --grammar FILE: file name suffix of a language other than KRL.",
         ),
     ] = "",
     resume: Annotated[
-        bool, typer.Option("--resume", help="With --auto: go on from what DIR holds.")
+        bool, typer.Option("--resume", help="With --auto: continue from the state in --out DIR.")
     ] = False,
     strike: Annotated[
         list[str] | None,
-        typer.Option(metavar="ID", help="With --auto: go on from DIR without this step."),
+        typer.Option(metavar="ID", help="With --auto: continue from --out DIR without this step."),
     ] = None,
 ) -> int:
-    """Survey KRL source: every parse failure, grouped by cause, with what it holds back."""
+    """Survey KRL source: list every parse failure, grouped by cause, and the files each blocks."""
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar

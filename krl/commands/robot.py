@@ -44,13 +44,13 @@ def status_turn(
         Path, typer.Option(metavar="FILE", help="The $machine.dat of the arm, from R1/Mada.")
     ],
     tool: Annotated[
-        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Tool of the points that have none.")
+        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Tool of points that have none.")
     ] = "0,0,0,0,0,0",
     base: Annotated[
-        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Base of the points that have none.")
+        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Base of points that have none.")
     ] = "0,0,0,0,0,0",
 ) -> int:
-    """Print joints and Turn of taught points, for the branch that their Status names.
+    """Print joint angles and Turn of taught points, for the solution that their Status names.
 
     Prints a JSON list of {"id","reachable","joints","s","t"}, the joints in degrees within the
     software limits. Where an axis can reach the point in several whole turns, that of the Turn is

@@ -47,21 +47,21 @@ def run(
     *,
     options: RunOptions,
     trace: Annotated[
-        Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace here.")
+        Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace to FILE.")
     ] = None,
     trace_level: Annotated[
-        Level, typer.Option(help="full tells every line and assignment too.")
+        Level, typer.Option(help="full also records every line and assignment.")
     ] = Level.WORLD,
     path: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.parquet", help="Write set-points here; .csv goes too."),
+        typer.Option(metavar="FILE.parquet", help="Write set-points; also .csv."),
     ] = None,
     html: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the page of the run here.")
+        Path | None, typer.Option(metavar="FILE", help="Write the page of the run.")
     ] = None,
     video: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.mp4", help="Film the MuJoCo arm; .gif and .webp go too."),
+        typer.Option(metavar="FILE.mp4", help="Film the MuJoCo arm; also .gif and .webp."),
     ] = None,
     png: Annotated[
         Path | None,
@@ -74,11 +74,11 @@ def run(
 ) -> int:
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
-    The same program gives the same trace on every executor and robot. Exit status 0 when it ran to
-    its end or to a HALT, 1 after a fault, where its time or budget was used up, where a line failed
-    and was skipped or cannot be read, where the arm touched something or could not bear a torque.
-    What the project lacks, a routine behind an inline form for instance, stands in and is listed;
-    statements that fail for want of it, motions above all, are skipped and listed.
+    The same program gives the same trace on every executor and robot. Exit status 0 if it ran to
+    its end or to a HALT; 1 after a fault, if the time or statement limit was reached, if a line
+    could not be read or failed and was skipped, or if the arm collided or exceeded a torque.
+    Stand-ins replace what the project lacks, such as a routine behind an inline form, and are
+    listed; statements that still fail, mostly motions, are skipped and listed.
     """
     with expected_errors():
         check_files(trace, path, html, video, png, observations)

@@ -21,35 +21,37 @@ _PASSED, _FAILED, _NONE = 0, 1, 5
 def run_tests(
     paths: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[PATH]...", help="Files and folders of tests; default: here."),
+        typer.Argument(
+            metavar="[PATH]...", help="Test files and folders; default: the current folder."
+        ),
     ] = None,
     select: Annotated[
-        str | None, typer.Option("-k", metavar="WORDS", help="Only tests with these in their name.")
+        str | None,
+        typer.Option("-k", metavar="WORDS", help="Only tests with these words in their name."),
     ] = None,
     stop: Annotated[bool, typer.Option("-x", help="Stop at the first test that fails.")] = False,
     processes: Annotated[
-        str | None, typer.Option("-n", metavar="N", help="So many processes (pytest-xdist).")
+        str | None, typer.Option("-n", metavar="N", help="Number of processes (pytest-xdist).")
     ] = None,
     update: Annotated[
-        bool, typer.Option("--update", help="Record anew what recorded tests do.")
+        bool, typer.Option("--update", help="Record the expected results of recorded tests again.")
     ] = False,
     executor: ExecutorOption = None,
     junit: Annotated[
-        Path | None, typer.Option(metavar="FILE.xml", help="Write results as JUnit here.")
+        Path | None, typer.Option(metavar="FILE.xml", help="Write results as JUnit XML.")
     ] = None,
     cov_html: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write a page of the lines and branches that ran here."),
+        typer.Option(metavar="DIR", help="Write a page of covered lines and branches."),
     ] = None,
     lcov: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the same for lcov here.")
+        Path | None, typer.Option(metavar="FILE", help="Write coverage for lcov.")
     ] = None,
 ) -> int:
     """Run unit tests of robot programs: `test_*.toml` and `test_*.src` below the paths.
 
-    What follows `--` goes to pytest, which runs them; `pytest PATH` collects them too. Exit
-    status 0 when all have passed, 1 when one has failed, 2 where a file cannot be used or there is
-    no test.
+    Arguments after `--` are passed to pytest, which runs the tests; `pytest PATH` collects them
+    too. Exit status 0 if all pass, 1 if one fails, 2 if a file cannot be used or there is no test.
     """
     for path in takewhile(lambda word: not word.startswith("-"), paths or ()):
         if not Path(path.partition("::")[0]).exists():

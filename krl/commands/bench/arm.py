@@ -17,10 +17,10 @@ from krl.text_table import figures
 def arm(
     json_file: JsonOption = None,
     motions: Annotated[
-        int, typer.Option(min=1, max=100_000, metavar="N", help="Motions of the program.")
+        int, typer.Option(min=1, max=100_000, metavar="N", help="Number of motions in the program.")
     ] = 200,
 ) -> int:
-    """Measure the arm: simulated seconds a second on each robot, and what a motion costs to plan.
+    """Measure the arm: simulated seconds per second on each robot, and planning time per motion.
 
     The program is a list of motions, with blends and without KRL. Seconds are processor time.
     """

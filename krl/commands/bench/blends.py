@@ -27,11 +27,11 @@ _WORDS = {
 def blends(
     json_file: JsonOption = None,
     programs: Annotated[
-        int, typer.Option(min=1, max=1_000_000, metavar="N", help="Programs of each sort.")
+        int, typer.Option(min=1, max=1_000_000, metavar="N", help="Programs of each kind.")
     ] = 200,
     seed: Annotated[int, typer.Option(min=0, metavar="N", help="The first seed.")] = 1,
 ) -> int:
-    """Measure blends: time beside exact stops, and shares of axis limits at every millisecond.
+    """Measure blends: time compared with exact stops, and use of axis limits each millisecond.
 
     Programs are drawn by seed; the worst of each law is shown with its seed.
     """

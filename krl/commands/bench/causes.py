@@ -19,13 +19,13 @@ def causes(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
     halves: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Halves of the origins that are measured too.")
+        int, typer.Option(min=0, metavar="N", help="Also measure N random halves of the origins.")
     ] = 4,
-    seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the samples.")] = 1,
 ) -> int:
-    """Hold the clusters of the restrictive start against the constructs that answer them.
+    """Compare the clusters of the restrictive start with the constructs that resolve them.
 
-    Aims: 1.3 clusters for each construct, and no cluster for two (purity 1).
+    Aims: 1.3 clusters for each construct, and no cluster with two constructs (purity 1).
     """
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR

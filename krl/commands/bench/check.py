@@ -34,9 +34,9 @@ def check(
     json_file: JsonOption = None,
     sizes: SizesOption = "1,10",
     planted: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Mistakes to plant, one at a time.")
+        int, typer.Option(min=0, metavar="N", help="Number of mistakes, planted one at a time.")
     ] = 120,
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws the mistakes.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the mistakes.")] = 1,
     missing: Annotated[
         str,
         typer.Option(
@@ -48,15 +48,13 @@ def check(
     ] = "0",
     damage: Annotated[
         Damage,
-        typer.Option(
-            help="What to damage: what programmers mistake, names alone, any token, or lines."
-        ),
+        typer.Option(help="Damage: typical mistakes, only names, any token, or whole lines."),
     ] = "mistakes",
     speed: Annotated[bool, typer.Option(help="Measure the speed.")] = True,
 ) -> int:
-    """Measure the check: seconds a MB on one core, by phase, unchanged, and as there is more.
+    """Measure the check: seconds per MB on one core, by phase, with a cache, and at growing sizes.
 
-    Then plant mistakes in the programs, drawn by chance, and see how many are found.
+    Then plant random mistakes in the programs, and count how many are found.
     """
     from grammar.bench.check_speed import measure_check, steps
     from grammar.bench.planted_mistakes import measure_planted

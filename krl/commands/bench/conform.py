@@ -24,15 +24,15 @@ _SEED = 1
 def conform(
     json_file: JsonOption = None,
     mutants: Annotated[
-        int, typer.Option(min=0, metavar="N", help="So many mutants are drawn with each seed.")
+        int, typer.Option(min=0, metavar="N", help="Number of mutants for each seed.")
     ] = 100,
     seed: Annotated[
         list[int] | None,
-        typer.Option(metavar="N", help="Draw with this seed; may be repeated; default: 1."),
+        typer.Option(metavar="N", help="Seed of the mutants; repeatable; default: 1."),
     ] = None,
     package: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Only mutants of this package; may be repeated."),
+        typer.Option(metavar="NAME", help="Only mutants of this package; repeatable."),
     ] = None,
     most: Annotated[
         int,
@@ -45,31 +45,32 @@ def conform(
     ] = 60,
     survivors: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write the mutants that make no case fail here, as TSV."),
+        typer.Option(metavar="FILE", help="Write mutants that no case detects, as TSV."),
     ] = None,
     group: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME", help="Only planted faults of this group; may be repeated. 'none': none."
+            metavar="NAME", help="Only planted faults of this group, or 'none'; repeatable."
         ),
     ] = None,
     executor: Annotated[
-        Executor, typer.Option(help="Who runs the cases that planted faults are tried on.")
+        Executor, typer.Option(help="Executor that runs the cases for planted faults.")
     ] = Executor.TREE,
     removed: Annotated[
         bool,
         typer.Option(
             "--removed",
-            help="Instead: take out of each case what its title names; list those that still pass.",
+            help="Instead remove from each case the feature its title names; list cases that "
+            "still pass.",
         ),
     ] = False,
     jobs: JobsOption = None,
     cache: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Keep trials here; a run that was broken off goes on."),
+        typer.Option(metavar="DIR", help="Cache trials here; an interrupted run continues."),
     ] = None,
 ) -> int:
-    """Change what decides semantics, one place at a time, and see whether a case fails.
+    """Mutation testing of the cases: change the semantics in one place, and see if a case fails.
 
     Mutants are drawn by chance from the code of values, tree interpreter, controller and robot:
     comparisons, arithmetic, connectives, conditions, constants, statements left out. Planted faults

@@ -15,15 +15,13 @@ from krl.progress import progress_bar
 def fuzz(
     json_file: JsonOption = None,
     programs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Each mutant meets so many programs at most.")
+        int, typer.Option(min=1, metavar="N", help="At most N programs for each mutant.")
     ] = 200,
-    mutants: Annotated[
-        int, typer.Option(min=1, metavar="N", help="So many mutants are drawn.")
-    ] = 200,
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws mutants and programs.")] = 1,
+    mutants: Annotated[int, typer.Option(min=1, metavar="N", help="Number of mutants.")] = 200,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of mutants and programs.")] = 1,
     jobs: JobsOption = None,
 ) -> int:
-    """Change the machine in Python, one place at a time, and see whether programs find it.
+    """Mutation testing of the fuzzer: change the machine in Python, and see if programs detect it.
 
     The changes are drawn by chance, as `krl bench conform` draws those of interpreter, controller
     and robot. Some of them no program can show.

@@ -202,24 +202,24 @@ _ENTRIES: Final[Mapping[str, _Entry]] = {
 
 def growth(
     entry: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Only this command; may be repeated.")
+        list[str] | None, typer.Option(metavar="NAME", help="Only this command; repeatable.")
     ] = None,
     shape: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Only inputs of this shape; may be repeated."),
+        typer.Option(metavar="NAME", help="Only inputs of this shape; repeatable."),
     ] = None,
     largest: Annotated[
-        int, typer.Option(min=32, metavar="KB", help="No input is larger than this.")
+        int, typer.Option(min=32, metavar="KB", help="Largest size of an input.")
     ] = 512,
     json_file: JsonOption = None,
     jobs: JobsOption = None,
     minutes: Annotated[
         float | None,
         typer.Option(
-            min=0, metavar="N", help="Begin nothing after so long; --json FILE goes on next time."
+            min=0, metavar="N", help="Start nothing after N minutes; --json FILE continues later."
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws the order.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the order.")] = 1,
 ) -> int:
     """Measure how CPU time and memory of each command grow with its input.
 

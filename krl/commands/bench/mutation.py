@@ -46,23 +46,23 @@ def mutation(
         ),
     ] = None,
     singles: Annotated[
-        int, typer.Option(min=0, metavar="N", help="At most so many single mutants; 0 for all.")
+        int, typer.Option(min=0, metavar="N", help="Mutants with one part missing; 0: all.")
     ] = 0,
     multiple: Annotated[
         int, typer.Option(min=0, metavar="N", help="Mutants with two or three parts missing.")
     ] = 200,
     repeated: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Mutants whose ranking is worked out again.")
+        int, typer.Option(min=0, metavar="N", help="Mutants whose ranking is computed again.")
     ] = 6,
-    runs: Annotated[int, typer.Option(min=1, metavar="N", help="How often it is worked out.")] = 10,
-    seed: Annotated[int, typer.Option(metavar="N", help="Chooses what is drawn.")] = 1,
+    runs: Annotated[int, typer.Option(min=1, metavar="N", help="How often it is computed.")] = 10,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the samples.")] = 1,
     cache: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Keep each mutant's figures there, and go on from them."),
+        typer.Option(metavar="DIR", help="Cache each mutant's figures, to continue later."),
     ] = None,
     jobs: JobsOption = None,
 ) -> int:
-    """Measure the tool: take parts out of the grammar, and see whether it finds its way back."""
+    """Measure the survey: remove parts of the grammar, and see whether it proposes them again."""
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.model import GrammarError

@@ -55,22 +55,22 @@ class Part(StrEnum):
 def programs(
     paths: ProgramsArgument = None,
     executor: Annotated[
-        Executor | None, typer.Option(help="Default: native, or vm where that was not built.")
+        Executor | None, typer.Option(help="Default: native, or vm if native is not built.")
     ] = None,
-    robot: Annotated[Robot, typer.Option(help="What moves.")] = Robot.NONE,
+    robot: Annotated[Robot, typer.Option(help="The arm that moves.")] = Robot.NONE,
     scripts: Annotated[
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Scripts: DIR/ARCHIVE.io for all programs of an archive, DIR/NAME.io for one.",
+            help="I/O scripts: DIR/ARCHIVE.io for all programs of an archive, DIR/NAME.io for one.",
         ),
     ] = None,
     every: Annotated[
         bool,
-        typer.Option("--every/--own-arm", help="Programs without machine data of their own too."),
+        typer.Option("--every/--own-arm", help="Also programs without machine data."),
     ] = True,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Nothing stands in for what a backup lacks.")
+        bool, typer.Option("--strict", help="Use no stand-ins for what a backup lacks.")
     ] = False,
     max_time: Annotated[
         float, typer.Option(min=0.0, metavar="S", help="Virtual time for each program.")
@@ -81,7 +81,7 @@ def programs(
     jobs: JobsOption = None,
     cache: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Keep results here, and take over what has not changed."),
+        typer.Option(metavar="DIR", help="Reuse results of unchanged programs from here."),
     ] = None,
     json_file: JsonOption = None,
     part: Annotated[
@@ -103,17 +103,18 @@ def programs(
     ] = "",
     sample: Annotated[
         float,
-        typer.Option(min=0, max=1, metavar="SHARE", help="Run so many of the programs, by chance."),
+        typer.Option(
+            min=0, max=1, metavar="SHARE", help="Run this share of the programs, at random."
+        ),
     ] = 1.0,
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws programs and damage.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of programs and damage.")] = 1,
 ) -> int:
     """Run the main programs of backups with their own machine, tools, bases and points.
 
-    Their submit program runs beside them; somebody goes on after a HALT and acknowledges messages.
-    The inputs that a WAIT FOR waits for come after 1 s, but for those that a script sets itself. A
-    program waits when its arm has stood for 20 s. What a backup lacks stands in, as in `krl run`.
-    Each origin is shown as soon as its programs have run.
-    Exit status 1 after a defect of ours.
+    The submit program runs too; START after a HALT and acknowledgements are simulated. Inputs that
+    a WAIT FOR needs arrive after 1 s, unless a script sets them. A program counts as waiting once
+    its arm has stood still for 20 s. Stand-ins replace what a backup lacks, as in `krl run`. Each
+    origin is shown as soon as its programs have run. Exit status 1 after a defect of the workbench.
     """
     from interp.bench.program_survey import Bounds, Chance, damaged, remaining, survey
     from interp.controller.inputs.input_script import ScriptError

@@ -41,20 +41,20 @@ def real_code(
     executors: Annotated[
         list[str] | None,
         typer.Option(
-            "--executor", metavar="NAME", help="tree, vm, native; default: all that are here."
+            "--executor", metavar="NAME", help="tree, vm, native; default: all available."
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="What inputs are drawn from.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the inputs.")] = 1,
     statements: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Statements that a routine may run.")
+        int, typer.Option(min=1, metavar="N", help="Limit of statements for each routine.")
     ] = 3_000,
     json_file: JsonOption = None,
 ) -> int:
-    """Try every routine of real programs: does it link, compile, verify, run, and alike everywhere?
+    """Try every routine of real programs: link, compile, verify, run, and compare executors.
 
-    Routines with parameters are called with small values. The world is a stub: motions take no
+    Routines with parameters are called with small values. The controller is a stub: motions take no
     time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
-    actions entered, and some requests fail. Exit status 1 where executors differ.
+    actions entered, and some requests fail. Exit status 1 if executors differ.
     """
     from conformance.differential.corpus_routines import Effort, Trial, Unread, trials
     from interp.executors import available

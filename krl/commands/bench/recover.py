@@ -37,9 +37,9 @@ def recover(
             "in each of these ways. See krl bench programs for the kinds.",
         ),
     ] = "",
-    seed: Annotated[int, typer.Option(metavar="N", help="Draws the copies and the damage.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of copies and damage.")] = 1,
 ) -> int:
-    """Measure the survey: bytes a second, beside ANTLR, unchanged, and as the corpus grows.
+    """Measure the survey: bytes per second, beside ANTLR, with a cache, at growing sizes.
 
     One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
     """

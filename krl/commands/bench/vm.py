@@ -41,11 +41,11 @@ def vm(
         str,
         typer.Option(
             metavar="NAMES",
-            help="Which kernels, with commas between, or a folder of them. Default: all of ours.",
+            help="Kernels, separated by commas, or a folder of them. Default: all of ours.",
         ),
     ] = "",
     rounds: Annotated[
-        int, typer.Option(min=1, max=100, metavar="N", help="The best of so many rounds counts.")
+        int, typer.Option(min=1, max=100, metavar="N", help="Rounds; the best one counts.")
     ] = 3,
     json_file: JsonOption = None,
 ) -> int:

@@ -47,14 +47,14 @@ def check(
         Format, typer.Option("--format", help="How to write the findings.")
     ] = Format.TEXT,
     syntax_only: Annotated[
-        bool, typer.Option("--syntax-only", help="Only see whether the files can be read.")
+        bool, typer.Option("--syntax-only", help="Only check whether the files parse.")
     ] = False,
     select: Annotated[
         list[str] | None,
-        typer.Option(metavar="CODES", help="Only these codes, or those that begin so: KSS,KRL2."),
+        typer.Option(metavar="CODES", help="Report only these codes or prefixes: KSS,KRL2."),
     ] = None,
     ignore: Annotated[
-        list[str] | None, typer.Option(metavar="CODES", help="Not these codes.")
+        list[str] | None, typer.Option(metavar="CODES", help="Leave out these codes or prefixes.")
     ] = None,
     stops: Annotated[
         bool,
@@ -64,15 +64,17 @@ def check(
     ] = False,
     complete: Annotated[
         bool,
-        typer.Option("--complete", help="No file is missing: what nothing declares is an error."),
+        typer.Option("--complete", help="The backup is complete: undeclared names are errors."),
     ] = False,
     packages: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAMES", help="Option packages that are there: EKI,RSI."),
+        typer.Option(metavar="NAMES", help="Installed option packages: EKI,RSI."),
     ] = None,
-    verbose: Annotated[bool, typer.Option("--verbose", help="Name the rules that say so.")] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", help="Name the rules behind findings.")
+    ] = False,
     fix: Annotated[
-        bool, typer.Option("--fix", help="Mend what has one plain remedy, and check the rest.")
+        bool, typer.Option("--fix", help="Apply safe fixes, then check the rest.")
     ] = False,
     diff: Annotated[
         bool, typer.Option("--diff", help="Show what --fix would change, and change nothing.")
@@ -82,35 +84,31 @@ def check(
     ] = False,
     baseline: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Report what is not in this file of known findings."),
+        typer.Option(metavar="FILE", help="Report only findings that are not in this file."),
     ] = None,
     write_baseline: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Make all findings known ones, in this file."),
+        typer.Option(metavar="FILE", help="Write all findings to this file, as known ones."),
     ] = None,
     settings: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Settings; default: krl.toml in or above PATH."),
+        typer.Option(metavar="FILE", help="Settings file; default: krl.toml in or above PATH."),
     ] = None,
-    no_settings: Annotated[
-        bool, typer.Option("--no-settings", help="Take no notice of any krl.toml.")
-    ] = False,
+    no_settings: Annotated[bool, typer.Option("--no-settings", help="Ignore krl.toml.")] = False,
     fail_on: Annotated[
         FailOn, typer.Option(help="Which findings give exit status 1; any: errors and warnings.")
     ] = FailOn.ANY,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the findings here.")
+        Path | None, typer.Option(metavar="FILE", help="Write the findings to this file.")
     ] = None,
     jobs: JobsOption = None,
     cache: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Where to keep findings; default: the user's cache."),
+        typer.Option(metavar="DIR", help="Folder of cached findings; default: the user's cache."),
     ] = None,
-    no_cache: Annotated[
-        bool, typer.Option("--no-cache", help="Keep nothing, and use nothing that was kept.")
-    ] = False,
+    no_cache: Annotated[bool, typer.Option("--no-cache", help="Do not use the cache.")] = False,
 ) -> int:
-    """Check programs: syntax, names, types, control flow, and what is not allowed where.
+    """Check programs: syntax, names, types, control flow, misplaced statements.
 
     Exit status 1 where there are errors or warnings, which --fail-on changes; notes alone leave it
     0. A comment '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl

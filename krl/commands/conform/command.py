@@ -38,29 +38,29 @@ def conform(
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="tree, vm, native or compiled; may be repeated; default: all but compiled.",
+            help="tree, vm, native or compiled; repeatable; default: all but compiled.",
         ),
     ] = None,
     robot: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="none, kinematic or mujoco; may be repeated."),
+        typer.Option(metavar="NAME", help="none, kinematic or mujoco; repeatable."),
     ] = None,
     json_file: JsonOption = None,
     junit: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write JUnit XML here.")
+        Path | None, typer.Option(metavar="FILE", help="Write JUnit XML to FILE.")
     ] = None,
     html: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write the page into this folder.")
+        Path | None, typer.Option(metavar="DIR", help="Write the page to this folder.")
     ] = None,
     lint: Annotated[
-        bool, typer.Option("--lint", help="See whether the cases are well formed; run nothing.")
+        bool, typer.Option("--lint", help="Only check whether the cases are well formed.")
     ] = False,
     metamorphic: Annotated[
         int | None,
         typer.Option(
             min=1,
             metavar="N",
-            help="Change so many cases and generated programs in ways that must not matter.",
+            help="Change N cases and generated programs in ways that must not change the result.",
         ),
     ] = None,
     fault: Annotated[
@@ -75,11 +75,11 @@ def conform(
         list[str] | None,
         typer.Option(
             metavar="NAME=WHAT",
-            help="compare: a parser of others, an ANTLR grammar (FILE.g4) or a command that reads "
-            "a file and ends with status 0; may be repeated.",
+            help="compare: another parser, as an ANTLR grammar (FILE.g4) or a command that exits "
+            "with 0 for a file it accepts; repeatable.",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="pairs: draws the programs.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="pairs: seed of the programs.")] = 1,
     list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
     jobs: JobsOption = None,
     scheduler: Annotated[
@@ -87,15 +87,14 @@ def conform(
         typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the cases."),
     ] = None,
 ) -> int:
-    """Run conformance cases, compare each with what it expects and executors with one another.
+    """Run conformance cases, and compare results with expectations and between executors.
 
-    Exit status 1 where a case failed. 'krl conform import FILE' evaluates a recording that was made
+    Exit status 1 if a case fails. 'krl conform import FILE' evaluates a recording that was made
     on a controller; conformance/CASES.md says how to make one. 'krl conform export FILE.zip' writes
-    the cases with what they expect as JSON, and a reference result, for executors of others.
-    'krl conform compare --parser NAME=WHAT' tells how many cases parsers of others read or refuse
-    as they should. 'krl conform pairs --seed N' runs programs in which features of motions,
-    interrupts, triggers and outputs meet in pairs; they expect only that executors do the same and
-    that no law is broken.
+    the cases, their expectations as JSON, and a reference result, for other executors. 'krl conform
+    compare --parser NAME=WHAT' counts the cases that other parsers accept or reject correctly. 'krl
+    conform pairs --seed N' runs programs that combine features of motions, interrupts, triggers and
+    outputs in pairs; the executors must agree and no law may be broken.
     """
     words = select or []
     check_files(json_file, junit)

@@ -36,8 +36,8 @@ _Paths = Annotated[
     typer.Option(
         "--corpus",
         metavar="PATH",
-        help="Other people's files, in which evidence is counted; may be given several times; "
-        "default: corpus/open, where krl corpus fetch puts them.",
+        help="Files of other people, for evidence; repeatable; default: corpus/open, where krl "
+        "corpus fetch writes them.",
     ),
 ]
 
@@ -52,9 +52,9 @@ def evaluate(
         bool, typer.Option("--keep", help="Write evidence and state into the files.")
     ] = False,
 ) -> int:
-    """Weigh constructs as accept would: evidence, effect, and why they would be refused.
+    """Evaluate constructs as accept would: evidence, effect, reasons to refuse them.
 
-    Several are weighed one upon the other. Exit status 1 when something would be refused.
+    Several are applied one after another. Exit status 1 if one would be refused.
     """
     from recovery.ledger.construct_file import text_of
     from recovery.ledger.ledger import Ledger
@@ -78,11 +78,11 @@ def accept(
     corpus: _Paths = None,
     jobs: JobsOrOneOption = None,
 ) -> int:
-    """Take constructs into the grammar, all of them or none.
+    """Add constructs to the grammar, all of them or none.
 
-    Each is weighed at its place. Where nothing speaks against any, the ledger, grammar/KRL.g4 and
-    the generated parser are written. A file from elsewhere moves into grammar/constructs. One that
-    was accepted before is weighed again at its place. Exit status 1 when something is refused.
+    Each is evaluated at its place, also one that was accepted before. If there is no objection to
+    any, the ledger, grammar/KRL.g4 and the generated parser are written, and a file from elsewhere
+    moves to grammar/constructs. Exit status 1 if one is refused.
     """
     from grammar.notation.g4 import read_file
     from recovery.ledger.acceptance import AcceptanceRefused, write
@@ -112,17 +112,17 @@ def accept(
 def replay(
     check: Annotated[
         bool,
-        typer.Option("--check", help="Compare with grammar/KRL.g4 and run all examples instead."),
+        typer.Option("--check", help="Instead compare with grammar/KRL.g4 and run all examples."),
     ] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the grammar here.")
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the grammar to FILE.")
     ] = None,
     until: Annotated[
         int | None,
-        typer.Option(min=0, metavar="NUMBER", help="Stop behind this construct; 0 is the start."),
+        typer.Option(min=0, metavar="NUMBER", help="Stop after this construct; 0 is the start."),
     ] = None,
 ) -> int:
-    """Rebuild the grammar: the restrictive start and every accepted construct, in order."""
+    """Rebuild the grammar from the restrictive start and all accepted constructs, in order."""
     from recovery.ledger.ledger import Ledger, findings, preliminary_of
     from recovery.ledger.ledger import replay as replayed
 

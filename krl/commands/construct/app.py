@@ -30,10 +30,10 @@ def _construct() -> None:
 @app.command("list")
 def show_all(
     json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the list here too.")
+        Path | None, typer.Option("--json", metavar="FILE", help="Also write the list to FILE.")
     ] = None,
 ) -> int:
-    """List the constructs of the ledger, and those that wait for the verdict of an oracle."""
+    """List the constructs of the ledger, including those that wait for a verdict."""
     from recovery.ledger.ledger import Ledger
     from recovery.ledger.oracle import reason_to_ask
     from recovery.ledger.overview import row_of
@@ -84,14 +84,14 @@ def show(
 def propose(
     cluster: Annotated[str, typer.Argument(help="ID of a cluster of the last survey.")],
     number: Annotated[
-        int, typer.Option("--proposal", min=1, metavar="N", help="Which of its proposals.")
+        int, typer.Option("--proposal", min=1, metavar="N", help="Number of the proposal.")
     ] = 1,
     survey: Annotated[
         Path, typer.Option(metavar="FILE", help="The survey, as krl recover wrote it.")
     ] = _SURVEY,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the file goes.")] = LEDGER,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where to write the file.")] = LEDGER,
 ) -> int:
-    """Write a proposal of a survey as a file ready for review."""
+    """Write a proposal of a survey to a file for review."""
     from grammar.notation.model import GrammarError
     from recovery.ledger.construct import LedgerError
     from recovery.ledger.draft import propose as write

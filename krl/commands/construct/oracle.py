@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 def oracle(
     wanted: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[ID]...", help="Constructs; default: those that wait."),
+        typer.Argument(metavar="[ID]...", help="Constructs; default: those without a verdict."),
     ] = None,
     bundle: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write their test programs and a form to fill here."),
+        typer.Option(metavar="DIR", help="Write test programs and a form to fill in here."),
     ] = None,
     record: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Take the answers of a filled form.")
+        Path | None, typer.Option(metavar="FILE", help="Read the answers from a form.")
     ] = None,
     command: Annotated[
         str | None,
         typer.Option(
             metavar="CMD",
-            help="Ask a command: it gets the path of a program and ends with 0 for accepted, or 1 "
-            "after a line with the message.",
+            help="Ask a command: it gets the path of a program, and exits with 0 if accepted, or "
+            "1 after printing the message.",
         ),
     ] = None,
     name: Annotated[
@@ -42,12 +42,12 @@ def oracle(
         typer.Option(metavar="TEXT", help="What the command asks, and when; kept with the answer."),
     ] = None,
     timeout: Annotated[
-        float, typer.Option(min=0.1, metavar="S", help="Seconds a program may take the command.")
+        float, typer.Option(min=0.1, metavar="S", help="Time limit for each program.")
     ] = 60.0,
 ) -> int:
-    """Show what waits for the verdict of the official implementation, and ask it.
+    """List constructs that wait for a verdict of the official implementation, and ask for it.
 
-    Exit status 1 when an answer differs from the ledger.
+    Exit status 1 if an answer differs from the ledger.
     """
     from recovery.ledger.ledger import Ledger
     from recovery.ledger.oracle import CommandOracle, OracleError, programs_of, reason_to_ask
