@@ -1,10 +1,10 @@
-"""What a third party needs to judge an executor or a parser of its own: one archive.
+"""Export for third parties who test an executor or a parser: one archive.
 
 ``expectations.json`` has the cases with all they expect, as ``expectations.schema.json`` describes
 it; ``cases/`` their files, as a controller holds them; ``reference.json`` what the tree interpreter
 and the planned arm do with them, in the form of a recording (`conformance.recording`), so that it
-can be compared with one's own and evaluated as one. A fault is told by the number of its message;
-where none is known any fault will do, as our words for it bind nobody.
+can be compared with one's own and evaluated as one. A fault is identified by the number of its
+message; where none is known any fault will do, as our words for it are not binding.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What is wrong with cases beyond what makes them unreadable, and which rules no case shows.
+"""Linter of cases: defects beyond the format, and rules without a case.
 
 A case states one fact: it has a title of its own, the shortest program that shows it, and
 names that carry over to a controller.
@@ -197,7 +197,7 @@ def _message_of(case: Case, one: Expectation) -> int:
 
 
 def _numbers_of(case: Case) -> set[int]:
-    """The numbers of messages that the rules of a case tell."""
+    """The numbers of messages that the rules of a case name."""
     found: set[int] = set()
     for id_ in case.rules:
         for text in _NUMBERS.findall(registry()[id_].statement):

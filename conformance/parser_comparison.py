@@ -1,4 +1,4 @@
-"""Parsers of others beside ours: which read what KRL allows, and refuse what it does not.
+"""Comparison with other parsers: which cases each accepts and rejects correctly.
 
 Of a case only its text is looked at, without the front matter, since many parsers expect a file to
 begin with its first routine. One that expects ``syntax`` has to be refused, wherever; every
@@ -48,7 +48,7 @@ def parsers(wanted: Sequence[str]) -> Iterator[Mapping[str, Parser]]:
     """Parsers by name, ours first, as long as the context lasts. Raises `ParserError`.
 
     Each is ``NAME=WHAT``: an ANTLR grammar (``….g4``, its first rule reads a file), or a command.
-    The name of a file is put in place of ``{}`` in a command, or behind it; status 0 tells that
+    The name of a file is put in place of ``{}`` in a command, or behind it; status 0 means that
     the file was read.
     """
     found: dict[str, Parser] = {OWN: _own}

@@ -1,4 +1,4 @@
-"""Which files are pages of the documentation site, and where their links lead; a hook of MkDocs."""
+"""A hook of MkDocs: the pages of the documentation site, and their links."""
 
 import re
 from pathlib import Path

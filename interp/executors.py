@@ -85,7 +85,7 @@ class Prepared:
 
         named = []
         for name in self._names:
-            with suppress(LinkError):  # told where an executor is to begin with it
+            with suppress(LinkError):  # reported where an executor begins with it
                 named.append(self.program.start(name))
         return verify(compile_program(self.program, named).program)
 

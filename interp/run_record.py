@@ -24,7 +24,7 @@ from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
 from interp.values.poses import Pose
 
-#: How often a line may take one way until the record tells no more of it.
+#: How often a line may take one way until the record has no more of it.
 _MOST_BRANCHES: Final = 1000
 
 Array = npt.NDArray[np.float64]
@@ -190,7 +190,7 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
 
     Times are µs, lengths mm in $WORLD, speeds of axes deg/s or mm/s, their accelerations deg/s² or
     mm/s², the speed of the tool m/s. Of a way that one line takes again and again, as a loop that
-    waits does, the first thousand times are told; the trace has them all.
+    waits does, the first thousand times are recorded; the trace has them all.
     """
     outcome = run.outcome
     events = [json.loads(event.line()) for event in _events(run.events)]

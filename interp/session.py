@@ -86,7 +86,7 @@ class RunSetup:
     a submit program in the same project. ``machine`` is the arm, by default that of the project's
     ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
-    assignment told; without ``is_told`` executors tell nothing that the run does not need, which
+    assignment told; without ``is_told`` executors report nothing that the run does not need, which
     leaves calls and branches out of the trace, without ``is_submit_told`` those of the submit
     program. ``motion`` is how motions are planned: as they
     become known, or in batches. ``until`` is the most virtual time in µs, ``patience`` how long the
@@ -131,7 +131,7 @@ class RunResult:
     ``start`` are those that were used; ``observations`` what the arm touched, with a scene or
     MuJoCo, and where it was asked for more torque than it bears; ``torque_note`` says
     why torques of the project were left out; ``machine_note`` says why the
-    machine is not the project's own, where it had to be told.
+    machine is not the project's own, where that had to be reported.
     """
 
     outcome: RunOutcome
@@ -156,7 +156,7 @@ def run_program(
 ) -> RunResult:
     """Run a program to its end, its fault or the end of its time.
 
-    ``take`` receives each event as it happens, in place of being kept; ``on_time`` is told the
+    ``take`` receives each event as it happens, in place of being kept; ``on_time`` receives the
     virtual time now and then. A ``debugger`` calls this as often as it needs
     (`interp.debugging.debugger.Debugger.run`). Raises `LinkError` for a program that cannot begin,
     `interp.controller.inputs.input_script.ScriptError` for a script about what does not exist, and
@@ -181,7 +181,7 @@ def run_program(
         if note and is_tolerant and not is_other:
             texts = [unit.source.text for unit in program.reached(*starts)]
             machine = with_assumed_limits(reaching(machine, texts))
-            note = f"no machine data of an arm: {machine.name} stands in, without axis limits"
+            note = f"no machine data of an arm: {machine.name} is used instead, without axis limits"
         profile = replace(profile, is_tolerant=is_tolerant)
     else:
         machine = machine_of_program(program, profile)
@@ -263,7 +263,7 @@ def _arm(machine: MachineData, start: Sequence[float]) -> DeferredArm:
     every = zip((*machine.axes, *machine.externals), machine.standing(start), strict=True)
     stands = all(axis.lower <= value <= axis.upper for axis, value in every)
     if not stands or machine.palletising is not None or not machine.is_wrist_central:
-        try:  # what cannot be is told before the program runs
+        try:  # what is impossible is reported before the program runs
             arm.target()
         except Fault as fault:
             raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
@@ -286,7 +286,7 @@ def _tracking(
 
 
 def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
-    """What executors tell; at least the calls that interrupts and $ERR go by."""
+    """Events that executors report; at least the calls that interrupts and $ERR need."""
     if setup.is_full:
         return EVERY_KIND
     return WORLD_KINDS if setup.is_told else _needed_kinds(program)
@@ -302,7 +302,7 @@ def _sinks(trace: Trace, program: CheckedProgram, setup: RunSetup) -> tuple[Task
 
 
 def _stand_in_arguments(units: Sequence[Unit]) -> dict[tuple[str, int, str], str]:
-    """What stand-ins are called with, as it is written: their traces tell little else."""
+    """What stand-ins are called with, as it is written: their traces have little else."""
     names = {unit.module.name.upper() for unit in units if unit.module.folder == FOLDER}
     found: dict[tuple[str, int, str], str] = {}
     for unit in units if names else ():

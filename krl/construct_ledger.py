@@ -1,4 +1,4 @@
-"""What the commands about constructs share: where things lie, errors, and what they print."""
+"""Shared by the commands about constructs: paths, errors, output."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager

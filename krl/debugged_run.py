@@ -19,7 +19,7 @@ def debugged_run(
     """What came of the run; ``None`` where the client of the debugger left it.
 
     ``on_message`` takes each message of the program with its line once, though going back runs it
-    again. One that comes again and again is told the first times, the 100th, the 1,000th.
+    again. A repeated one is reported the first times, the 100th, the 1,000th.
     """
     prepared = Prepared(program, setup.routine, [setup.submit], is_kept=True)
     counts: Counter[str] = Counter()

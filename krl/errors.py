@@ -1,4 +1,4 @@
-"""The one place where an expected error becomes one line on stderr and an exit status.
+"""Expected errors become one line on stderr and an exit status here, and only here.
 
 Commands return their status, or raise `InputError` with a sentence for the person at the keyboard.
 No exception leaves `run` as a traceback, but for a defect in krl itself where the environment

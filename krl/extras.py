@@ -56,7 +56,7 @@ def hiding_package() -> str | None:
         if found != home / name:
             return (
                 f"{name} should be {home / name} and is {found}, of another project: install "
-                "krl-workbench into an environment of its own, as `uv tool` and pipx do"
+                "krl-workbench into a separate environment, as `uv tool` and pipx do"
             )
     return None
 

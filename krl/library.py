@@ -113,7 +113,7 @@ class Run:
 
     ``at`` is ``file:line`` where a program ended it, ``error`` why; both may be empty. ``events``
     are those of the trace; ``path`` are the set-points of the arm, ``None`` without a robot;
-    ``notes`` tell, as `krl run` does, what stood in and which lines failed and were skipped.
+    ``notes`` list, as `krl run` does, the stand-ins and the lines that failed and were skipped.
     """
 
     ending: str
@@ -167,7 +167,7 @@ def run(
     """A run of a program, as `krl run` does it.
 
     ``io`` are lines of a script of inputs, or ``"auto"``; ``seconds`` is the most virtual time;
-    ``full`` tells every line and assignment too; with ``strict`` nothing stands in for what the
+    ``full`` records every line and assignment too; ``strict`` allows no stand-ins for what the
     project lacks. Raises `InputError`.
     """
     from interp.controller.inputs.automatic_inputs import OPERATOR

@@ -1,4 +1,4 @@
-"""Where a command writes: checked before the work, written whole or not at all."""
+"""Output files of commands: checked before the work, written whole or not at all."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""How far commands are that take a while."""
+"""Progress of long-running commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Options that bring an arm and what stands around it, for commands that run programs."""
+"""Options for the arm and the objects around it, for commands that run programs."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is said of a run behind it: what stood in, what was skipped, what was touched."""
+"""Notes on a finished run: stand-ins, skipped lines, contacts."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -12,19 +12,19 @@ _MOST_TOLD = 3
 
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
-    """What stood in, what was skipped, and what a program that never ends waited for."""
+    """Stand-ins, skipped lines, and what a program that never ends waited for."""
     from interp.standins.completion import summary
 
     used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
     if used:
-        yield f"stood in: {summary(used)}"
+        yield f"stand-ins: {summary(used)}"
     if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
-        yield f"stood in: {done.machine_note}"
+        yield f"stand-ins: {done.machine_note}"
     skipped = done.controller.skipped
     for (file, number), error in islice(skipped.items(), _MOST_TOLD):
         yield f"skipped: {file}:{number}: {error}"
     if len(skipped) > _MOST_TOLD:
-        yield f"skipped: {len(skipped) - _MOST_TOLD} more lines, which --trace and --html tell"
+        yield f"skipped: {len(skipped) - _MOST_TOLD} more lines, see --trace or --html"
     yield from _seen(done)
     if not done.controller.points and setup.routine is None:
         yield from _elsewhere(program)
@@ -33,9 +33,9 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
 
 
 def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
-    """Which routines of the file move the arm, where the one that the run began with does not.
+    """Routines of the file that move the arm, if the one that the run began with does not.
 
-    Where it does itself, on what its first motion depends.
+    If it contains motions itself, the block around the first one.
     """
     from grammar.check.analysis.context import placed
     from grammar.syntax import ast
@@ -57,16 +57,16 @@ def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
         if one.inside is not None:
             unit, line = program.main, program.main.line(one.inside.statement)
             where = f"{unit.module.path.rpartition('/')[2]}:{line}"
-            yield f"no motion; the first one stands in {where}: {unit.source.line(line).strip()}"
+            yield f"no motion; the first one is inside {where}: {unit.source.line(line).strip()}"
         return
     if moving:
         more = f" and {len(moving) - _MOST_TOLD} more" if len(moving) > _MOST_TOLD else ""
         names = ", ".join(moving[:_MOST_TOLD])
-        yield f"no motion in {first.name}; --routine begins elsewhere: {names}{more}"
+        yield f"no motion in {first.name}; others can be selected with --routine: {names}{more}"
 
 
 def _seen(done: "RunResult") -> Iterator[str]:
-    """What was touched, and torques that are too great; estimates in one line."""
+    """Contacts and excessive torques; estimates in one line."""
     certain = [seen for seen in done.observations if not seen.is_estimate]
     for seen in certain[:_MOST_TOLD]:
         yield f"{seen.kind}: {seen}"

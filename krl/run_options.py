@@ -1,4 +1,4 @@
-"""What a program is run with: the options that commands have in common, and what comes of them."""
+"""Options of commands that run programs, and the set-up that they result in."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -182,7 +182,7 @@ def prepared_run(
     else:
         script = Script() if chosen is None else Script.read(_text(chosen), str(chosen))
     if is_auto and chosen is None:
-        typer.echo("inputs: automatic (--io auto), as nothing was said of them", err=True)
+        typer.echo("inputs: automatic (--io auto is the default in a terminal)", err=True)
     own = robot_options(
         *(options.machine, options.urdf, options.mjcf, options.scene),
         has_robot=options.robot is not Robot.NONE,

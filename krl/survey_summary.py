@@ -1,4 +1,4 @@
-"""What a survey says in the terminal: figures, what holds back most, where the page is."""
+"""The terminal summary of a survey: figures, clusters, path of the page."""
 
 import math
 from pathlib import Path

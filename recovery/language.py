@@ -1,4 +1,4 @@
-"""What recovery has to be told of a language; everything else it asks the grammar and the corpus.
+"""Description of a language for recovery; everything else comes from grammar and corpus.
 
 Which token a name is, which one ends a line, what is a comment and which words are reserved the
 lexer of the grammar says.

@@ -1,4 +1,4 @@
-"""Review of proposals: the edit, what it brings and costs, the difference it makes."""
+"""Review of proposals: the edit, its effect and cost, and the difference it makes."""
 
 from __future__ import annotations
 

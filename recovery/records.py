@@ -1,4 +1,4 @@
-"""The shapes of what `krl recover` and `krl growth` write as JSON.
+"""Types of the JSON records that `krl recover` and `krl growth` write.
 
 Fields are documented in docs/architecture.md. Others read them, so fields are added and never
 changed. Lines and columns count from 1; counts of files include copies, but for ``distinct``.

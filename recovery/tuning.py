@@ -1,4 +1,4 @@
-"""Tuning constants of searching causes and growing: what each limits or weighs, and rests on.
+"""Tuning constants of clustering and growth: what each limits or weighs, and its basis.
 
 Ranks and breadths are counted in steps: the more, the more an edit accepts besides the failing
 line. A step costs an edit half a per cent of its worth (`BREADTH_FACTOR`). What a value rests on is
@@ -257,7 +257,7 @@ FORM_SYMBOLS = 4
 MOST_MERGED_EDITS = 3
 #: Tokens that could have come which a title names: more say nothing to a reader. Not measured.
 MOST_EXPECTED = 2
-#: Words and signs of a line that a title tells, where another cluster has the same. Not measured.
+#: Words and signs of a line in a title, where another cluster has the same. Not measured.
 MOST_TOLD = 8
 #: Reserved words that a title lists, where several stand for names. Not measured.
 MOST_LISTED = 3
@@ -312,7 +312,7 @@ BODY_PART = 20
 READ_TOGETHER_SHARE = 0.8
 #: Kinds of list from which on a first item may have a form of its own. Not measured.
 MANY_LISTS = 8
-#: Characters of the signs ahead by which one in a line is told from others. Bound on memory.
+#: Characters of the signs ahead that distinguish one in a line from others. Bound on memory.
 LONGEST_SIGNS_AHEAD = 60
 #: Lines of a form that a rule is tried on. Bound on time.
 MOST_SAMPLES = 64

@@ -1,4 +1,4 @@
-"""The page of a recovery of its own accord: growth, what was taken, what was refused and why."""
+"""The page of an automatic recovery: growth, accepted and refused edits, and why."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The page of the paper's claims: what it says, and what was measured here."""
+"""The page of the paper's claims and of our measurements."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the page of the paper's claims says: each claim beside what was measured here.
+"""The words of the page of claims: each claim beside our measurement.
 
 The paper is Mühe, Angerer, Hoffmann and Reif, "On reverse-engineering the KUKA Robot Language"
 (2010). Everything here is text ready to print; all foreign text has passed through `shown`.

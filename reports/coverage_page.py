@@ -1,4 +1,4 @@
-"""What tests have executed of robot programs: a page without script, and a file for lcov."""
+"""Coverage of robot programs by tests: a page without script, and a file for lcov."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The page of two states of programs: one file, no network, no script."""
+"""The page of a comparison of two versions: one file, no network, no script."""
 
 from collections.abc import Mapping
 from pathlib import Path

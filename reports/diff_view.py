@@ -1,4 +1,4 @@
-"""What is said of two states of programs: the words of `krl diff` and of its page."""
+"""The words of a comparison, for `krl diff` and its page."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Putting foreign text into a page so that it can neither run nor disturb what stands around it.
+"""Embedding of untrusted text in a page, so that it cannot run or break the markup.
 
 KRL files may hold anything: `</script>` in a comment, terminal escapes, NUL, bidirectional
 overrides that make text read differently from what it is.

@@ -1,4 +1,4 @@
-"""What the growth page says in its fixed parts: headline, steps, what remains.
+"""The fixed parts of the growth page: headline, steps, what remains.
 
 Everything here is text ready to print; all foreign text has passed through `printable`.
 """

@@ -1,4 +1,4 @@
-"""The nightly runs so far, and what changed from one to the next.
+"""The history of nightly runs, and the changes from one to the next.
 
 ``history.jsonl`` has a line for each. A line that cannot be read is passed over: a run that was cut
 off must not hide those before it.

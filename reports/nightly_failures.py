@@ -1,4 +1,4 @@
-"""What makes a nightly run red: each failure with where it is shown and how to repeat it.
+"""Failures of a nightly run: each with a link and the command that repeats it.
 
 A step that did not end, a case that fails on any executor and robot, a case of an unsure rule that
 passed in the run before, a law that was broken, executors that diverge on a random program.

@@ -1,4 +1,4 @@
-"""The folder of all nightly runs: the page that one opens, and what is kept of older runs.
+"""The folder of all nightly runs: its index page, and retention of older runs.
 
 The page leads to the last run. Where that is too long ago, which no run is left to say, it is red.
 """
@@ -32,7 +32,7 @@ def write_entry_page(out: Path, date: str, made: datetime) -> Path:
 
 
 def bound_store(folder: Path) -> None:
-    """Remove what nobody needs beside the last run, that of ``folder``.
+    """Remove what is not needed beside the last run, that of ``folder``.
 
     Results that it keeps itself are kept once; of runs whose pages it no longer links summary and
     record are kept, for a year, and nothing where a run was broken off. Only folders that have a

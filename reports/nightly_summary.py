@@ -1,4 +1,4 @@
-"""A nightly run in Markdown, as an issue or a mail has it."""
+"""A nightly run summarised in Markdown, for an issue or an e-mail."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""Figures as people read them."""
+"""Formatting of figures for people."""
 
 from dataclasses import dataclass
 from datetime import datetime

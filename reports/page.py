@@ -1,4 +1,4 @@
-"""What all pages share: rendered from a template into one file that loads nothing."""
+"""Shared by all pages: rendering from a template into one self-contained file."""
 
 from collections.abc import Sequence
 from functools import cache

@@ -1,4 +1,4 @@
-"""The page of one run: where the arm went, how fast, what was switched when, and by which line."""
+"""The page of one run: the path of the arm, speeds, signals, and the lines behind them."""
 
 from collections.abc import Mapping, Sequence
 from itertools import accumulate, chain

@@ -1,4 +1,4 @@
-"""What the page of a run says in words: its head and its headline figures."""
+"""The words of the page of a run: its head and headline figures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

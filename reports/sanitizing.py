@@ -1,4 +1,4 @@
-"""Foreign values made fit for a page: short, printable, finite."""
+"""Untrusted values made fit for a page: short, printable, finite."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The page a survey ends with: one file, no network, opens from disk."""
+"""The page of a survey: one file, no network, opens from disk."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the survey page says in its fixed parts: headline, mending order, tables.
+"""The fixed parts of the survey page: headline, mending order, tables.
 
 Everything here is text ready to print; all foreign text has passed through `printable`.
 """

@@ -1,4 +1,4 @@
-"""The garbage collector held back during work that makes many objects and little garbage.
+"""Garbage collection held back during work that makes many objects and little garbage.
 
 A syntax tree of a megabyte is half a million objects, none of them garbage before the whole tree
 is: going through them again and again takes 40 % of the time of a check.

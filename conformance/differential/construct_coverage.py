@@ -1,4 +1,4 @@
-"""What of the language programs exercise: what stands on lines that were executed.
+"""Coverage of language constructs: those on lines that were executed.
 
 Counted are kinds of nodes and their variants, operators, predefined functions, system variables,
 and the instructions that lines were compiled to. `language` lists what there is of most, so that

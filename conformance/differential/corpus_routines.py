@@ -1,4 +1,4 @@
-"""Programs as people wrote them, tried routine by routine on several executors.
+"""Routines of real programs, run one by one on several executors.
 
 Each routine is looked at by itself: whether it checks without an error, whether all that it names
 is there, whether all of it is compiled, how it ends in a quiet world, and whether all executors say
@@ -57,7 +57,7 @@ class Unread:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What came of a routine; ``reason`` tells why it came no further, ``why`` how its run ended.
+    """The result of a routine; ``reason`` says why it got no further, ``why`` how its run ended.
 
     ``endings`` are those of its runs by executor, the reference first; ``differences`` what other
     executors than the first said differently, by executor.
@@ -79,7 +79,7 @@ def trials(
     effort: Effort | None = None,
     on_found: Callable[[int], None] = lambda _count: None,
 ) -> Iterator[Trial | Unread]:
-    """Try every routine of some files; ``on_found`` is told how many there are."""
+    """Try every routine of some files; ``on_found`` receives their number."""
     by_path = {source.path: source for source in sources}
     programs, unread = load_all(by_path.values())
     called: dict[tuple[str, str], str] = {}

@@ -1,4 +1,4 @@
-"""Where two executors part: the first fact that differs, and what a reader needs to see it."""
+"""Divergence of two executors: the first fact that differs, with its context."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def diverged(
 ) -> Difference | None:
     """Where an executor diverges from the facts of another one.
 
-    It runs once more without events, as in a run that nobody traces: then it stops at other places.
+    It runs once more without events, as in a run without a trace: then it stops at other places.
     """
     found = difference(executor, expected, trace_of(program, EXECUTORS[executor], seed))
     if found is None:

@@ -1,6 +1,6 @@
-"""A run that nothing disturbs, step by step: what an executor asks and what it tells.
+"""An undisturbed run step by step: the requests and events of an executor.
 
-Executors that run the same program in the same world make the same requests and tell the same
+Executors that run the same program in the same world make the same requests and report the same
 events, in the same order [design section 6].
 """
 
@@ -22,7 +22,7 @@ Step = ExecutorEvent | Request
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """All that an executor asked and told; ``is_cut`` where it was stopped from outside."""
+    """All requests and events of an executor; ``is_cut`` where it was stopped from outside."""
 
     steps: tuple[Step, ...]
     is_cut: bool

@@ -1,4 +1,4 @@
-"""A world that answers at random from a seed, disturbs programs, and holds little in memory.
+"""A controller with random replies, interrupts and faults, drawn from a seed.
 
 It answers with a fault now and then, and what was never written has values that are no zeros.
 Arrays of thousands of inputs and outputs cost nothing before they are used. A `QuietWorld` does
@@ -181,7 +181,7 @@ class QuietWorld(RandomWorld):
 
     Motions take no time. ``values`` are those of system variables at first, by name in upper case;
     what is handed out are copies. All others are zeros of the types that the controller's tables
-    tell, INT where these tell none.
+    give, INT where these give none.
     """
 
     def __init__(self, seed: int = 0, values: Mapping[str, Value] | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Programs made small while a fact about them stays true.
+"""Reduction: programs made as small as possible while a property holds.
 
 First lines are made blank: routines, halves of blocks, statements, the frames of blocks, branches,
 declarations. Blank lines keep the numbers of all others, so that places found once hold for a whole

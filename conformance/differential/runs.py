@@ -1,4 +1,4 @@
-"""A program run on an executor in a world that interferes; and the executors there are.
+"""A run of a program under random interference; the available executors.
 
 The world enters the actions of interrupts, triggers and cyclic signals between two requests, looks
 at conditions, and answers RESUME by unwinding. What it does follows from its seed and from the

@@ -1,4 +1,4 @@
-"""What a run is compared by: its requests and its events in one sequence, as plain values.
+"""Traces for comparison: requests and events in one sequence, as plain values.
 
 A fact is a tuple: a word, the place, and what there is to say. Values of different types never are
 equal, nor are 0.0 and -0.0. A piece of program that was handed out is a word: its number is the

@@ -1,4 +1,4 @@
-"""How long motions take from rest to rest, where the override is 100.
+"""Laws about the duration of motions from rest to rest, at an override of 100.
 
 A PTP is as quick as its axes allow, in closed form; a LIN or CIRC no quicker than its speed and
 acceleration, and a LIN no slower where all axes are far from their limits. Rows of motions are

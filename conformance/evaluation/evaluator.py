@@ -1,4 +1,4 @@
-"""Whether expectations are met by what was seen.
+"""Evaluates expectations against observations.
 
 Each `Check` has the state of one expectation: met, unmet, or open where the observation cannot
 settle it (a path without a robot, times that were not measured). `evaluate` adds what every case

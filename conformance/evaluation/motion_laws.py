@@ -1,6 +1,6 @@
-"""What holds of every motion, whatever its program is about: it does what was programmed.
+"""Laws that hold for every motion, whatever its program: it does what was programmed.
 
-It ends at its target, with the Status and Turn of that; a CIRC is the circle that was told; nothing
+It ends at its target, with the Status and Turn of that; a CIRC is the programmed circle; nothing
 is faster than programmed; and the tool is where axes and machine data put it.
 """
 

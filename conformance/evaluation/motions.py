@@ -1,7 +1,7 @@
-"""The motions of a run that came to their end, with what was programmed and what the axes did.
+"""Completed motions of a run, with what was programmed and the movement of the axes.
 
 Where the tool is follows from axes and machine data alone (`flanges_of`), so that no kinematics of
-ours tells where its own set-points lie.
+ours says where its own set-points lie.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What was seen of a case: findings, or a trace and a path. What expectations are evaluated on.
+"""Observations of a case: findings, or a trace and a path.
 
 It comes from our executors (`conformance.evaluation.execution`) or from a recording made on a
 controller (`conformance.recording`), and is evaluated the same way. Values are as in the trace,

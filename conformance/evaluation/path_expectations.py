@@ -1,4 +1,4 @@
-"""Expectations about the path of a motion: where it goes, how fast, how well it is followed.
+"""Expectations about the path of a motion: shape, speed, tracking.
 
 The part of a path that belongs to a line is that of its last motion, from start to end. Its own
 part, for lines and circles, is what lies between the blends. What it has to be is analytic and

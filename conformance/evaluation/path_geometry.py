@@ -1,4 +1,4 @@
-"""How far points are from a line, a circle or the arc of a blend, and points between samples.
+"""Distances of points from lines, circles and arcs of blends, and interpolation of samples.
 
 Points are in mm, shape (n, 3). What is analytic here comes from the case, never from our planner.
 """

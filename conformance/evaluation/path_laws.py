@@ -1,4 +1,4 @@
-"""What holds of every path of set-points: limits of the axes, and the shape of each motion."""
+"""Laws of every path of set-points: limits of the axes, and the shape of each motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where blends begin and end and triggers switch, held against what docs/motion.md says of them.
+"""Laws about where blends begin and end and triggers switch, as docs/motion.md says.
 
 Ways are those that were programmed, from point to point, not those that were gone: what a blend
 takes of both follows from targets, criteria and machine data alone.
@@ -110,7 +110,7 @@ def _excess(
 
 
 def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | None]]:
-    """The way of each motion, ``None`` where not all of it is told in numbers."""
+    """The path of each motion, ``None`` if not all of it is given in numbers."""
     axes: Array | None = None
     point: Array | None = None
     placement = None
@@ -161,7 +161,7 @@ def _tool(one: EndedMotion, axes: Array) -> Array:
 
 
 def _axes(one: EndedMotion, before: Array | None) -> Array | None:
-    """The axes of a target that is told in them; what it leaves out stays [MOT-16]."""
+    """The axes of a target given as axes; what it leaves out stays [MOT-16]."""
     names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
     target = one.motion.target
     if before is None or one.motion.is_relative or not set(names[:ROBOT_AXES]) & set(target):
@@ -170,7 +170,7 @@ def _axes(one: EndedMotion, before: Array | None) -> Array | None:
 
 
 def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Array | None:
-    """The point that a target tells; what it leaves out stays [MOT-16]."""
+    """The point that a target gives; what it leaves out stays [MOT-16]."""
     told = set(_POINT) & set(target or {})
     if target is None or not told or one.motion.is_relative or (before is None and len(told) < 3):
         return None
@@ -183,7 +183,7 @@ def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Arr
 
 
 def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Triggers that switch at another moment than what was gone tells [TRG-02, TRG-04, TRG-08].
+    """Triggers that switch at another time than follows from the path [TRG-02, TRG-04, TRG-08].
 
     Nothing where not all of their motions came to their end, or some are of a spline block.
     """

@@ -1,4 +1,4 @@
-"""What holds in every run, whatever its program does: the order of events in a trace.
+"""Laws of every run, whatever its program: the order of events in a trace.
 
 A law needs no expectation, so that a case notices what goes wrong beside what it is about. Where no
 rule of KRL says it, docs/trace.md does.

@@ -1,4 +1,4 @@
-"""Expectations about a trace: values, ways, what happens in the cell and when."""
+"""Expectations about a trace: values, branches, events in the cell and their times."""
 
 from __future__ import annotations
 
@@ -192,7 +192,7 @@ def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     names = {str(event.fields.get("slug") or "link") for event in there}
     names |= {str(event.fields.get("number")) for event in there}
     wanted = one.arguments[0]
-    if seen.watched is not None and not wanted.isdigit():  # our words for faults bind nobody
+    if seen.watched is not None and not wanted.isdigit():  # our words for faults are not binding
         known = FAULTS.get(wanted)
         wanted = "" if known is None or known.number is None else str(known.number)
     is_met = wanted in names if wanted else bool(there)

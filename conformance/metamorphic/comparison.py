@@ -1,4 +1,4 @@
-"""What of two runs has to be the same under a law, and the first thing that is not.
+"""Comparison of two runs under a law: what must be equal, and the first difference.
 
 Each comparison gives the first difference as one line, or an empty text. Lines are never compared:
 laws move them.

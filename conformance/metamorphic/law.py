@@ -1,4 +1,4 @@
-"""A law: what may be changed about a program, or about how it is run, and must not be noticed."""
+"""A law: a change of a program, or of its run, that must not be observable."""
 
 from __future__ import annotations
 

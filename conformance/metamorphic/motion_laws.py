@@ -1,4 +1,4 @@
-"""Laws about motion and about who runs a program: frames, override, batches, executors, robots."""
+"""Laws about motion and execution: frames, override, batches, executors, robots."""
 
 from __future__ import annotations
 

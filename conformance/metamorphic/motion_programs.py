@@ -1,4 +1,4 @@
-"""Programs that move, made up: points in front of the arm, lines, arcs, blends, outputs, waits.
+"""Generated programs that move: reachable points, lines, arcs, blends, outputs, waits.
 
 Those of `grammar.generation` have points anywhere, and mostly end with a fault of the first.
 """

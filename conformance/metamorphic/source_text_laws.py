@@ -1,4 +1,4 @@
-"""Laws about how a program is written: folds, letter case, names, the order of declarations."""
+"""Laws about the text of a program: folds, letter case, names, order of declarations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What laws are about: a program with all that it is run with, and how it is run.
+"""Subjects of laws: a program with everything it is run with.
 
 Programs come from cases and from `grammar.generation`. A law changes a
 program and runs both; `Program.modules` are its files as trees, `Program.written` puts trees back.

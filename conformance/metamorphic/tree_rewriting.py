@@ -1,4 +1,4 @@
-"""Syntax trees changed: nodes replaced from the innermost outwards, statements by several."""
+"""Rewriting of syntax trees: nodes replaced from the inside out, statements by several."""
 
 from __future__ import annotations
 

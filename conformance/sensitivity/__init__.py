@@ -12,7 +12,7 @@
 `bench`              how many are noticed, and cases a second
 ==================== ===============================================================================
 
-``survivors.tsv`` is what `krl bench conform --survivors` left over of two draws that nobody had
+``survivors.tsv`` is what `krl bench conform --survivors` left over of two draws that had not been
 seen: 64 of the robot with seed 67336, 64 of values, tree and controller with seed 67343.
 
 A case notices a fault if it passes without it and does not pass with it.

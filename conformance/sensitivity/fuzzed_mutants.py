@@ -1,4 +1,4 @@
-"""How many mutants of the machine in Python the fuzzer finds.
+"""Share of mutants of the machine in Python that the fuzzer detects.
 
 A mutant is found by the first generated program on which the machine with it does something else
 than the tree interpreter.

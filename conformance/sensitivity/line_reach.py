@@ -1,4 +1,4 @@
-"""Which cases run which lines: what tells the cases that can notice a change of a line."""
+"""Which cases run which lines: selects the cases that can notice a change of a line."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def reaches_of(
     """What the cases run that can notice anything, in the order in which they are tried.
 
     Those that may fail come first; among them of each suite the one that expects most for what it
-    costs, then the second of each, and so on. ``on_done`` is told of the cases as they are run.
+    costs, then the second of each, and so on. ``on_done`` is called for the cases as they run.
     ``store`` is one of `kept_trials`.
     """
     running = [case for case in cases if case.phase == "run"]
@@ -130,8 +130,8 @@ def try_mutants(
     """What becomes of each mutant, in their order; the same whatever ``jobs`` is.
 
     Where more cases run its lines than ``most`` that may fail, only the first of them are tried.
-    ``on_done`` is told of the mutants as they are tried. ``store`` is one of `kept_trials`: what it
-    holds for the same cases is not tried again.
+    ``on_done`` is called for the mutants as they are tried. ``store`` is one of `kept_trials`: what
+    it holds for the same cases is not tried again.
     """
     tried = hashlib.sha256(repr([(most, one.case.name, one.seen) for one in reaches]).encode())
     tried.update("".join(one.case.digest for one in reaches).encode())
@@ -163,7 +163,7 @@ def _if_equivalent(trial: Trial) -> Trial:
 
 @cache
 def equivalent() -> Mapping[tuple[str, ...], str]:
-    """The changes that no case can notice, and why; a change is told by what it is, not where."""
+    """The changes that no case can notice, and why; identified by their content, not their place."""
     keys = ("module", "function", "source", "was", "now")
     return {tuple(row[key] for key in keys): row["reason"] for row in _known()["mutant"]}
 
@@ -272,7 +272,7 @@ def _of_ways(mutant: Mutant, cases: Sequence[Reach]) -> list[Reach]:
 
 
 def _tried(mutant: Mutant, cases: _Candidates) -> Trial:
-    """Try a mutant in a copy of this process; what it told last is what became of it."""
+    """Try a mutant in a copy of this process; its last message is the result."""
     trial = Trial(mutant, "survived")
     if not any(uses_of(mutant).values()):
         return replace(trial, fate="invalid", why="it is used only while modules are loaded")

@@ -1,4 +1,4 @@
-"""Mutants: one change each in what decides semantics, drawn by chance and put in place.
+"""Mutants: one random change each in code that decides semantics.
 
 A mutant is put in place in the running process: the code of the functions that are there is
 exchanged, and what a module-level assignment gave a name is computed again. What interpreters
@@ -28,7 +28,7 @@ from typing import Any, Final
 from conformance.sensitivity.mutation_operators import Change, Operator, changes
 
 #: What decides semantics, by the name under which it is reported: modules, and which of them or of
-#: their functions are left out. Left out is what no program of KRL can tell apart: how a run is
+#: their functions are left out. Left out is what no program of KRL can observe: how a run is
 #: fed, recorded and shown, what another caller than a controller uses, and what only one of the
 #: robots needs.
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
@@ -152,7 +152,7 @@ class Mutant:
 
     @property
     def name(self) -> str:
-        """What tells it apart: module and number."""
+        """Its identity: module and number."""
         return f"{self.module}:{self.number}"
 
     @property

@@ -63,7 +63,7 @@ _ARITHMETIC: Final[Mapping[type[ast.operator], type[ast.operator]]] = {
 #: A number from here on is doubled instead: one more or less would be lost in rounding.
 _LARGE: Final = 100.0
 _COMPOUND: Final = (ast.If, ast.While, ast.For, ast.With, ast.Try, ast.Match)
-#: Exceptions that tell a caller in Python of its mistake, or who wrote machine data, a profile or a
+#: Exceptions that report a mistake to a caller in Python, or who wrote machine data, a profile or a
 #: program with names that nothing declares: a controller would not select it.
 _OWN_MISTAKE: Final = re.compile(
     r"(?:Value|Type|Key|Index|Command|Assertion|NotImplemented|MachineData|Profile|Link)Error\b"
@@ -320,7 +320,7 @@ def _is_droppable(node: ast.stmt) -> bool:
 
 
 def _is_own_mistake(node: ast.stmt) -> bool:
-    """Whether a statement tells of a mistake that no program of KRL can make."""
+    """Whether a statement reports a mistake that no program of KRL can make."""
     if not isinstance(node, ast.Raise) or node.exc is None:
         return False
     return _OWN_MISTAKE.match(ast.unparse(node.exc)) is not None

@@ -1,4 +1,4 @@
-"""A planted fault: in words what is wrong, where it should be noticed, and how it is planted.
+"""A planted fault: its description, where it should be noticed, and how it is planted.
 
 Faults are planted into the running process: an attribute of a class or module is replaced for as
 long as a case runs.

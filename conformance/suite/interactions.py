@@ -1,4 +1,4 @@
-"""Cases of what meets: each pair of features stands in one of ``cases/interaction/``.
+"""Cases of feature interactions: each pair of features has one in ``cases/interaction/``.
 
 A case has one value of each feature: the path under way, what an interrupt or the operator does to
 it, when, what is triggered on it, what stands behind it, and what else there is. What it expects
@@ -47,7 +47,7 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
     "advance": ("1", "3", "5"),
 }
 
-#: Values of which no rule tells all that follows from them: what is drawn has them too.
+#: Values whose effects no rule states completely: what is drawn has them too.
 _MORE: Final[Mapping[str, tuple[str, ...]]] = {
     "path": (
         *("chain_blend", "circ_rel", "circ_long", "ori_blend", "vel_blend", "slin", "scirc"),

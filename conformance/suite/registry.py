@@ -1,4 +1,4 @@
-"""The rules of KRL that cases state: what each says, how sure that is, what may follow.
+"""The rules of KRL that cases state: text, certainty, and what may follow.
 
 ``rules.toml`` is the registry. A case names the rules it is about by their IDs, or by that of a
 clause where a rule has any; whether an expectation may fail a case depends on what it rests on

@@ -1,4 +1,4 @@
-"""The reference of rules, ``docs/semantics.md``: what KRL means, how sure that is, what is done.
+"""Generator of the reference of rules, ``docs/semantics.md``.
 
 Made of the registry (`conformance.suite.registry`) and of the codes of findings
 (`grammar.diagnostics.codes`). Run ``python -m conformance.suite.semantics`` after a change to

@@ -1,4 +1,4 @@
-"""How fast the check is: where its time goes, with nothing changed, and as there is more of it.
+"""Speed of the check: time by phase, with a cache, and at growing sizes.
 
 One core. Every figure comes from a process of its own, so that nothing remembered from one
 measurement helps the next; importing modules is not counted. MB are 1,000,000 bytes.

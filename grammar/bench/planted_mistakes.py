@@ -1,10 +1,10 @@
-"""How many mistakes the check finds: real programs damaged by chance, at one place at a time.
+"""Detection rate of the check: real programs damaged at random, in one place at a time.
 
-Nobody picks what is damaged or how: a seed draws the kind of damage, the file, the line and the
-token, each file alike however long (`grammar.bench.slips`). A mistake is found when its project has
-an error or a warning that it did not have before, and found in its place when one of these is on
-the damaged line. Files that cannot be read as they are get no mistakes, but stay in their projects.
-To leave an argument out is no mistake [SCO-13].
+What is damaged and how is not chosen by hand: a seed draws the kind of damage, the file, the line
+and the token, each file alike however long (`grammar.bench.slips`). A mistake is found when its
+project has an error or a warning that it did not have before, and found in its place when one of
+these is on the damaged line. Files that cannot be read as they are get no mistakes, but stay in
+their projects. To leave an argument out is no mistake [SCO-13].
 """
 
 from __future__ import annotations

@@ -125,7 +125,7 @@ def _unique(contents: Sequence[Content], address: Any) -> dict[str, Content]:
 
 @dataclass(frozen=True, slots=True)
 class _Placed:
-    """A routine and its file; ``number`` tells routines of one name in a file apart."""
+    """A routine and its file; ``number`` distinguishes routines of one name in a file."""
 
     path: str
     number: int

@@ -1,4 +1,4 @@
-"""What a file says, without what is noise between two backups: headers, comments, folds, layout.
+"""Content of a file for comparison, without headers, comments, folds and layout.
 
 Code is compared by lines, so that a file that cannot be read can be compared too; data by names.
 """

@@ -1,4 +1,4 @@
-"""What belongs together in two states: the same name, else the same content, else the likest."""
+"""Matching of two versions: by the same name, else the same content, else similarity."""
 
 from __future__ import annotations
 

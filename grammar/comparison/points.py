@@ -1,4 +1,4 @@
-"""How far a taught point has gone: along, around, by axes; and its tool and base.
+"""Displacement of a taught point: distance, rotation, axes; and its tool and base.
 
 Positions are in millimetres, angles in degrees: A about Z, then B about the new Y, then C about the
 new X, as KUKA has them.

@@ -1,4 +1,4 @@
-"""Names that were changed throughout: told once, and not line by line.
+"""Names changed throughout: reported once, not line by line.
 
 A name is renamed where lines that changed differ in it alone, always in the same way, and the old
 name is nowhere in the new state, nor the new one in the old.

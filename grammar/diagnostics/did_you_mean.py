@@ -1,4 +1,4 @@
-"""Which names somebody may have meant: "did you mean …"."""
+"""Suggestions of similar names: "did you mean …"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a program can be read although some of its lines cannot.
+"""Error recovery: reads a program although some of its lines cannot be read.
 
 A syntax error costs its statement, not the file. The first line that cannot be read is blanked,
 character by character so that every place stays what it is, and the rest is read again until it can

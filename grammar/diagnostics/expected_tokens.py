@@ -1,4 +1,4 @@
-"""What could have stood at a failure, in words: forty tokens become "a value".
+"""Expected tokens in words: forty tokens become "a value".
 
 The expected set of the recogniser is exact and long. What people call by one word gets that word;
 what is left is listed. Which words begin what follows from the grammar.

@@ -1,4 +1,4 @@
-"""What a code means in full: its sentences, a program that is wrong, and the same made right.
+"""Full explanation of a code: its sentences, a wrong program, and the corrected one.
 
 ``codes.tsv`` has the sentences, as every check needs them; ``examples.toml`` the programs, which
 only an explanation needs. An example is one file or several: each begins with a line

@@ -1,7 +1,7 @@
 """The smallest edit after which a line can be read: what somebody probably meant.
 
 A line that cannot be read is tried with one token exchanged, left out or written in, alone, in a
-routine or data list that is right otherwise. What makes it readable is what is told.
+routine or data list that is right otherwise. The edit that makes it readable is reported.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which blocks are open at a line, known from the words that lines begin with.
+"""Blocks open at a line, derived from the words that lines begin with.
 
 A failing program has no tree, and what people have to know about it is often the place of a block
 that was never closed.
@@ -63,8 +63,8 @@ def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, OpenBlock | N
 def most_likely(source: Source, block: OpenBlock, end: int) -> tuple[OpenBlock, int]:
     """The block that was meant to be closed before line ``end``, and the line before which.
 
-    Words alone tell that a block like this one is open. Where closers are indented as what they
-    close, that tells which one, and the lines in it are indented more than the block itself.
+    Words alone show that a block like this one is open. Where closers are indented as what they
+    close, that shows which one, and the lines in it are indented more than the block itself.
     """
     inside = source.lines[block.line - 1 : end - 1]
     opened: list[tuple[str, int]] = []

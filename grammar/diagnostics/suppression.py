@@ -1,4 +1,4 @@
-"""Which findings are wanted: chosen by code for a whole run, or silenced by a comment.
+"""Selection of findings: by code for a whole run, or suppressed by a comment.
 
 ``; krl: ignore[KSS2296,KRL2] reason`` silences findings of its own line, ``; krl:
 ignore-file[KRL601]`` those of its file. Codes are given whole or by their beginning.

@@ -1,6 +1,6 @@
-"""What a line that cannot be read was meant to be: syntax failures as findings, with a fix.
+"""Syntax failures as findings, with the probable mistake and a fix.
 
-The recogniser tells the first token that no program could have, and all that could have come. Here
+The recogniser finds the first token that no program could have, and all that could have come. Here
 that becomes a sentence. The mistakes that people make again and again are known by their tokens:
 ``=`` in a condition, END IF, ELSEIF, THEN left out, operators of C, a block that is not closed. All
 others are reported with what was expected.
@@ -26,7 +26,7 @@ from grammar.syntax.source import Source
 #: Who has more lines that cannot be read has a file that is no KRL.
 MOST_TOLD = 1_000
 _LONGEST_TOKEN = 60
-# Nobody writes lines of so many characters, and going through one takes long.
+# Real lines are never this long, and examining one takes long.
 _FARTHEST = 20_000
 # So many words at the beginning of a line, and none of KRL, are prose.
 _PROSE = 3
@@ -48,7 +48,7 @@ def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[D
     blocks = open_blocks(source, (failure.line for failure in shown))
     found = [_finding(ErrorSite(failure, source, blocks[failure.line])) for failure in shown]
     if len(reported) > len(shown):
-        message = f"{len(reported) - len(shown):,} more lines that cannot be read are not told"
+        message = f"{len(reported) - len(shown):,} more unreadable lines are not listed"
         found.append(diagnose("too-large", source.path, found[-1].region, message))
     return found
 
@@ -264,14 +264,14 @@ def _foreign(site: ErrorSite) -> _Mistake | None:
         return None
     if word in ("ELSEIF", "ELSIF", "ELIF") and site.place == 1:
         message = f"KRL has no {word}"
-        fix = Fix("write ELSE, and on the next line an IF with an ENDIF of its own")
+        fix = Fix("write ELSE, and on the next line an IF with its own ENDIF")
         return _Mistake(message, fix, region=site.region(0))
     if word in _FOREIGN and site.is_at_end:
         meant = _FOREIGN[word]
         fix = Fix("write UNTIL and when to end") if meant == "UNTIL" else site.swap(meant, 0)
         return _Mistake(f"KRL has no {word}", fix, region=site.region(0))
     if word == "ELSE" and site.text == "IF":
-        fix = Fix("write IF on the next line, and an ENDIF of its own")
+        fix = Fix("write IF on the next line, and add an ENDIF for it")
         return _Mistake("IF stands on the line of ELSE", fix)
     return None
 
@@ -414,12 +414,12 @@ def _names(site: ErrorSite) -> _Mistake | None:
         return _Mistake("a name does not begin with a digit")
     if site.failure.rule == "module" and text:
         if lead(site.code) in CLOSERS and place > 0:
-            return _Mistake(f"nothing can stand behind {site.word(0)}")
+            return _Mistake(f"nothing can follow {site.word(0)}")
         is_data = site.source.path.lower().endswith(".dat")
         fix = Fix(f"a {'data list begins with DEFDAT' if is_data else 'routine begins with DEF'}")
         return _Mistake(f"{_shown(site)} stands outside all routines", fix)
     if place > 0 and site.expects("NEWLINE") and _opens_statement(site):
-        fix = Fix("write it on a line of its own")
+        fix = Fix("write it on a separate line")
         return _Mistake("a second statement on this line", fix)
     return None
 

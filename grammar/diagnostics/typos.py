@@ -1,4 +1,4 @@
-"""Whether a name is another one with a slip of the finger, among many names at once.
+"""Typing errors: whether a name is a slip of another, among many names at once.
 
 Stricter than `grammar.diagnostics.did_you_mean`, which only words a hint: here a finding rests on
 it. One slip is a letter too many, too few or wrong, or two that changed places. Names that people
@@ -30,13 +30,13 @@ _SMALL_PREFIX = re.compile(r"[a-z]+(?=[A-Z])")
 
 
 class Series(Enum):
-    """What may tell a name from others on purpose."""
+    """What may distinguish a name from others on purpose."""
 
     #: Nothing: what is near a word of the language is a slip.
     NONE = 0
     #: Digits: names of the controller, and of a file that is there, of which all are known.
     DIGITS = 1
-    #: Digits and letters: others of the series may be declared where nobody has looked.
+    #: Digits and letters: others of the series may be declared elsewhere.
     LETTERS = 2
 
 

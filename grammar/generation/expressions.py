@@ -264,7 +264,7 @@ def pose(type_: Structure) -> ExpressionRule:
 
 
 def _frame(code: Code, type_: Structure) -> str:
-    """A variable, or an aggregate that names its type, as nothing else would tell it."""
+    """A variable, or an aggregate that names its type, as it would be unknown otherwise."""
     choices = code.choices
     found = read(code, type_)
     if found is None or choices.chance(15):

@@ -1,4 +1,4 @@
-"""What a place in a generated program can name: variables, their parts, routines."""
+"""Names visible at a place in a generated program: variables, their parts, routines."""
 
 from __future__ import annotations
 

@@ -180,7 +180,7 @@ def _levels(grammar: Grammar, rule: Rule) -> str:
         some = elements[first : len(elements) - last]
         text = rule.text[some[0].span[0] : some[-1].span[1]] if some else ""
         kinds.get((first, last), others).append(text)
-    if not others:  # nothing that it ends with: told as any other left recursion
+    if not others:  # nothing that it ends with: reported as any other left recursion
         return rule.text
     fresh = (n for k in count(2) if (n := f"{rule.name}{k}") not in grammar.by_name)
     name, texts = rule.name, []

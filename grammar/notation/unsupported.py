@@ -1,4 +1,4 @@
-"""What a grammar uses of ANTLR 4 that is not understood here, each by a name its author knows."""
+"""Features of ANTLR 4 that are not supported, each by its name in ANTLR."""
 
 from __future__ import annotations
 

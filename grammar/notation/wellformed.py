@@ -1,4 +1,4 @@
-"""Is a grammar well formed: defined, reachable in finite time, free of left recursion?"""
+"""Well-formedness of a grammar: defined, productive rules without left recursion."""
 
 from __future__ import annotations
 

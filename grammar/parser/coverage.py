@@ -1,4 +1,4 @@
-"""Which rules, alternatives and branches of a grammar do some trees exercise?
+"""Coverage of a grammar by trees: rules, alternatives and branches.
 
 *Context-dependent branch coverage* (Ralf Lämmel, "Grammar Testing", FASE 2001) asks more than that
 every alternative of every rule occurs somewhere: every alternative has to occur at every place
@@ -10,7 +10,7 @@ Rules that only choose between words (a name, which may be spelled like some key
 all else: at every place where a name stands, each of these words is a branch. Such rules can be
 named as *words*; their alternatives are then branches once, wherever they occur.
 
-A tree tells which rules and tokens each of its rules consists of. From these the way through the
+A tree shows which rules and tokens each of its rules consists of. From these the way through the
 text of the rule is found (`grammar.parser.ordered_network`), the one that ANTLR takes where there
 are several.
 """

@@ -1,4 +1,4 @@
-"""How a text is a program: which rules begin and end before each of its tokens.
+"""Derivation of a text: which rules begin and end before each of its tokens.
 
 The automaton of `grammar.parser.lazy_automaton` again, with two differences to the recogniser. Its
 positions are those of the rules as they are written (`grammar.parser.ordered_network`), and a core
@@ -52,7 +52,7 @@ class Action(NamedTuple):
 class Derivation:
     """The reading of a text: the number of an action for each token, end of file included.
 
-    ``is_unique`` tells that no second way to read it was met. Two ways may still give one tree,
+    ``is_unique`` means that no second way to read it was met. Two ways may still give one tree,
     where a rule says the same twice.
     """
 

@@ -28,7 +28,7 @@ from itertools import islice
 # become a core of its own.
 _DEEP = 96
 # So many frames in a row that only pass a return on are kept. One would do; these are so many that
-# for anything that a person writes the stack tells every rule at work.
+# for anything that a person writes the stack has every rule at work.
 _LONGEST_RUN = 8
 # Deeper stacks are not interned, so that they go when the text does that nested so deep. No program
 # comes near; a hostile file would leave hundreds of megabytes behind for good.
@@ -125,7 +125,7 @@ class Automaton(ABC):
     #: How a core keeps its configurations: as a set, or as a tuple where their order has a meaning.
     _kernel: Callable[[Iterable[Configuration]], Collection[Configuration]] = frozenset
     #: How many ways to read a token are followed. More than that is a grammar with so many readings
-    #: that nobody wants it; a token that would need them is not read. No limit by default.
+    #: that it is of no use; a token that would need them is not read. No limit by default.
     most_ways = sys.maxsize - 1
 
     def __init__(self, line_kind: int, passing: Collection[int] = frozenset()) -> None:
@@ -142,7 +142,7 @@ class Automaton(ABC):
         return len(self._cores)
 
     def release(self) -> None:
-        """Break every circle in it, so that its memory is free as soon as nobody refers to it.
+        """Break every circle in it, so that its memory is free as soon as nothing refers to it.
 
         Whoever reads on with it works the steps out once more.
         """

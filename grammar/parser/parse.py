@@ -1,6 +1,6 @@
 """From text to its parse tree, under any grammar, in a fraction of a second for a megabyte.
 
-`grammar.parser.derivation` tells which rules begin and end before each token. What that comes to
+`grammar.parser.derivation` finds which rules begin and end before each token. What results
 within a line is the same for every line with the same actions, so it is worked out once: the
 outlines of all that begins and ends on the line, and what stays open at its end or was open before.
 A file is put together from its lines, some look-ups and appends each. Nothing here or in what it

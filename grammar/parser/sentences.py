@@ -1,7 +1,7 @@
 """Sentences of a grammar: the shortest through a given place, and random ones.
 
 A sentence is a list of token names; `Speller` turns it into text. The shortest sentences frame
-reproducers and tell where lines may begin; the random ones feed the comparison with ANTLR.
+reproducers and show where lines may begin; the random ones feed the comparison with ANTLR.
 """
 
 from __future__ import annotations

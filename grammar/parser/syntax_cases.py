@@ -19,9 +19,9 @@ program; the expectation is then ``LINE:COLUMN`` of the first token that no prog
 the token. Blank lines around the source are no part of it. How trees are written is described in
 `grammar.parser.sexpr`.
 
-``python -m grammar.parser.syntax_cases PATH…`` tells which cases of files or folders differ. With
-``--update`` it writes the trees of the grammar in force into the files: look at every changed line
-before it is kept. It never makes an error of a tree or a tree of an error.
+``python -m grammar.parser.syntax_cases PATH…`` lists the cases of files or folders that differ.
+With ``--update`` it writes the trees of the grammar in force into the files: look at every changed
+line before it is kept. It never makes an error of a tree or a tree of an error.
 """
 
 from __future__ import annotations

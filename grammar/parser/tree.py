@@ -153,7 +153,7 @@ class Tree:
     """A parsed text.
 
     ``kinds`` and ``lexemes`` are kind and text of each token, the end of the file (with no text)
-    the last. ``is_unique`` tells that no second reading was met: see `grammar.parser.derivation`.
+    the last. ``is_unique`` means that no second reading was met: see `grammar.parser.derivation`.
     """
 
     text: str

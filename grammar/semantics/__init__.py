@@ -1,1 +1,1 @@
-"""What names and types mean: symbols, scopes, linking, types, what a controller predefines."""
+"""Meaning of names and types: symbols, scopes, linking, types, predefined names."""

@@ -1,4 +1,4 @@
-"""What may be assigned to what, passed to what, and chosen by what.
+"""Assignability: what may be assigned, passed and compared in SWITCH.
 
 Numbers are converted, texts fit into arrays of CHAR, positions of one family into one another; all
 else must be of the same type [ARI-03, ARI-11, TYP-12]. A parameter :IN converts alike, one :OUT
@@ -81,7 +81,7 @@ def _to_scalar(to: Scalar, value: Type) -> Verdict:
         return Verdict(False, ("TYP-03",), f"a CHAR holds one letter, not {value.length}")
     if to == INT and value == REAL:
         return _ROUNDED
-    # No rule tells how CHAR and INT go together; production programs assign codes to letters.
+    # No rule says how CHAR and INT combine; production programs assign codes to letters.
     if (to, value) in ((REAL, INT), (CHAR, INT), (INT, CHAR)):
         return FINE
     if isinstance(value, Constant):

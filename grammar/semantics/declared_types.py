@@ -1,7 +1,7 @@
 """The types of what files declare, as values of `grammar.semantics.types`.
 
 A declaration names its type in the place where it stands, so that is where the name is looked up.
-What is not known, a type of a package that is not at hand or a size that only running tells, is
+What is not known, a type of a package that is not at hand or a size known only at run time, is
 `UNKNOWN` or ``None`` and fits everywhere.
 """
 

@@ -250,10 +250,10 @@ def link(
     """Group files to projects. Linear in the number of files and of what they declare.
 
     ``system`` is what the controller brings along, by default that of any release, and the same for
-    all projects. ``is_complete`` tells whether no file is missing; where it is not told, a project
+    all projects. ``is_complete`` says whether no file is missing; where it is not given, a project
     counts as complete when it has what every backup has and calls nothing that is not there: a
     package that is missing may bring data as well as routines. ``packages`` are option packages
-    that are there besides those whose routines are called; where they are not told, none is. Of
+    that are there besides those whose routines are called; by default none is. Of
     what was linked ``before`` in the same way, projects whose files are the same are taken over.
     """
     projects, scope = [], SystemScope(system or System.load())

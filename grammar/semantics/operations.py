@@ -1,4 +1,4 @@
-"""What operators, indices and components make of their operands, by the rules of ARI and TYP.
+"""Result types of operators, indices and components, by the rules of ARI and TYP.
 
 Every function returns a `Typed`: the type of the result and the verdict on the operands. Where a
 verdict is bad the type is `UNKNOWN`, so that one fault is reported once.
@@ -96,7 +96,7 @@ def _not_number(operator: str, operand: Type) -> Verdict | None:
     if isinstance(operand, Array):
         return without_index(operand)
     reason = f"{operator} works on INT and REAL, and this is {operand}"
-    # Letters have codes, and no manual page at hand tells that they cannot be reckoned with.
+    # Letters have codes, and no manual page at hand forbids arithmetic with them.
     if operand in (CHAR, Text(1)):
         return Verdict(False, ("ARI-01",), reason, 2256)
     return Verdict(False, ("ARI-11",), reason, 2256)

@@ -1,4 +1,4 @@
-"""What option packages declare, as a scope: names that no file at hand has to declare.
+"""Declarations of option packages as a scope: names that no file has to declare.
 
 A package is there where it is named, or where a project calls one of its routines. What a file
 declares itself always counts more. Signatures come from `grammar.semantics.packages`. With them

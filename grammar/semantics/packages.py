@@ -1,4 +1,4 @@
-"""What option packages bring along, as signatures: ``system/packages.tsv``.
+"""Signatures of option packages: ``system/packages.tsv``.
 
 A backup that calls a package often lacks its files. `load_packages` gives its routines, types and
 data by name in upper case, with the package that each belongs to; types are written as in KRL, as
@@ -6,7 +6,7 @@ a project may declare them itself. A run makes stand-ins of them (`interp.standi
 take such a name as declared where the package is said to be there, or where the project calls
 another routine of the same package: ``load_packages().routines["EKI_OPEN"].package`` is ``"EKI"``,
 ``parameters`` says what it takes. What rests on source R alone is unconfirmed: its name is likely,
-its parameters are not told.
+its parameters are not given.
 """
 
 from __future__ import annotations

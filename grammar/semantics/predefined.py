@@ -1,7 +1,7 @@
-"""What the controller brings along: system variables, types, functions, messages, as data.
+"""Predefined by the controller: system variables, types, functions, messages, as data.
 
 The tables in ``system/`` say each with its source and, where known, the releases that have it;
-``system/README.md`` tells how to read and extend them. A newer release is a change of the tables
+``system/README.md`` says how to read and extend them. A newer release is a change of the tables
 only. They are read when first asked for, and an entry is made when it is looked up.
 """
 
@@ -38,7 +38,7 @@ class SystemVariable:
     """A variable of the controller.
 
     ``type`` is `UNKNOWN` where no controller-written declaration was at hand; sizes of arrays are
-    the largest documented. A ``signal`` tells whether inputs or outputs stand behind it, or
+    the largest documented. A ``signal`` says whether it refers to inputs or outputs, or
     "unconnected", and is INT when it is a group. ``access``: "read" is write-protected, "write"
     may be written; ``access_unconfirmed`` where only recollection says so. ``limits`` are the
     lowest and highest value. Reading or writing it stops the advance run where ``stops_on_read``
@@ -79,7 +79,7 @@ class PredefinedParameter:
 class PredefinedFunction:
     """A predefined routine; ``result`` is ``None`` where it has no value.
 
-    ``has_more`` tells that further arguments of any type may follow. ``stops`` are the rules that
+    ``has_more`` says that further arguments of any type may follow. ``stops`` are the rules that
     say that it stops the advance run.
     """
 
@@ -192,7 +192,7 @@ class System:
         return self._types
 
     def is_described(self, type_: Type) -> bool:
-        """Whether a rule tells what parts a type has, and not the tables of one release alone.
+        """Whether a rule defines the parts of a type, not only the tables of one release.
 
         Types that files declare are described by these.
         """
@@ -220,7 +220,7 @@ class System:
     # ----------------------------------------------------------------------- from the tables
 
     def _named(self, name: str) -> Type:
-        """The type of a name in a table; with a question mark nobody can be sure of it."""
+        """The type of a name in a table; a question mark means that it is uncertain."""
         if name.startswith("?"):
             return UNKNOWN
         return SCALARS[name] if name in SCALARS else self._types[name]

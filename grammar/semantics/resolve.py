@@ -1,4 +1,4 @@
-"""What each name in a file means: `resolve` looks up all of them.
+"""Name resolution: `resolve` looks up all names of a file.
 
 The answers are keyed by the `ast.Name` nodes, by identity: of variables, calls, types, labels and
 channels, used or declared, and of members wherever the structure is known. Names that are not there

@@ -1,11 +1,11 @@
-"""Where a name is looked up, and what a look-up can answer.
+"""Scopes: where a name is looked up, and the answers of a look-up.
 
 Scopes lie within one another: a routine (parameters, local data), its program (the routines of
 the file), the data list of the same name [SCO-05], all that is GLOBAL in the project [SCO-04], the
 controller itself. The innermost declaration counts, so a local one shadows a global one.
 
 A look-up answers `Found`, `NotFound` or `MaybeElsewhere`. The last is the answer wherever the files
-at hand cannot tell: a loose file without its $CONFIG, a module that does not parse, a call of a
+at hand cannot show: a loose file without its $CONFIG, a module that does not parse, a call of a
 package that was not handed in. Who checks may be sure of `Found` and `NotFound` and has to keep
 silent about the rest; `Reason` says why.
 """
@@ -80,7 +80,7 @@ class Module:
 
 
 class Reason(Enum):
-    """Why a look-up cannot tell."""
+    """Why a look-up has no certain answer."""
 
     MODULES_MISSING = "not every module of the controller is here"
     UNREADABLE = "a module that may declare it cannot be read"

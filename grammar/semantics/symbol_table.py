@@ -1,4 +1,4 @@
-"""What one file declares: from its tree to its `ModuleTable`.
+"""Symbol table of one file: from its tree to its `ModuleTable`.
 
 Linear in the size of the file and without recursion. Nothing that a file can say is an error here.
 """

@@ -1,4 +1,4 @@
-"""What a file declares: its symbols and their tables, made from the content of the file alone.
+"""Symbols that a file declares and their tables, made from the content of the file alone.
 
 A table has five spaces of names that do not meet: values (variables, constants, parameters,
 signals, imports), routines, types, channels and labels. Keys are names in upper case [TYP-05].

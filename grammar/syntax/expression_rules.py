@@ -1,4 +1,4 @@
-"""What the rules of names, types, literals and expressions become (as `statement_rules`)."""
+"""Tree nodes for the rules of names, types, literals and expressions (as `statement_rules`)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, separated, 
 
 # Types whose names are keywords: they are kept in upper case.
 _KEYWORD_TYPES = frozenset("INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())
-# More digits tell a checker nothing: the number is too large.
+# More digits are of no use to a checker: the number is too large.
 _MOST_DIGITS = 1_000
 
 

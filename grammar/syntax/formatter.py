@@ -137,7 +137,7 @@ class Formatter:
 class _Marks:
     """How each token is set, and for the first one of a line how deep its block lies.
 
-    ``insides`` tells of what ends a block how much deeper the lines in the block lie.
+    ``insides`` gives, for what ends a block, how much deeper the lines in the block are indented.
     """
 
     settings: list[Setting]

@@ -1,4 +1,4 @@
-"""Which nodes of a tree hold names that mean something elsewhere, and what lies below a node.
+"""Nodes that hold names with a meaning elsewhere, and references below a node.
 
 It is worked out once for each kind of node, so that walks over whole archives look at nothing in
 vain. Nothing here recurses.

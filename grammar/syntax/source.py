@@ -1,7 +1,7 @@
 """A source text and what the syntax tree does not hold: lines, comments, folds, where it is from.
 
 Comments are no tokens. They lie in the gaps between tokens, each at the end of a line, so they can
-be told from the text alone: a semicolon opens one unless it stands in a string or behind the ``&``
+be seen from the text alone: a semicolon opens one unless it stands in a string or behind the ``&``
 of a header line. A text that does not parse has its comments all the same.
 
 A *fold* is a pair of comments, ``;FOLD`` and ``;ENDFOLD``, that an editor shows as one line. Folds

@@ -1,4 +1,4 @@
-"""How the tokens of a program are set: the blank before and after each, and its letters.
+"""Spacing of tokens: the blank before and after each, and its letter case.
 
 What the style says nothing about stays as its author wrote it, but for runs of blanks, which become
 one. In declarations, data lists and heads of routines nothing changes between tokens: they are
@@ -69,7 +69,7 @@ def _gaps(rule: str, above: str, token: str, is_keyword: bool) -> tuple[Gap, Gap
 
 
 class Spacing:
-    """Tells how tokens are set; remembers it for each outline."""
+    """Spacing of the tokens of a line, cached for each outline."""
 
     def __init__(self, lexer: Lexer) -> None:
         self._lexer = lexer

@@ -1,4 +1,4 @@
-"""What each rule of the grammar that lies within a line becomes: drafts of nodes of the tree.
+"""Drafts of tree nodes for each rule of the grammar that lies within a line.
 
 One function a rule, or one for several that are alike. Each gets what the rule consists of, in the
 order of the text, and says which node that is (`grammar.syntax.node_plans`). Those of expressions

@@ -1,4 +1,4 @@
-"""How fast the arm is simulated: a program of motions, without any KRL, on each of the robots."""
+"""Speed of the simulated arm: a program of motions, without KRL, on each robot."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from interp.values.poses import Pose
 
 #: Simulated seconds a second that are aimed at.
 AIMS: Final[dict[str, float]] = {"kinematic": 200.0, "mujoco": 20.0}
-#: How often `measure` tells that it goes on.
+#: How often `measure` reports progress.
 STEPS: Final = len(ROBOTS) + 2
 
 _CYCLE = 12_000  # µs

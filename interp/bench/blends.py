@@ -1,4 +1,4 @@
-"""How well blends keep their laws, on programs drawn by seed.
+"""How well blends obey their laws, on programs drawn by seed.
 
 Five laws: no program is slower for its blends; a point on a straight line costs nothing; no axis
 exceeds its speed, acceleration or jerk; a path does not depend on the override; under a low one

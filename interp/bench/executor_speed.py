@@ -1,4 +1,4 @@
-"""How fast the executors compute: kernels on each of them and in other languages; a request's cost.
+"""Speed of the executors: kernels on each and in other languages; the cost of a request.
 
 All do the same work, ``WORK(N)``, as many rounds, one after the other in each round, and the best
 round counts: by the processor's time, not that of the clock on the wall. N is found with the tree

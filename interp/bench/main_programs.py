@@ -39,14 +39,14 @@ _SUBMIT_REQUESTS: Final = 20
 _CHOOSES: Final = "CELL"
 _MOVES: Final = (ast.Motion, ast.SplineBlock)
 
-#: A line that something was told of so often lies in a loop.
+#: A line with so many events is in a loop.
 _ROUNDS: Final = 100
 #: So long in µs may the arm stand before a program counts as one that waits.
 PATIENCE: Final = 20_000_000
 
 #: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
 #: ``goes on`` where it went round in a loop when its time was over, ``moves`` where it still moved
-#: then and nothing tells whether it would have ended, ``unlinked`` at what no file has, ``refused``
+#: then and it is unknown whether it would have ended, ``unlinked`` at what no file has, ``refused``
 #: where it could not begin, ``cpu`` where it has taken too long for whoever waits.
 Result = Literal[
     "end",
@@ -296,7 +296,7 @@ class _Seen:
 
     @property
     def is_in_loop(self) -> bool:
-        """Whether the last line has been told of often."""
+        """Whether the last line has many events."""
         return self.visits[self.at] >= _ROUNDS
 
     def take(self, event: TraceEvent) -> None:

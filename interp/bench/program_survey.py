@@ -1,4 +1,4 @@
-"""All main programs of many backups, run in parallel processes, each within bounds of its own.
+"""All main programs of many backups, run in parallel processes, each within its own limits.
 
 The files of an origin are read and linked once in one process, and its programs are run there one
 after the other. A program ends at the latest when its virtual time, its CPU time or its statements
@@ -133,7 +133,7 @@ def survey(
 ) -> Iterator[Surveyed]:
     """The results of each origin as soon as they are there; the largest are begun first.
 
-    ``on_found`` is told how many programs more are known of, ``on_done`` of each that has run.
+    ``on_found`` receives the number of further programs found, ``on_done`` each that has run.
     ``cache`` is a folder for results. Raises `input_script.ScriptError` for a
     script that names what does not exist.
     """

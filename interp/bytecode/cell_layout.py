@@ -1,4 +1,4 @@
-"""How values lie in cells: sizes, places of parts, and the way between values and cells.
+"""Layout of values in cells: sizes, offsets of parts, and conversion between values and cells.
 
 A cell holds one scalar, or nothing. Structures and arrays are flattened: members in order, elements
 row by row. What a cell holds is *raw*: INT an ``int``, REAL a ``float``, BOOL a ``bool``, CHAR its

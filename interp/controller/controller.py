@@ -45,7 +45,7 @@ from interp.robot.kinematics.machine_data import MachineData
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-#: Of all waits the longest are told, each with its first variables.
+#: Of all waits the longest are reported, each with its first variables.
 _MOST_WAITS, _MOST_NAMES = 5, 4
 
 
@@ -165,7 +165,7 @@ class Controller:
         return [(level.kind, level.priority) for one in found for level in one.levels]
 
     def look(self, path: Path) -> Value:
-        """The value of a system variable, which nobody notices; raises `Fault`."""
+        """The value of a system variable, without any side effect; raises `Fault`."""
         before = self.variables.has_read_changing
         try:
             return self.variables.read(path)
@@ -191,7 +191,7 @@ class Controller:
         ]
 
     def run(self, until: int = HOUR) -> RunOutcome:
-        """Run until the program ends, or halts and nobody starts it, or until a time in µs.
+        """Run until the program ends, or halts without a later start, or until a time in µs.
 
         After a `halt` a further call is START. Raises `ScriptError` for a value that a variable
         cannot have.

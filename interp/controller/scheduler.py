@@ -34,8 +34,8 @@ from support.lazy_dataclass import dataclass
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-#: How a run ended: at the end of the program; at a HALT that nobody ends; by a fault; because the
-#: program used up its statements; because the time is over; by a defect of ours.
+#: How a run ended: at the end of the program; at a HALT without a later start; by a fault; because
+#: the program used up its statements; because the time is over; by a defect of ours.
 Ending = Literal["end", "halt", "fault", "budget", "time", "crash"]
 
 #: A run lasts an hour of virtual time at most, by default.
@@ -89,7 +89,7 @@ class Scheduler:
     _answered: int = 0
 
     def run(self, until: int) -> RunOutcome:
-        """Run until the program ends, or halts and nobody starts it, or until a time in µs.
+        """Run until the program ends, or halts without a later start, or until a time in µs.
 
         After a `halt` a further call is START. Raises `ScriptError` for a value that a variable
         cannot have.

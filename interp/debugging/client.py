@@ -1,4 +1,4 @@
-"""Who decides when a program has stopped: what a debugger reports, and what it can be told.
+"""Clients of a debugger: what it reports when a program stops, and the commands it accepts.
 
 A client is called where the program stops and answers with a command. It may take its time, as
 virtual time stands still meanwhile, so an adapter for an editor can wait there for its user.
@@ -30,7 +30,7 @@ class Breakpoint:
     ``file`` is a path or its end, letter case aside. The condition is an expression over what is
     visible there; one that cannot be evaluated counts as TRUE, so that nothing is missed. ``hits``
     says which of its hits count: ``3`` the third only, ``>=3`` from the third on, ``%3`` each
-    third. With ``log`` it does not stop: the text is told, values in place of what stands in
+    third. With ``log`` it does not stop: the text is reported, with values in place of what is in
     braces.
     """
 

@@ -65,7 +65,7 @@ def evaluated(
 ) -> Value:
     """The value; ``read`` is for variables of the controller, ``signal`` for names of signals.
 
-    ``wanted`` is the type that it is for, which tells of what enumeration a constant is. Raises
+    ``wanted`` is the type that it is for, which gives the enumeration of a constant. Raises
     `interp.values.faults.Fault` as the program would, and `LinkError` for what is not known here.
     """
     return _Evaluation(look, read, signal).value(node, wanted)
@@ -114,7 +114,7 @@ class _Evaluation:
                 return letters(node.text)
             case ast.EnumConstant():
                 if not isinstance(wanted, Enumeration):
-                    raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
+                    raise LinkError(f"the enumeration of #{node.name.text} is unknown")
                 return constant(wanted, node.name.key)
         raise LinkError("only variables, constants and operators can be looked at")
 
@@ -122,7 +122,7 @@ class _Evaluation:
         names = frozenset(one.name.key for one in node.components)
         type_ = wanted if isinstance(wanted, Structure) else position_type(names)
         if type_ is None:
-            raise LinkError("nothing tells which structure this is")
+            raise LinkError("the structure is unknown")
         made = empty(type_)
         assert isinstance(made, StructureValue), "of a structure"
         for one in node.components:
@@ -149,7 +149,9 @@ class _Evaluation:
         path = self.system_path(steps)
         if path is not None:
             if self._read is None:
-                raise LinkError(f"{steps[0]} is the controller's, which nobody asks here")
+                raise LinkError(
+                    f"{steps[0]} belongs to the controller, which is not available here"
+                )
             asked: Value = self._read(path)
             return asked
         text = _text(steps)

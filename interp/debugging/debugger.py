@@ -1,4 +1,4 @@
-"""A debugger: stops, steps, looks, changes and goes back, for all programs of a run.
+"""A debugger for all programs of a run: stops, steps, inspects, changes and steps back.
 
 It runs what it is given to run, and calls its client where a program stops; until that answers
 nothing goes on. To go back is to run once more and to stop earlier (`interp.debugging.history`).
@@ -299,7 +299,9 @@ class Debugger:
         if isinstance(change.target, str):
             self._tasks[change.task].inside.put(change.target, change.value, change.frame)
         elif self._world is None:
-            raise LinkError(f"{change.target[0]} is the controller's, which nobody asks here")
+            raise LinkError(
+                f"{change.target[0]} belongs to the controller, which is not available here"
+            )
         else:
             self._world.assign(change.target, change.value)
 

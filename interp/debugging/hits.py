@@ -1,4 +1,4 @@
-"""Which hits of a breakpoint count."""
+"""Hit conditions of breakpoints."""
 
 from __future__ import annotations
 

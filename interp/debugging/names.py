@@ -1,4 +1,4 @@
-"""What variables can be seen where a program has stopped, and what its signals stand for."""
+"""Variables visible where a program has stopped, and the signals they name."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Which lines a program can go on at: those of the statements of the routine that runs.
+"""Lines at which a program can continue: those of the statements of the current routine.
 
-A FOR keeps its limit where nobody else sees it, so its body can be entered only from inside. What
-the official implementation allows beyond that is not told by any rule (unconfirmed).
+A FOR keeps its limit privately, so its body can be entered only from inside. What
+the official implementation allows beyond that is not stated by any rule (unconfirmed).
 """
 
 from __future__ import annotations
@@ -20,5 +20,5 @@ def reason_against(routine: Routine, here: int, line: int) -> str:
     for block in way[:-1]:
         if isinstance(block, ast.For) and block not in around:
             first = routine.unit.line(block)
-            return f"line {line} stands in the FOR of line {first}, which has not begun"
+            return f"line {line} is inside the FOR of line {first}, which has not begun"
     return ""

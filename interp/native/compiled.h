@@ -145,7 +145,7 @@ enum { CALLED = -1 };
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;
-/* A frame of so many cells at `frame`, as `prepare` makes it; `save` puts back what nobody looks at unless
+/* A frame of so many cells at `frame`, as `prepare` makes it; `save` puts back what is not read unless
  * the interpreter goes on within the call. */
 #define CALL(number, out, function, size, frame, prepare, save, put, ...)                          \
     {                                                                                              \

@@ -1,4 +1,4 @@
-"""What is known of the steps of a routine before they run: where they lead, what registers hold.
+"""Static analysis of a routine's steps: their successors, and the contents of registers.
 
 Classical data-flow analyses, over single steps: each goes on until nothing changes any more.
 """
@@ -107,7 +107,7 @@ class RegisterFlow:
                     ):
                         found.add(place)
                     break
-                if taker.a == result:  # nobody has taken it
+                if taker.a == result:  # it has not been read yet
                     break
         return found
 

@@ -1,12 +1,12 @@
-"""What executors tell the trace: which line, which way, which call, what was assigned.
+"""Events of executors for the trace: lines, branches, calls, assignments.
 
-All else in a trace comes from the controller. A statement tells its line when it begins; a loop
+All else in a trace comes from the controller. A statement reports its line when it begins; a loop
 begins anew at each pass: WHILE, FOR and LOOP at their first line, REPEAT at its UNTIL. What stands
 behind the DO of an interrupt, a trigger or a cyclic signal is a statement at the line it stands in.
-IF, WHILE and UNTIL tell their way as 1 for TRUE and 0 for FALSE, SWITCH as the number of its CASE
-from 1, or 0 where none is chosen. A call is told before its routine begins, at the line of the
-caller; its end at the last line of the routine, if it ends by itself and not by RESUME or a fault.
-What a FOR gives its counter, and what a function changes in its arguments, is assigned too.
+IF, WHILE and UNTIL report their branch as 1 for TRUE and 0 for FALSE, SWITCH as the number of its
+CASE from 1, or 0 where none is chosen. A call is reported before its routine begins, at the line of
+the caller; its end at the last line of the routine, if it ends by itself and not by RESUME or a
+fault. What a FOR gives its counter, and what a function changes in its arguments, is assigned too.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ EVERY_KIND: Final = frozenset[Kind](("line", "assign", "call", "return", "branch
 class Sink(Protocol):
     """Takes the events of an executor.
 
-    ``kinds`` are those that it is told, the same as long as it lives: what it does not want is not
+    ``kinds`` are those that it receives, constant over its lifetime: what it does not want is not
     even worked out.
     """
 
     @property
     def kinds(self) -> frozenset[Kind]:
-        """What it wants to be told."""
+        """The kinds of events it receives."""
 
     def line(self, at: At) -> None:
         """A statement begins."""

@@ -35,8 +35,8 @@ class Executor(Protocol):
         """Push a routine or action, which runs before the program goes on.
 
         Allowed between two requests only, and behind the End of the program as well, as long as the
-        arm is on its way. Its end is told by `interp.port.requests.End`, after which the request
-        that was open before is asked again by the next ``advance(None)``.
+        arm is on its way. Its end is reported by `interp.port.requests.End`, after which the
+        request that was open before is asked again by the next ``advance(None)``.
         """
         ...
 
@@ -70,7 +70,7 @@ class Executor(Protocol):
 
 @runtime_checkable
 class Recurrent(Protocol):
-    """An executor that can tell whether it has come to where it was before."""
+    """An executor that can say whether its state recurs."""
 
     @property
     def begun(self) -> int:
@@ -83,7 +83,7 @@ class Recurrent(Protocol):
         ...
 
     def standing(self) -> object | None:
-        """All that its next requests depend on, but for the replies; ``None`` where it cannot tell.
+        """All that its next requests depend on, but for the replies; ``None`` if it is unknown.
 
         Where two are equal, equal replies lead from both through the same requests.
         """

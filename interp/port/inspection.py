@@ -1,4 +1,4 @@
-"""What a debugger needs of an executor besides running: to look, to change, to stop, to jump.
+"""Inspection of an executor by a debugger: read, change, stop, jump.
 
 All is for the moment between two statements, while a `interp.port.requests.Slice` is open, and for
 an executor that has ended.

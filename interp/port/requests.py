@@ -2,7 +2,7 @@
 
 An executor computes until it needs the controller, returns a request, and gets the reply with the
 next call of `interp.port.executor.Executor.advance`. Requests are plain data: they hold values,
-never nodes of a tree or places in an image, so that a controller cannot tell executors apart.
+never nodes of a tree or places in an image, so that executors look the same to a controller.
 
 Code that the controller may have run later (the condition of an interrupt, the action of a trigger)
 is handed over as a `CodeHandle`, which only the executor understands.

@@ -42,7 +42,7 @@ class Limits:
 
     ``statements`` until it counts as endless, ``per_slice`` until time has to pass, ``depth`` of
     calls until the stack overflows [SCO-12]. Where it ``skips_failures``, a statement that fails is
-    told as `interp.port.requests.Skip`, and the program goes on behind it.
+    reported as `interp.port.requests.Skip`, and the program continues after it.
     """
 
     statements: int = 10_000_000
@@ -157,7 +157,7 @@ class CheckedProgram:
     def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
         """The stand-ins that files reached from some routines use, in their order.
 
-        Each is told with its first use there, where a file of the project uses it.
+        Each is listed with its first use there, where a file of the project uses it.
         """
         if not self.stand_ins:
             return ()
@@ -193,7 +193,7 @@ class CheckedProgram:
         return tuple(reached.values())
 
     def can_begin(self, routine: Routine) -> bool:
-        """Whether a program can begin with a routine, as there is nobody to give or take values."""
+        """Whether a program can begin with a routine: no caller has to give or take values."""
         result = self.result_of(routine)
         return not routine.node.parameters and not isinstance(result, Structure | Array)
 
@@ -226,7 +226,7 @@ class CheckedProgram:
 
 
 def _declares_stand_ins(unit: Unit) -> bool:
-    """Whether it is the list of all that stands in, of which most may be for other programs."""
+    """Whether it is the list of all stand-ins, most of which may be for other programs."""
     return unit.module.folder == FOLDER and unit.module.suffix == ".dat"
 
 
@@ -287,7 +287,7 @@ def load_all(
     """Link and check files of any number of projects; gives a program for each file with routines.
 
     It is checked as without ``strict`` in `load`, each project once; with ``stands_in`` there are
-    no findings. A file that cannot be read is told with the reason, after the programs; without
+    no findings. A file that cannot be read is listed with the reason, after the programs; without
     ``stands_in`` it is left out of its project.
     """
     by_path = {source.path: source for source in sources}

@@ -1,4 +1,4 @@
-"""What executors see in a piece of syntax before it is run."""
+"""What executors derive from syntax before it is run."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def is_variable(unit: Unit, node: ast.Expression) -> bool:
 
 
 #: Why an aggregate has no value where `structure_of` gives none.
-UNTOLD_STRUCTURE = "nothing tells which structure an aggregate is"
+UNTOLD_STRUCTURE = "the structure of an aggregate is unknown"
 
 
 def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | None:

@@ -33,7 +33,7 @@ from interp.robot.models.stand_in import Places
 from interp.standins.completion import StandIn
 from interp.standins.signatures import Signatures
 
-#: What an array has where a parameter does not tell its size.
+#: The size of an array where a parameter has none.
 _LENGTH: Final = 8
 #: So many values at most are given to one variable.
 _MOST_VALUES: Final = 200
@@ -62,8 +62,9 @@ def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProg
     """A program that can begin with a routine of its first file, by default the first one.
 
     Parameters get what calls in the project have in their place, if that is a constant, or the
-    first value that a SWITCH of the routine asks for; points get places. All are told as stand-ins.
-    A program that can begin as it is, or whose parameters have unknown types, comes back unchanged.
+    first value that a SWITCH of the routine asks for; points get places. All are listed as
+    stand-ins. A program that can begin as it is, or whose parameters have unknown types, comes back
+    unchanged.
     """
     found = program.routines_of(program.main)
     if name is not None:

@@ -1,4 +1,4 @@
-"""Where statements stand in a routine: the blocks around a line, for whoever jumps to it."""
+"""Paths to statements: the blocks around a line, for jumps to it."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def untyped_parameter(name: str, routine: str) -> LinkError:
 
 
 def untyped_result(routine: str) -> LinkError:
-    """A function is called that gives nobody knows what."""
+    """A function is called whose result is unknown."""
     return LinkError(f"the type that {routine} gives is not known")
 
 

@@ -1,8 +1,8 @@
 """The port between whoever owns the motion queue and whatever plans motions.
 
 A `Motion` is one motion instruction with all that was in force when the advance run met it. An
-`Arm` appends motions to one unbroken path, decides where they blend, and tells when the path passes
-which places. Times are whole microseconds of the virtual clock, lengths millimetres, angles
+`Arm` appends motions to one unbroken path, decides where they blend, and reports when the path
+passes which places. Times are whole microseconds of the virtual clock, lengths millimetres, angles
 degrees, speeds as their system variables have them. What an arm will do may still change while it
 is on its way (a further motion is appended, the override changes, it brakes), so `Arm.next_event`
 is asked anew each time.

@@ -41,17 +41,18 @@ _MOST_SHOWN: Final = 8
 _ORIGINS: Final = {
     "library": "from the library",
     "package": "by the signature of an option package",
-    "signature": "by its uses only",
-    "place": "at a place that the arm reaches",
+    "signature": "derived from its uses",
+    "place": "at a point that the arm can reach",
     "default": "with the controller's default",
-    "argument": "as arguments of the routine that it begins with",
-    "unset": "with a value that nothing in the project sets",
-    "unreadable": "in place of lines that cannot be read, which are left out,",
+    "argument": "as arguments of the first routine",
+    "unset": "with a value that the project never sets",
+    "unreadable": "in place of unreadable lines, which are left out,",
 }
 #: Where a stand-in comes from: our own version of it, the signature that its option package has,
-#: that which its uses tell, also of points, which get places of their own, or the controller's
-#: default for data that $config.dat would declare; ``argument`` is a parameter of what the program
-#: begins with, ``unset`` is declared and has no value, ``unreadable`` a line that cannot be read.
+#: that which follows from its uses, also of points, which get places of their own, or the
+#: controller's default for data that $config.dat would declare; ``argument`` is a parameter of what
+#: the program begins with, ``unset`` is declared and has no value, ``unreadable`` a line that
+#: cannot be read.
 Origin = Literal[
     "library", "package", "signature", "place", "default", "argument", "unset", "unreadable"
 ]
@@ -61,7 +62,7 @@ _Places = dict[str, tuple[Module, ast.Name]]
 
 @dataclass(frozen=True, slots=True)
 class StandIn:
-    """A name that no file declares: what it is, where from it stands in, and its first use."""
+    """A name that no file declares: its kind, the origin of its stand-in, and its first use."""
 
     name: str
     kind: _Kind

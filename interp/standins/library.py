@@ -1,4 +1,4 @@
-"""What controllers and their packages bring along, as KRL of our own in ``library/``.
+"""The libraries of controllers and packages, as KRL of our own in ``library/``.
 
 A backup often lacks the routines behind inline forms, and $config.dat with what they need. They are
 written from the rules and from public manuals. Each routine and each declaration stands alone, so

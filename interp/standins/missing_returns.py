@@ -2,7 +2,7 @@
 
 On a controller that stops the program. Where things stand in, the RETURN may be a line that is
 missing or was skipped. So two statements stand at the end of each function: a RETURN without a
-value, which fails there, is told and skipped, and one with the first value of its type.
+value, which fails there, is reported and skipped, and one with the first value of its type.
 """
 
 from __future__ import annotations

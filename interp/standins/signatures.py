@@ -1,8 +1,8 @@
-"""Declarations for names that nothing declares, from what their uses tell.
+"""Declarations for names that nothing declares, derived from their uses.
 
 A routine becomes its signature alone: it does nothing, gives variables passed to it a value where
 they have none, and returns a default. The defaults are those with which a program goes on: TRUE for
-a function that tells whether something has worked, but what ends a loop where one asks for it, as
+a function that reports whether something has worked, but what ends a loop where one asks for it, as
 for a truth value that nothing assigns; 0 for a function's numbers; for a number that nothing
 assigns the first that a SWITCH asks for, else 1; for a point a place of its own that the arm
 reaches. What is only waited for, and never assigned, is an input; what
@@ -100,7 +100,7 @@ class Signatures:
     # ------------------------------------------------------------------------- data
 
     def data(self, name: str, use: DataUse, *, is_last: bool, access: str = "GLOBAL ") -> list[str]:
-        """The lines that declare a variable, none where nothing tells its type.
+        """The lines that declare a variable, none where its type is unknown.
 
         When ``is_last``, a variable of which nothing is known is an INT, and arrays have values.
         """
@@ -120,7 +120,7 @@ class Signatures:
             return [f"DECL {access}{kind.name} {name}{given}"]
         sizes = self._sizes(use, is_text=kind.is_text)
         lines = [f"DECL {access}{kind.name} {name}[{','.join(map(str, sizes))}]"]
-        if not is_last:  # values tell no type, and there are many
+        if not is_last:  # values imply no type, and there are many
             return lines
         is_placed = name in self.placed
         type_ = self._find_type(kind.name)

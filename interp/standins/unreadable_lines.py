@@ -2,7 +2,7 @@
 
 A controller selects no such program. Offline most of it can be run all the same: a statement that
 cannot be read becomes a call of `UNREADABLE`, a routine that no file has and for which one stands
-in that does nothing, so that the trace tells when the line was passed; so does a condition, which
+in that does nothing, so that the trace shows when the line was passed; so does a condition, which
 counts as TRUE. A loop that counts is gone through once. A declaration that cannot be read is left
 out: stand-ins take its place.
 """
@@ -19,7 +19,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 
-#: What is called in place of a statement that cannot be read: a name that nobody gives.
+#: What is called in place of a statement that cannot be read: a name that no program uses.
 UNREADABLE: Final = "UNREADABLE__LINE"
 _DECLARES: Final = frozenset(
     "DECL GLOBAL CONST INT REAL BOOL CHAR STRUC ENUM SIGNAL CHANNEL EXT EXTP EXTFCT EXTFCTP IMPORT "

@@ -1,7 +1,7 @@
 """Values for data that a project declares, reads and never sets: panel, PLC or a lost file set it.
 
 A data list may declare a variable without a value. Where a file of the project gives it one, in any
-way, nothing is done: when it is read too early is for the run to tell. Else every run would end
+way, nothing is done: when it is read too early is for the run to show. Else every run would end
 there, on a controller too, but for what somebody outside has written into it.
 """
 

@@ -1,4 +1,4 @@
-"""What the uses of undeclared names tell of them: a type, indices, members, arguments.
+"""Uses of undeclared names, from which follow: a type, indices, members, arguments.
 
 A name that no file declares is used all the same. ``X=3.5`` says that X is a number, ``WAIT FOR X``
 that it is a truth value, ``PTP X`` that it is a position, ``X[2].NR`` that it is an array of
@@ -82,7 +82,7 @@ class DataUse:
 
     @property
     def is_told(self) -> bool:
-        """Whether anything tells its type."""
+        """Whether its type is known."""
         return bool(self.types or self.members or self.constants or self.motions or self.is_text)
 
 

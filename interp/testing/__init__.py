@@ -1,1 +1,1 @@
-"""What unit tests of robot programs need of a run: routines called, stood in for, and covered."""
+"""Runs of unit tests of robot programs: calls of routines, stand-ins, coverage."""

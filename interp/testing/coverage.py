@@ -1,6 +1,6 @@
-"""Which statements and branches of a program runs have executed, from the events of their traces.
+"""Coverage of statements and branches, from the events of traces.
 
-A branch is a way out of IF, UNTIL and SWITCH as the trace tells it, and of a FOR or WHILE whether
+A branch is a way out of IF, UNTIL and SWITCH as the trace records it, and of a FOR or WHILE whether
 its body was entered, and whether it was passed by without a single pass.
 """
 
@@ -93,7 +93,7 @@ class Coverage:
 
 @dataclass(slots=True)
 class _Passes:
-    """Follows the lines of a task, to tell the first pass of a loop from the others."""
+    """Follows the lines of a task, to distinguish the first pass of a loop from the others."""
 
     files: Mapping[str, _Statements]
     counts: CoverageRecord

@@ -63,7 +63,7 @@ def with_drivers(
     for name, bodies in stand_ins.items():
         found = [one for one in program.routines.values() if one.node.name.key == name.upper()]
         if not found:
-            raise DriverError(f"no routine is called {name!r}, so nothing can stand in for it")
+            raise DriverError(f"no routine is called {name!r}, so no stand-in can replace it")
         for routine in found:
             path = routine.unit.module.path
             if path not in texts:
@@ -145,7 +145,7 @@ def _shim(routine: Routine, own: str) -> tuple[int, int, str]:
     end = max(text.rfind("\n", 0, node.span[1]), text.rfind("\r", 0, node.span[1])) + 1
     line_ends = _LINE_END.findall(text[start:end])
     if not line_ends:
-        raise DriverError(f"{routine.name} is empty, so nothing can stand in for it")
+        raise DriverError(f"{routine.name} is empty, so no stand-in can replace it")
     arguments = [one.name.text + "[]" * (one.indices is not None) for one in node.parameters]
     call = f"{own}({', '.join(arguments)})"
     call = call if node.result is None else f"RETURN ({call})"

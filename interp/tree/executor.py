@@ -115,7 +115,7 @@ class TreeExecutor:
             request = self._advanced(answer)
         except RuntimeFailure as error:  # a routine that cannot even begin
             request = Fail(self._at(), error)
-        except Exception as error:  # a defect of ours, which is told as one
+        except Exception as error:  # a defect of ours, which is reported as one
             request = Crash(self._at(), f"{type(error).__name__}: {error}")
         if isinstance(request, Fail | Crash):
             self._final = request

@@ -1,4 +1,4 @@
-"""Where values are: places of the program's own data, and system variables.
+"""Storage locations: places of the program's own data, and system variables.
 
 A `LocalPlace` is an element of a list: of the one cell of a variable, of the members of a
 structure, of the elements of an array. So a reference to a part is a place like any

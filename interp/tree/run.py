@@ -1,4 +1,4 @@
-"""What all routines of a running program share, and the frame of each of them.
+"""State shared by all routines of a running program, and the frame of each.
 
 Executing a routine is a generator: it yields a request and is sent the reply, and it yields a
 `Call` and is sent the result. So calls do not nest in Python, however deep they are in KRL.
@@ -120,7 +120,7 @@ class ProgramState:
         return At(frame.unit.module.path, frame.line, self.depth)
 
     def begin(self, frame: Frame, line: int) -> Steps[None]:
-        """A statement begins: it is counted, told, and time may pass before it."""
+        """A statement begins: it is counted and reported, and time may pass before it."""
         frame.line, frame.has_begun = line, True
         self.guard = Guard.NOW if self.guard is Guard.NEXT else Guard.OFF
         if self.begun >= self.limits.statements:

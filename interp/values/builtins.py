@@ -188,7 +188,7 @@ def _word(type_name: str, name: str) -> EnumValue:
 class PredefinedFunction:
     """A predefined function that only computes.
 
-    ``changes_more`` tells that the arguments behind those of the table are passed :OUT too.
+    ``changes_more`` says that the arguments after those of the table are passed :OUT too.
     """
 
     name: str
@@ -242,7 +242,7 @@ BUILTINS: Mapping[str, PredefinedFunction] = MappingProxyType(
 )
 
 #: All predefined routines that need the world, or act on it. CAST_FROM and CAST_TO are among them
-#: because no rule tells how values lie in a buffer.
+#: because no rule says how values lie in a buffer.
 WORLD: frozenset[str] = frozenset(
     """
     ACTIVATE_FORCE_MODE ADVANCEDVECTORMOVEON CAL_TO_RDC CANCELPROGSYNC CAST_FROM CAST_TO CCLOSE

@@ -1,6 +1,6 @@
-"""What can go wrong while a program runs, and the catalogue of all faults [design section 8].
+"""The catalogue of all faults of a running program [design section 8].
 
-A fault is made from its slug by `fault` and from nothing else. Its text tells no values and no
+A fault is made from its slug by `fault` and from nothing else. Its text contains no values and no
 names, so that every executor, the one in C included, stops a program with an equal fault.
 """
 

@@ -1,7 +1,7 @@
 """Operators on values: one table of typed primitives, and the way from operators to them.
 
 A `Primitive` works on operands of fixed kinds; it is what becomes an instruction of the machines.
-`select` tells, from the kinds that the checker knows, which primitive an operator is and how its
+`select` says, from the kinds that the checker knows, which primitive an operator is and how its
 operands are converted before; `apply` does the same for values at hand. Both read one table, so an
 operator has one meaning.
 
@@ -37,7 +37,7 @@ from interp.values.geometric_operator import composed
 from interp.values.values import EnumValue, StructureValue, Value, integer, rounded, single
 from support.lazy_dataclass import dataclass
 
-#: What primitives tell apart. FRAME is any pose: FRAME, POS, E3POS, E6POS.
+#: What primitives distinguish. FRAME is any pose: FRAME, POS, E3POS, E6POS.
 Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
 
 
@@ -45,7 +45,7 @@ Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
 class Primitive:
     """An operation on operands of fixed kinds.
 
-    ``faults`` are the slugs of the faults that it can raise, ``sentence`` tells what it gives.
+    ``faults`` are the slugs of the faults that it can raise, ``sentence`` says what it returns.
     """
 
     name: str

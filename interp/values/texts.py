@@ -2,8 +2,8 @@
 
 Each takes its arguments as `interp.values.builtins.call` prepares them and gives its result and the
 new values of arguments passed :OUT, by place. Where a function fails it says so by its result and
-changes nothing; this and all that is marked *unconfirmed* is our decision, told by no rule. Letter
-case is that of A to Z only, whatever the code page.
+changes nothing; this and all that is marked *unconfirmed* is our decision, stated by no rule.
+Letter case is that of A to Z only, whatever the code page.
 """
 
 from __future__ import annotations

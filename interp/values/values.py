@@ -245,7 +245,7 @@ def empty(type_: Type) -> Value | None:
             )
         case Scalar() | Enumeration():
             return None
-    raise LinkError(f"nothing can be of {type_}")
+    raise LinkError(f"no value can have the type {type_}")
 
 
 _ZEROS: Mapping[Type, Value] = {INT: 0, REAL: 0.0, BOOL: False, CHAR: "\0"}
@@ -264,7 +264,7 @@ def zero(type_: Type) -> Value:
             return EnumValue(type_, 0)
         case Scalar():
             return _ZEROS[type_]
-    raise LinkError(f"nothing can be of {type_}")
+    raise LinkError(f"no value can have the type {type_}")
 
 
 def copied(value: Any) -> Any:
@@ -322,7 +322,8 @@ def converted(value: Value, to: Type) -> Value:
     """A value as a variable of type ``to`` receives it; shares no part with ``value``.
 
     Faults ``inadmissible`` where that cannot be, ``overflow`` where a REAL is no INT [ARI-03,
-    ARI-11, TYP-12]. What may be converted is told by `grammar.semantics.assignability.assignable`.
+    ARI-11, TYP-12]. What may be converted is defined by
+    `grammar.semantics.assignability.assignable`.
     """
     if isinstance(to, Structure | Array):
         target = empty(to)

@@ -1,4 +1,4 @@
-"""Which commands `krl` has."""
+"""The commands of `krl`, loaded one at a time."""
 
 from collections.abc import Iterable
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""`krl demo`: a run of the program that comes along, and its page."""
+"""`krl demo`: runs the example program and opens its page."""
 
 import webbrowser
 from pathlib import Path

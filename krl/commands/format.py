@@ -55,7 +55,7 @@ def format_programs(
             with gc_paused():
                 counts[_format(found, check)] += 1
     except IngestError as error:
-        if counts[_Outcome.SKIPPED]:  # that was told where it was met
+        if counts[_Outcome.SKIPPED]:  # reported where it was met
             return BAD_INPUT
         raise InputError(str(error)) from error
     typer.echo(

@@ -79,7 +79,7 @@ def nightly(
     """
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
-        raise InputError(f"--date: {name!r} is not fit for the name of a folder")
+        raise InputError(f"--date: {name!r} cannot be the name of a folder")
     check_files(history)
     folder = out / name
     folder.mkdir(parents=True, exist_ok=True)
@@ -136,7 +136,7 @@ def _reported(
     write_atomic(folder / "summary.md", nightly_summary({**run, "changes": told}))
     for one in failed:
         typer.echo(one_line(f"failed: {one['what']}"))
-    for line in told or ["nothing changed since the last night"]:
+    for line in told or ["nothing changed since the last nightly run"]:
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
     return failed
@@ -148,7 +148,7 @@ def _broken_off(folder: Path) -> "Iterator[Failure]":
 
     earlier = [one for one in folder.parent.iterdir() if one.is_dir() and one.name < folder.name]
     if earlier and not (last := max(earlier)).joinpath("night.json").exists():
-        yield Failure(what=f"{OF_THE_RUN}of {last.name} broke off", page="", command="")
+        yield Failure(what=f"{OF_THE_RUN}of {last.name} did not finish", page="", command="")
 
 
 def _write_breakdown(what: str, went: dict[str, dict[str, Any]], folder: Path) -> None:

@@ -77,7 +77,7 @@ def recover_auto(
             )
     shown, held, origins = held_out(files, fraction, seed)
     if not files:
-        raise InputError("nothing that was named is source that can be read")
+        raise InputError("no readable source was found")
     if not shown:
         raise InputError("no file is left to learn from: hold out less")
     generated = evenly(language.negatives(4 * _NEGATIVES, _SEED), _NEGATIVES)
@@ -100,9 +100,9 @@ def recover_auto(
             _write(growth, record, out, json_file, struck, began)
         record["finished"] = induction.is_finished
         if not induction.is_finished:
-            typer.echo("stopped at the limit of rounds; --resume goes on", err=True)
+            typer.echo("stopped at the limit of rounds; --resume continues", err=True)
     except KeyboardInterrupt:
-        typer.echo(f"interrupted; {out} holds what was done, --resume goes on", err=True)
+        typer.echo(f"interrupted; {out} holds the results so far, --resume continues", err=True)
     record["rules"] = sum(not rule.is_lexer for rule in growth.grammar.rules)
     if target and goal:
         record["target"] = {
@@ -128,7 +128,7 @@ def _begun(
     if not (resume or strike):
         return Growth(start, start), []
     if not (out / "start.g4").is_file():
-        raise InputError(f"{out}: there is nothing to go on from")
+        raise InputError(f"{out}: there is nothing to resume")
     start = read_file(out / "start.g4")
     constructs = list(Ledger.read(out / "constructs").constructs)
     struck_file = out / "struck.json"

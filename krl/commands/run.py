@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class Level(StrEnum):
-    """What the trace tells."""
+    """What the trace records."""
 
     WORLD = "world"
     FULL = "full"
@@ -167,7 +167,7 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
 def _tracing(file: Path | None) -> Iterator[TextIO | None]:
     """The trace, written beside its place and moved there when it is whole.
 
-    A process that is told to end (SIGTERM) leaves no part of one.
+    A process that receives SIGTERM leaves no part of one.
     """
     if file is None:
         yield None

@@ -1,4 +1,4 @@
-"""Where a program stops: breakpoints at lines, watched variables, and faults."""
+"""Breakpoints at lines, watched variables, and faults."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""The program being debugged: its thread, where it has stopped, and how it goes on.
+"""The program being debugged: its thread, where it has stopped, and how it continues.
 
 Requests are read on one thread. The program runs on another one, which waits where it has stopped
 until a request lets it go on; only meanwhile is it looked into.
@@ -151,7 +151,7 @@ class Debuggee:
         return {"allThreadsContinued": True, "then": then}
 
     def wait_for_stop(self) -> None:
-        """Raise `Refused` where the program runs, so that nobody looks into it."""
+        """Raise `Refused` where the program runs, so that it is not inspected meanwhile."""
         if not self._stopped.is_set():
             raise Refused("the program runs")
 
@@ -180,7 +180,7 @@ class Debuggee:
                 status = 0
         except InputError as error:
             self.output(f"{error}\n", "stderr")
-        except Exception as error:  # a defect of ours, which the client is told
+        except Exception as error:  # a defect of ours, which is reported to the client
             self.output(f"a defect in krl itself, {type(error).__name__}: {error}\n", "stderr")
         finally:
             with contextlib.suppress(OSError, ValueError):  # the client may have gone

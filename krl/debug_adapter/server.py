@@ -1,4 +1,4 @@
-"""How clients reach the debug adapter: over standard input and output, or over a port."""
+"""Transport of the debug adapter: standard input and output, or a port."""
 
 import contextlib
 import os

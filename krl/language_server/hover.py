@@ -1,4 +1,4 @@
-"""What stands at a place of a program: its meaning in words, and where it is declared."""
+"""Hover: the meaning of a name in words, and where it is declared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the server knows, in the words of the protocol, and places there and back.
+"""Conversion between the server's data and the types of the protocol.
 
 Editors count lines and characters from 0, and characters in the units of UTF-16; the project counts
 both from 1, in characters.

@@ -1,4 +1,4 @@
-"""What each name of a file is, for the colours of an editor; words and signs are the grammar's."""
+"""Semantic tokens: the kind of each name in a file; words and signs are the grammar's."""
 
 from __future__ import annotations
 

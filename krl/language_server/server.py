@@ -30,7 +30,7 @@ from krl.language_server.workspace import Looked, OpenProject
 from krl.program_loading import project_root
 from krl.project_settings import FILE_NAME
 
-# Seconds without a change after which files are asked that nobody looks at.
+# Seconds without a change after which files without an open view are checked.
 _PAUSE = 0.3
 
 _AtPlace = (
@@ -342,7 +342,7 @@ class _Handlers:
         return None
 
     def rename(self, given: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-        """Another name in all places of one; what is wrong with it is told the editor."""
+        """Another name in all places of one; an invalid one is reported to the editor."""
         asked = self._asked(given)
         if asked is None:
             return None

@@ -36,7 +36,7 @@ from support.gc_pause import gc_paused
 #: More files than the largest backup has; a folder with more is somebody's whole disk.
 MOST_FILES = 5_000
 _NONE = Settings(Path())
-#: Findings that are no faults: why the robot stops. `krl check` tells them when asked.
+#: Findings that are no faults: why the robot stops. `krl check` reports them with --stops.
 _SOUGHT = ("KSS", *(f"KRL{digit}" for digit in "01234579"))
 
 
@@ -295,7 +295,7 @@ class OpenProject:
     def _settings(self, path: str) -> Settings:
         """What was agreed on for a file.
 
-        Settings that cannot be read count as none: who checks on the command line is told of them.
+        Unreadable settings count as none; `krl check` reports them.
         """
         folder = Path(path).parent
         if folder not in self._agreed:

@@ -1,1 +1,1 @@
-"""How fast the survey is, and how well it finds damage done to a grammar on purpose."""
+"""Speed of the survey, and how well it finds damage done to a grammar on purpose."""

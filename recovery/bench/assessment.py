@@ -1,4 +1,4 @@
-"""How the survey does on a damaged grammar (`recovery.bench.mutation`), mutant by mutant."""
+"""Assessment of the survey on a damaged grammar (`recovery.bench.mutation`), mutant by mutant."""
 
 from __future__ import annotations
 

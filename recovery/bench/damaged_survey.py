@@ -1,4 +1,4 @@
-"""What surveying damaged source costs, causes and proposals included, as there is more of it."""
+"""Cost of surveying damaged source, causes and proposals included, at growing sizes."""
 
 from __future__ import annotations
 

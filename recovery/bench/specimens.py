@@ -1,4 +1,4 @@
-"""What the mutation bench works on: programs the whole grammar reads, and mutants of it."""
+"""Specimens of the mutation bench: programs that the whole grammar reads, and mutants of it."""
 
 from __future__ import annotations
 

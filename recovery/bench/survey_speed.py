@@ -1,4 +1,4 @@
-"""How fast the survey reads: cold and warm, beside ANTLR, and as the corpus grows.
+"""Speed of the survey: cold and warm, beside ANTLR, and at growing sizes.
 
 Every figure comes from a process of its own, so that nothing remembered from one measurement helps
 the next. Importing modules is not counted; reading the grammar, building the recogniser and, where

@@ -1,4 +1,4 @@
-"""What a search for causes finds: lines with one cause, and edits that would mend them."""
+"""Causes: lines that fail for one reason, and edits that would mend them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole programs under an edit: how far can they be read, and which failures are gone?
+"""Trial of an edit on whole programs: how far they can be read, and which failures are gone.
 
 A line can be read and the file still not: the edit may accept it at the wrong place, once
 where it comes again, or without what belongs to it on later lines. So the best edits for a line

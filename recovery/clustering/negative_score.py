@@ -1,4 +1,4 @@
-"""How many programs that must stay rejected an edit would accept.
+"""Score of an edit on negatives: how many programs it would wrongly accept.
 
 What an edit accepts besides has to use the text that the edit writes, and so has every token that
 this text never goes without. Of thousands of programs only a few have to be read for that reason.

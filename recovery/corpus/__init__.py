@@ -1,1 +1,1 @@
-"""The public part of the corpus: which repositories, and how their files get here."""
+"""The public part of the corpus: its repositories, and how their files are fetched."""

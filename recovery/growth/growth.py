@@ -1,4 +1,4 @@
-"""The growth of the grammar over a corpus: what each construct of the ledger brought.
+"""Growth of the grammar over a corpus: the effect of each construct of the ledger.
 
 The ledger is replayed from the restrictive start; after each accepted construct the corpus is read
 and the grammar measured. The record is exact: it holds what surveys under all these grammars would

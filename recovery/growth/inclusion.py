@@ -1,4 +1,4 @@
-"""Does a grammar only add to another? Then what parsed under the one parses under the other.
+"""Inclusion of grammars: what parses under one also parses under another that only adds to it.
 
 Proved, not guessed: every rule of the old grammar is in the new one and may still be what it was,
 so each derivation of the old one is a derivation of the new one, token by token. That does not

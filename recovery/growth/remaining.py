@@ -1,4 +1,4 @@
-"""What a grammar leaves over of a corpus: files it cannot read, lines it can read in two ways."""
+"""Remainder of a corpus under a grammar: unreadable files and ambiguous lines."""
 
 from __future__ import annotations
 

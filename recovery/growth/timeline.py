@@ -1,4 +1,4 @@
-"""A corpus read under each of a row of grammars: which lines of which file fail when.
+"""A corpus read under a sequence of grammars: which lines of which file fail when.
 
 The row is that of a growing grammar, so most of a corpus stays as it was from one grammar to the
 next. A file that parses is not read again while the grammar only adds

@@ -61,7 +61,7 @@ class Folding:
         operands: Iterable[tuple[int, ...]],
         prefixes: frozenset[str] = frozenset(),
     ) -> None:
-        """``operands`` of the corpus tell what is narrow.
+        """``operands`` of the corpus define what is narrow.
 
         ``prefixes`` are words that may be missing at the head of a line.
         """

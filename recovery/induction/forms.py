@@ -43,7 +43,7 @@ class _Key:
 
 
 class FormWriter:
-    """Writes forms for one grammar; ``operands`` of the corpus tell what is narrow."""
+    """Writes forms for one grammar; ``operands`` of the corpus define what is narrow."""
 
     def __init__(self, reader: SymbolReader, operands: Iterable[tuple[int, ...]]) -> None:
         self.reader = reader

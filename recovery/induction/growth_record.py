@@ -1,4 +1,4 @@
-"""What a recovery of its own accord found, as a ledger and as a record.
+"""The result of an automatic recovery, as a ledger and as a record.
 
 The ledger is a folder of constructs like that of the grammar in force
 (`recovery.ledger.ledger`), so it is read, shown and replayed by the same commands.

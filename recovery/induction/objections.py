@@ -1,4 +1,4 @@
-"""What speaks against edits: they do not fit, or accept what must stay rejected.
+"""Objections to edits: they do not fit, or accept what must stay rejected.
 
 That are written negatives; and lines that can be read, with one token lost or doubled, where an
 edit lets more of them pass than lines have shown it: a broken file teaches such forms.
@@ -93,7 +93,7 @@ class Judge:
     def _is_read_anew(self, wider: Recognizer, negative: Negative) -> bool:
         """Whether a negative was rejected at the line that is wrong, all words of it known.
 
-        One that was rejected at another line has told nothing about the wrong one so far; nor has
+        One that was rejected at another line has shown nothing about the wrong one so far; nor has
         one that misuses a word which both grammars take for a name.
         """
         if negative.line is None:

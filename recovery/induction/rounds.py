@@ -1,4 +1,4 @@
-"""Rounds: read the corpus, infer edits from what fails, take those that prove themselves, repeat.
+"""Rounds: read the corpus, infer edits from failures, keep those that hold, repeat.
 
 Several edits are taken in a round. Each is first tried on the lines it was inferred from; then the
 most useful are looked at one by one. Refused are those that rest on too little, that accept a

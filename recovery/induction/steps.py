@@ -1,4 +1,4 @@
-"""Steps of a growth: edits taken or refused, on what evidence, and how files then read."""
+"""Steps of a growth: edits accepted or refused, their evidence, and how files then parse."""
 
 from __future__ import annotations
 

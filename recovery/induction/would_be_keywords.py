@@ -1,10 +1,10 @@
-"""Which names of a corpus are keywords that the grammar lacks, decided over all lines at once.
+"""Names in a corpus that are keywords missing from the grammar, decided over all lines.
 
 A name is meant as a keyword where no name can be: at the head of a line with an operand behind it,
 or alone; beside an operand with no sign between. The last says only that one of the two is one.
-What tells them apart is the company: in the same surroundings a language has few keywords and any
-number of names. So only surroundings with few different words count, and a word has to be found in
-such surroundings nearly always, in several origins.
+What distinguishes them is their surroundings: in the same surroundings a language has few keywords
+and any number of names. So only surroundings with few different words count, and a word has to be
+found in such surroundings nearly always, in several origins.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A construct as the records of the pages have it: what it is, its evidence, its edit."""
+"""A construct as a record for pages: its description, evidence and edit."""
 
 from __future__ import annotations
 

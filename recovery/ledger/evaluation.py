@@ -1,4 +1,4 @@
-"""Evaluation of a construct: what it brings, what it costs, and why it may not be accepted."""
+"""Evaluation of a construct: its effect, its cost, and reasons to refuse it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What there is to see of a construct: a row of a list, a page of text, the difference it makes."""
+"""Overview of a construct: a row of a list, a page of text, the difference it makes."""
 
 from __future__ import annotations
 

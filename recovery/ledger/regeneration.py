@@ -1,4 +1,4 @@
-"""The parser of a new grammar: generated, and asked about the ledger's examples, before it is kept.
+"""The parser of a new grammar: generated, and tried on the ledger's examples, before it is kept.
 
 ANTLR's parser is the reference. Where it does not treat an example as our recogniser does, the two
 disagree about the grammar, and the grammar is not ready.

@@ -1,4 +1,4 @@
-"""Negatives: programs that must stay rejected, and whether a grammar does reject them.
+"""Negatives: programs that a grammar must reject, and whether it does.
 
 The written ones lie in ``corpus/negatives`` with their reason in front; the others are generated
 (`recovery.negatives.generate`). An edit to the grammar that accepts one of them is too wide.

@@ -1,4 +1,4 @@
-"""What decides how restrictive and how fitting an edit of a grammar is.
+"""Profile of a grammar, by which edits are ranked as restrictive and fitting.
 
 How many rules lead to a rule, which rules gather kinds of statement or operand, which end with a
 line end or are blocks, and what they write elsewhere.

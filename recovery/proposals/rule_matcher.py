@@ -1,4 +1,4 @@
-"""Which rules of a grammar read which tokens.
+"""Matching of tokens to the rules of a grammar that read them.
 
 For each rule: are these tokens a sentence of it, or the beginning of one?
 """

@@ -1,4 +1,4 @@
-"""Whether a program fails in the same way as a line does, and in no other.
+"""Whether a program fails in the same way as a line, and in no other.
 
 A failure is the same where the same token could not come and the grammar was doing the same.
 """

@@ -1,4 +1,4 @@
-"""What reading one file under a grammar gives: its failing lines, ready to travel and to keep."""
+"""Failing lines of a file under a grammar, ready to be sent and cached."""
 
 from __future__ import annotations
 

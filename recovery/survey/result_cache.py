@@ -1,4 +1,4 @@
-"""Results of a survey, kept for the next one by content, grammar and code."""
+"""Results of a survey, cached by content, grammar and code."""
 
 from __future__ import annotations
 

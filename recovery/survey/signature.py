@@ -1,4 +1,4 @@
-"""Signatures: what a failing line looks like, in readable words.
+"""Signatures: the shape of a failing line, in readable words.
 
 Real source has thousands of failing lines and few causes. A signature keeps what distinguishes
 causes (the word a line begins with, the token that could not come, the rule at work) and drops what

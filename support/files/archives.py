@@ -220,7 +220,7 @@ def _clean(name: str) -> str:
 
 
 def _problem(info: zipfile.ZipInfo) -> str | None:
-    """Say what forbids reading a member, as far as the directory tells."""
+    """The reason not to read a member, as far as the directory shows it."""
     mode = info.external_attr >> 16 if info.create_system == _UNIX else 0
     if stat.S_ISLNK(mode):
         return "symbolic link"

@@ -1,4 +1,4 @@
-"""One digest of code and tables, by which kept results and workers of a cluster go stale."""
+"""One digest of code and tables, which invalidates caches and workers of a cluster."""
 
 from __future__ import annotations
 

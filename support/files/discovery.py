@@ -1,4 +1,4 @@
-"""From what a person names to KRL files: folders, files and archives, each file exactly once.
+"""Discovery of KRL files in folders, files and archives, each file exactly once.
 
 `discover` says where the candidates lie and `read` fetches one, in any process; `decode` turns the
 bytes into text. Nothing is lost: what cannot be read becomes a `Skipped` with its reason. The order
@@ -23,7 +23,7 @@ SUFFIXES = (".src", ".dat", ".sub")
 """How names of KRL files end, in any case of letters."""
 
 IGNORED_FOLDERS = {"node_modules", "__pycache__", "__macosx"}
-"""Folders, in lower case, that hold nobody's programs. Hidden ones, `.git` too, are ignored."""
+"""Folders, in lower case, that hold no programs of users. Hidden ones, `.git` too, are ignored."""
 
 DRIVE_FOLDERS = {"program", "system", "mada", "tp", "folgen"}
 """Folders, in lower case, that lie in R1: one called R1 may be somebody's name for a robot."""

@@ -1,4 +1,4 @@
-"""Values that take long to make, kept for the user and found by all that they are made of.
+"""A cache of values that take long to compute, keyed by all that they depend on.
 
 They lie as pickles below `support.files.user_cache`, where native code lies too: whoever can write
 there can run what they like as this user anyway. What comes from elsewhere is never read this way

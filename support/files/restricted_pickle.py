@@ -1,6 +1,6 @@
-"""Values of our own classes as bytes, read back without trusting who wrote the bytes.
+"""Serialisation of our own classes that is safe to read from untrusted bytes.
 
-Pickle builds whatever it is told to; here it builds data classes and enumerations of the packages
+Pickle can build any object; here it builds only data classes and enumerations of the packages
 that are named, and plain values. Whoever can write the bytes can make up such values, and nothing
 else.
 """

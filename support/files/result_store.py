@@ -1,4 +1,4 @@
-"""Results kept from one run to the next, in one SQLite file a folder.
+"""Results kept between runs, in one SQLite file per folder.
 
 A damaged or foreign file is put aside and begun anew, never trusted: what is in it can always be
 worked out again.

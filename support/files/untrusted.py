@@ -1,4 +1,4 @@
-"""Small files from outside: opened without waiting, read with limits on size and depth.
+"""Reading of small untrusted files: without blocking, limited in size and depth.
 
 KRL itself comes in through `support.files.discovery`. This is for grammars,
 constructs, profiles, scripts and recordings.

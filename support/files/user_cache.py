@@ -1,4 +1,4 @@
-"""The folder in which programs of a user keep what can be worked out again."""
+"""The user's cache folder, for what can be computed again."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a function costs: time and memory in a process of its own."""
+"""Cost of a function: time and memory in a separate process."""

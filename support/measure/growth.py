@@ -1,4 +1,4 @@
-"""How the cost of a call grows with the size of its input."""
+"""Growth of the cost of a call with the size of its input."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from support.measure.peak_memory import peak_memory
 _T = TypeVar("_T")
 
 _NOTICEABLE_S: Final = 0.2
-"""The first size costs so much at least: less cannot be told from the noise of a machine."""
+"""The first size costs so much at least: less is lost in the noise of a machine."""
 _NOTICEABLE_BYTES: Final = 16 << 20
 """Less memory than this is not counted as growth: allocators take it in steps."""
 _REPEATED_ABOVE: Final = 1.1

@@ -1,4 +1,4 @@
-"""A function called in a fresh process, so that a measurement finds nothing remembered."""
+"""Calls in a fresh process, so that a measurement finds no cached state."""
 
 from __future__ import annotations
 

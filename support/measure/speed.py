@@ -1,4 +1,4 @@
-"""What benches of speed record alike: the machine, where the time goes, how cost grows."""
+"""Shared by the speed benches: the machine, time by phase, growth of cost."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ROUNDS: Final = 3
 
 
 def peak_mb() -> float | None:
-    """The most memory that this process took, in MB; ``None`` where the system does not tell."""
+    """The most memory that this process took, in MB; ``None`` where the system does not say."""
     peak = peak_memory()
     return None if peak is None else peak / MB
 

@@ -1,4 +1,4 @@
-"""A command under limits of time and memory, of which nothing goes on when it has ended."""
+"""A command with limits of time and memory; no process of it survives its end."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def run_limited(
     ``memory`` is how many bytes of addresses each of its processes may have, which only Linux
     enforces. ``hear`` is given what it writes to standard error, piece by piece, from a thread;
     all of it has been given when this returns. Ends with all processes of the command, also when
-    this process is told to end. A command that cannot be started raises OSError; on Linux it has
-    the status 127 instead.
+    this process receives a signal to end. A command that cannot be started raises OSError; on Linux
+    it has the status 127 instead.
     """
     if sys.platform == "linux":  # a limit set from here could come after the command has begun
         limited = f'ulimit -v {memory // 1024} && exec "$@"'

@@ -1,4 +1,4 @@
-"""Processes of this machine: started afresh, and ended with the process that started them."""
+"""Worker processes on this machine: started afresh, ended with their parent."""
 
 from __future__ import annotations
 

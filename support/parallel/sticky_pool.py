@@ -1,4 +1,4 @@
-"""Processes chosen by number, so that a task finds what an earlier one left in its process.
+"""A pool with processes chosen by number, so that a task finds its process's earlier state.
 
 A pool gives a task to whichever process is free. Here each process is a pool of its own: what is
 read into one, syntax trees above all, is there when it is asked for and is never sent.

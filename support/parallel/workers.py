@@ -1,4 +1,4 @@
-"""What does tasks for us, be it processes of this machine or a Dask cluster."""
+"""Workers for tasks: processes of this machine or a Dask cluster."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def test_growth_goes_on_from_its_record(tmp_path: Path, capsys: pytest.CaptureFi
     for text in ("[", "[1]", '{"rows": [1]}'):
         target.write_text(text, encoding="utf-8")
         assert 2 == main(again)
-        assert capsys.readouterr().err.endswith("no record of krl bench growth to go on from\n")
+        assert capsys.readouterr().err.endswith("not a record of krl bench growth\n")
 
 
 def test_growth_leaves_out_what_cannot_be_made(capsys: pytest.CaptureFixture[str]) -> None:

@@ -109,7 +109,7 @@ def test_watches_changes_and_the_end(
         ("p TWICE(2)", "only variables, constants and operators can be looked at"),
         ("set 3 = 4", "only a variable has parts"),
         ("set I = TRUE", "a value cannot be assigned"),
-        ("goto 8", "refused: line 8 stands in the FOR of line 7, which has not begun"),
+        ("goto 8", "refused: line 8 is inside the FOR of line 7, which has not begun"),
         ("goto next", "goto: a number is missing"),
         ("frame 7", "there is no frame 7"),
         ("delete 1", "there is no breakpoint 1"),

@@ -103,7 +103,10 @@ def test_all_executors_may_begin_as_many(run: Run, monkeypatch: pytest.MonkeyPat
 def test_what_no_file_has(run: Run) -> None:
     """What no file has stands in and is listed; with --strict its call fails when it is reached."""
     status, out, err = run("NOWHERE ( )\n")
-    assert (0, "stood in: by its uses only NOWHERE (main.src:2)") == (status, err.splitlines()[0])
+    assert (0, "stand-ins: derived from its uses NOWHERE (main.src:2)") == (
+        status,
+        err.splitlines()[0],
+    )
     status, out, _ = run("NOWHERE ( )\n", "--strict")
     assert 1 == status
     assert "main.src: fault after 0 s at main.src:2: NOWHERE is declared nowhere\n" == out
@@ -405,13 +408,13 @@ def test_bad_files(run: Run, tmp_path: Path, name: str, content: bytes | None, s
 def test_routines_that_move_are_named(run: Run) -> None:
     """Where a run began with a routine that does not move, those of its file that do are named."""
     status, _, err = run("END\nDEF go ( )\nPTP {A1 5}\nEND\nDEF idle ( )\n")
-    assert (0, "no motion in main; --routine begins elsewhere: go\n") == (status, err)
+    assert (0, "no motion in main; others can be selected with --routine: go\n") == (status, err)
 
 
 def test_what_the_first_motion_depends_on_is_named(run: Run) -> None:
     """Where no motion was made, the block around the first one is told."""
     status, _, err = run("IF $IN[2] THEN\nPTP {A1 5}\nENDIF\n")
-    assert (0, "no motion; the first one stands in main.src:2: IF $IN[2] THEN\n") == (status, err)
+    assert (0, "no motion; the first one is inside main.src:2: IF $IN[2] THEN\n") == (status, err)
 
 
 def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:

@@ -1,1 +1,1 @@
-"""What checks ask about a file: names in scope, types, constants, accesses, the flow graph."""
+"""Analyses that checks share: names in scope, types, constants, accesses, the flow graph."""

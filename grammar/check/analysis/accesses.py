@@ -1,7 +1,7 @@
-"""What a statement does to variables: reads them, assigns to them, or passes them on.
+"""Accesses of a statement to variables: reads, assignments, arguments.
 
 A block counts with its head alone: its condition, its bounds. What an interrupt or a trigger will
-do later is passed on, as nobody knows when it happens.
+do later is passed on, as the time is unknown.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Acc
 
 
 def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
-    """The arguments: those passed :IN are read, of all others nobody knows."""
+    """The arguments: those passed :IN are read, of all others it is unknown."""
     called = context.found(node.name)
     symbol = called.symbol if called else None
     known = symbol.parameters if isinstance(symbol, RoutineSymbol) else ()

@@ -31,7 +31,7 @@ _SETTLED = {"AND": False, "OR": True}
 
 
 def constant(context: Context, node: ast.Expression) -> Value | None:
-    """The value of an expression, ``None`` where only running tells it; it is noted in the context.
+    """The value of an expression, noted in the context; ``None`` where only a run can show it.
 
     The name of a CONST stands for its value. A text is given in quotation marks, so that it differs
     from a constant of an enumeration.

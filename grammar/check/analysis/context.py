@@ -1,4 +1,4 @@
-"""What every check is given: a file, what its names mean, and what its expressions are."""
+"""The context of a check: a file, the meaning of its names, the types of its expressions."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ class _Builder:
         return FlowGraph(start, end, tuple(self._steps))
 
     def _enter(self, part: _Part, step: FlowNode, statement: ast.Statement) -> bool:
-        """Lead on from a statement; tells whether a block was begun."""
+        """Continue from a statement; returns whether a block was begun."""
         match statement:
             case ast.Label(name=name):
                 self._labels.setdefault(name.key, step)

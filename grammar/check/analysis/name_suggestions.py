@@ -1,4 +1,4 @@
-"""What a misspelt name may mean: names that are near, or that begin with what was written."""
+"""Suggestions for misspelt names: similar names, or names with the same beginning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether an expression is an input, an output, or neither."""
+"""Direction of a signal: input, output, or neither."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SIDES: dict[str, Side] = {
 
 
 def written_side(node: ast.Expression) -> Side | None:
-    """The side of ``$IN[5]`` and its like, as the name tells it."""
+    """The side of ``$IN[5]`` and its like, as its name says."""
     root = root_variable(node)
     return _SIDES.get(root.name.key) if root else None
 

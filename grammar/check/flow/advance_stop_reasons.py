@@ -1,4 +1,4 @@
-"""Which statements stop the advance run, and for which documented reason.
+"""Statements that stop the advance run, with the documented reason.
 
 What a statement does when the advance run comes to it: the conditions it evaluates, what it reads
 and writes. What an interrupt or a trigger does later is none of that. The system's own tables tell
@@ -16,7 +16,7 @@ from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 
 _IN_STEP = "it is read or set in step with the robot"
-_WAITS = "the program goes on when the robot has come to it"
+_WAITS = "the program continues when the robot has reached it"
 #: Delivered with every controller, and written so that it does not stop without need [ADV-06].
 _HARMLESS = frozenset({"BAS"})
 

@@ -1,4 +1,4 @@
-"""Why the robot stops: what stops the advance run, and blends that are lost for it.
+"""Stops of the advance run, and blends that are lost for it.
 
 The advance run works ahead of the robot. A statement that has to be in step with the robot stops it
 [ADV-04 to ADV-07]; then the robot stops exactly at the point before, and a motion that was to be

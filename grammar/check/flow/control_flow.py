@@ -1,4 +1,4 @@
-"""Where a routine can go: EXIT, GOTO and labels, its end, what is never reached."""
+"""Control flow of a routine: EXIT, GOTO and labels, its end, unreachable statements."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _gotos(
                 goto.label,
                 f"{routine.node.name.text} has no label {goto.label.text}",
                 "CTL-07",
-                reason=f"it stands in {home}, another routine" if home else "",
+                reason=f"it is in {home}, another routine" if home else "",
                 fix=Fix(guess) if guess else None,
             )
             continue
@@ -184,5 +184,5 @@ def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> D
     assert before.statement is not None
     source = context.source
     line = line_of(source, before.statement)
-    message = f"this is never reached: nothing goes on behind line {line}"
+    message = f"this is never reached: the program does not continue after line {line}"
     return context.finding("unreachable", head(source, step.statement), message)

@@ -1,8 +1,8 @@
-"""What becomes of the data of a routine: read before it has a value, unused, counters changed.
+"""Data flow of a routine: reads before a value, unused variables, changed counters.
 
 Only the routine's own variables are followed: nothing else can reach them. Where no way through the
 routine gives a variable a value before it is read, the finding is certain as far as the language
-goes. Where some ways do and others do not, nobody knows whether these are ever taken: a note.
+goes. Where some paths do and others do not, it is unknown whether these are ever executed: a note.
 """
 
 from __future__ import annotations
@@ -204,8 +204,8 @@ class _DataFlow:
         """The first read of each variable that a way without a value leads to.
 
         With it comes the line of an assignment. Loops count as gone through at least once. Not
-        told is what a condition may rule out: one that asks for a name which also decides whether
-        the variable is assigned to, or is assigned along with it.
+        reported is what a condition may rule out: one that asks for a name which also decides
+        whether the variable is assigned to, or is assigned along with it.
         """
         some = self._on_conditions(followed)
         if not some:
@@ -385,7 +385,7 @@ def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
     )
     if is_own and not has_call and context.types.get(node.condition) == BOOL:
         names = ", ".join(dict.fromkeys(access.name.text for access in used))
-        message = f"nothing can change {names} while this waits"
+        message = f"{names} cannot change while this waits"
         yield context.finding("waits-for-ever", node.condition, message)
     elif constant(context, node.condition) is False:
         is_on_purpose = isinstance(without_parentheses(node.condition), ast.BoolLiteral)

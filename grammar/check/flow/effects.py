@@ -1,4 +1,4 @@
-"""What takes all files of a project to be judged: what one does and another relies on.
+"""Effects across the files of a project: what one file does and another relies on.
 
 An interrupt is declared here and switched on there, an output is set here and reset there, a
 parameter is read without a guard here and left out there. Each file gives its `Effects`, in its
@@ -322,7 +322,7 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
             yield from _never_reset(one.outputs, reset)
         for place, keys in one.waits:
             if "$FLAG" not in changed and not keys & changed:
-                message = f"nothing at hand sets {place.what}, so this may wait for ever"
+                message = f"no file at hand sets {place.what}, so this may wait for ever"
                 yield diagnose("never-fulfilled", place.path, place.region, message)
         for call in one.left_out:
             if call.index in needed.get(call.routine, ()):

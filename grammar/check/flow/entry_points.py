@@ -1,9 +1,9 @@
-"""How routines are entered: by an interrupt, by a call, or as the program that somebody selects.
+"""Entry points of routines: interrupts, calls, and selection as a program.
 
 BRAKE and RESUME belong to interrupts, and the first motion of a program has to be complete. Both
 can be judged where nothing else may enter a routine: its module has all calls of a local one, and
 a project in which nothing is missing has those of any other. A program, and not just a routine
-that nobody calls, is what sets up its motions: ``BAS(#INITMOV, 0)``.
+that is never called, is what sets up its motions: ``BAS(#INITMOV, 0)``.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def _outside(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
 
 
 def _first_motion(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    """The first motion of a program that nobody calls, where it is certain which one that is."""
+    """The first motion of a program that is never called, where it is certain which one that is."""
     if context.module.suffix != ".src" or routine.node.parameters or routine.node.result:
         return
     key = routine.node.name.key

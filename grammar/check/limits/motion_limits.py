@@ -1,8 +1,9 @@
 """Velocities, accelerations and approximation that are more than the robot has, or than 100 %.
 
 The machine data say what a robot can do: ``$VEL_MA`` and ``$ACC_MA`` of the project's own $MACHINE
-list. Without these only what no robot does is told: m/s written as mm/s. BAS reduces what is too
-much [MOT-03, MOT-04], the variables do not, and which message comes is not documented: warnings.
+list. Without these only what no robot can do is reported: m/s written as mm/s. BAS reduces what is
+too much [MOT-03, MOT-04], the variables do not, and which message comes is not documented:
+warnings.
 """
 
 from __future__ import annotations

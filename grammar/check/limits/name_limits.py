@@ -23,7 +23,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
             f"the module name {own} has {len(own)} characters, and {LONGEST_NAME} are the most"
         )
         yield context.finding("module-name-too-long", node, message)
-        # the routine or data list that carries the name of the file is not told apart from it
+        # the routine or data list that carries the name of the file is not distinguished from it
         declared = [name for name in declared if name.key != own]
     for name in declared:
         if len(name.text) > LONGEST_NAME:

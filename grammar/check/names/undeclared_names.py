@@ -1,6 +1,6 @@
 """Names in a file that nothing declares.
 
-A look-up says `NotFound` where the whole project is at hand: `check` tells these. Real backups
+A look-up says `NotFound` where the whole project is at hand: `check` reports these. Real backups
 seldom are whole; names that some file not at hand may declare are the `references` of the file, and
 those of all files are graded together (`grammar.check.names.unresolved_names`).
 """
@@ -57,7 +57,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
             yield _unknown(context, use)
     yield from _near_system_names(context)
     if lacks_data_list(context.project, context.module, context.resolution):
-        message = f"{context.module.name} may have a data list that is not at hand"
+        message = f"{context.module.name} may have a data list, which is missing"
         yield context.finding("data-list-missing", context.table.span, message)
 
 

@@ -1,6 +1,6 @@
 """Names that files use and nothing at hand declares, graded over all files of a project.
 
-Whether such a name is a mistake or its file is missing, no single file tells: what decides is
+Whether such a name is a mistake or its file is missing, a single file cannot show: what decides is
 whether all that could declare it has been read, whether it is a slip of a name that is seen there,
 how often it is used, and how many more there are like it.
 """
@@ -21,7 +21,7 @@ from grammar.syntax.source import Source
 
 #: The table and the text of a file of the project, by its path; ``None`` where it is gone.
 FileOf = Callable[[str], tuple[ModuleTable | None, Source] | None]
-#: What tells a name from others: its space, its name in upper case.
+#: Identifies a name: its space, its name in upper case.
 _Called = tuple[Space | None, str]
 
 #: The code of a name that nothing declares, and what it is called, by the space it belongs to.
@@ -105,12 +105,12 @@ class UnresolvedName:
 
     @property
     def called(self) -> _Called:
-        """What tells it from other names."""
+        """Identifies it among other names."""
         return self.space, self.name.upper()
 
     @property
     def slip(self) -> tuple[_Called, Declared | None]:
-        """What tells it from other names that are not near the same declaration."""
+        """Identifies it among names that are not near the same declaration."""
         return self.called, self.declared
 
 

@@ -283,7 +283,7 @@ class _Project:
 
 
 def _address(found: Found | Skipped) -> str:
-    """What tells a file, and how it was named, from all others."""
+    """Identifies a file, and how it was named."""
     file = _place(found) if isinstance(found, Found) else ()
     place = f"{file}\n{found.path}\n{found.origin}"
     return digest(place.encode("utf-8", "surrogatepass"))

@@ -1,4 +1,4 @@
-"""What the findings of a file rest on besides its own text: facts of other files, by name.
+"""Dependencies of a file's findings: facts of other files, by name.
 
 A file contributes facts about names: what it declares at its first level, which routines it calls,
 which words stand in lines of it that cannot be read. A file needs the facts about every name in its
@@ -22,7 +22,7 @@ from grammar.semantics.symbols import Kind, ModuleTable
 
 @dataclass(frozen=True, slots=True)
 class Contribution:
-    """What a file tells of names, in upper case, and the ``words`` in it that others may explain.
+    """What a file says of names, in upper case, and the ``words`` in it that others may explain.
 
     ``facts`` are sentences by the name that they are about, the same for the same declaration
     wherever in the file it stands.

@@ -90,7 +90,8 @@ class FileResult:
 
     ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
     by number, ``comments`` those that silence, ``words`` the names in a text that cannot be read.
-    ``contribution`` is what it tells others; ``is_open``: it uses a name that nothing declares.
+    ``contribution`` is what it provides to others; ``is_open``: it uses a name that nothing
+    declares.
     """
 
     findings: Findings = _NOTHING

@@ -1,4 +1,4 @@
-"""What checking a project and its files gave, as records that can be kept and read back.
+"""Results of checking a project and its files, as records that can be kept and read back.
 
 A record counts only for the same content, code, tables and options; where it cannot be read, the
 project or the file is checked again.

@@ -55,6 +55,6 @@ def apply_suppressions(
         if isinstance(what, Malformed):
             kept.append(diagnose("bad-suppression", path, region, what.problem))
         elif what in idle and all(code.startswith(sought) for code in what.codes):
-            message = f"there is nothing to ignore: {', '.join(what.codes)}"
+            message = f"nothing to suppress here: {', '.join(what.codes)}"
             kept.append(diagnose("unused-suppression", path, region, message))
     return kept

@@ -1,4 +1,4 @@
-"""What stands where it must not: in submit programs, in interrupt routines, before declarations.
+"""Misplaced statements: in submit programs, in interrupt routines, before declarations.
 
 What an interrupt calls is known in its own module only: a routine of another module may be called
 by interrupts that are unknown here, and is left alone.

@@ -1,4 +1,4 @@
-"""What stands in spline blocks, and what stands outside of them and belongs inside."""
+"""Statements in spline blocks, and spline statements outside of them."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def _check_use(checker: TypeChecker) -> None:
         return
     lists = map(context.project.data_of, context.project.modules)
     if not any(one is not None and one.path == module.path for one in lists):
-        message = f"nothing can use this data list: no program is called {table.name}"
+        message = f"this data list is unused: no program is called {table.name}"
         fix = Fix("PUBLIC behind its name would open it to others")
         checker.report("orphan-data-list", table.span, message, fix=fix)
 
@@ -66,7 +66,7 @@ def _check_use(checker: TypeChecker) -> None:
 
 
 def _check_globals(checker: TypeChecker, data: ast.DataList) -> None:
-    """What is GLOBAL in a data list that is not PUBLIC, told once: one word is missing [SCO-04]."""
+    """GLOBAL data in a list that is not PUBLIC, reported once: one word is missing [SCO-04]."""
     is_public = data.is_public or checker.context.module.is_head_unread(data.name.key)
     if is_public or checker.context.table.is_system:
         return
@@ -149,7 +149,7 @@ def _check_import(checker: TypeChecker, node: ast.Importation) -> None:
     if isinstance(answer, NotFound):
         module = node.path[-1].text
         reason = "its data list is not PUBLIC" if answer.hidden else ""
-        message = f"the data list {module} has nothing of that name for others"
+        message = f"the data list {module} exports no such name"
         checker.report("unknown-name", node.source, message, reason=reason)
 
 

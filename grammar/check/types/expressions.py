@@ -190,7 +190,7 @@ def _joined(checker: TypeChecker, node: ast.Binary, left: Type) -> Type:
 def _mixed(checker: TypeChecker, node: ast.Binary, made: Type, before: int) -> Type:
     """Relations bind weakest, so ``A == 1 AND B == 2`` is ``(A == (1 AND B)) == 2`` [ARI-05].
 
-    Nobody means that. As the order of operators is recollection, what comes of it is reported as
+    That is never meant. As the order of operators is recollection, what comes of it is reported as
     one warning. ``before`` is the number of findings before this one.
     """
     if any(found.severity == "error" for found in checker.diagnostics[before:]):

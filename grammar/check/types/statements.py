@@ -1,4 +1,4 @@
-"""What statements are made of: the types of conditions, targets, values, times, numbers.
+"""Types of the parts of statements: conditions, targets, values, times, numbers.
 
 This check types the expressions of a program, for all that come after it.
 """

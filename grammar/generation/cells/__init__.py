@@ -1,1 +1,1 @@
-"""Whole cells in the manner of real ones: folders of modules in every dialect."""
+"""Whole cells that resemble real ones: folders of modules in every dialect."""

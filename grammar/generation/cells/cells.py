@@ -1,4 +1,4 @@
-"""Whole cells: folders as controllers have them, with modules in the order of what they use."""
+"""Whole cells: folders as controllers have them, with modules in order of dependency."""
 
 from __future__ import annotations
 

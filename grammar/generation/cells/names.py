@@ -1,4 +1,4 @@
-"""Names that make sense, at most 24 characters long and each taken once, and remarks."""
+"""Plausible names, at most 24 characters long and each used once, and comments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every controller has beside the programs: globals, machine data, the system's routines."""
+"""Files that every controller has: globals, machine data, the system's routines."""
 
 from __future__ import annotations
 

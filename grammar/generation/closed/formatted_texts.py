@@ -57,7 +57,7 @@ def format_text(code: Code) -> bool:
         type_, formats = code.choices.pick(_FORMATS)
         pattern += code.choices.pick(("", " ", "x=", "%%"))
         pattern += code.choices.pick(formats) if code.choices.chance(60) else _specification(code)
-        if type_ == COLOUR:  # nothing would tell which enumeration a constant is of
+        if type_ == COLOUR:  # the enumeration of a constant would be unknown
             values += f", {read(code, COLOUR) or 'TRUE'}"
         else:
             values += f", {text(code) if type_ == TEXT else expression(code, type_, 1)}"

@@ -1,4 +1,4 @@
-"""Whole closed programs: files, data lists, routines that call one another and come to an end.
+"""Whole closed programs: files, data lists, routines that call one another and terminate.
 
 Routines are made before those that call them, so that what a call costs is known.
 """

@@ -1,4 +1,4 @@
-"""What closed programs assign: small numbers, converted ones, and at times one too large."""
+"""Values that closed programs assign: small numbers, conversions, and sometimes one too large."""
 
 from __future__ import annotations
 

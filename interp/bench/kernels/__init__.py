@@ -1,6 +1,6 @@
 """Kernels for `interp.bench.executor_speed`: small programs in KRL and in other languages.
 
-A kernel is a file ``NAME.src`` with a function ``DEFFCT INT WORK(N:IN)``, whose result tells
+A kernel is a file ``NAME.src`` with a function ``DEFFCT INT WORK(N:IN)``, whose result shows
 whether the work was done right. Beside it lie what does the same: ``NAME.lua``, a chunk that
 returns a function; ``NAME.py`` with a function ``work``; ``NAME.c`` with ``int work(int n)``.
 """

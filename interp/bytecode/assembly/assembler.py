@@ -288,7 +288,7 @@ class _Assembler:
             elif word == "stack":
                 stack = line.integer(0)
             else:
-                raise line.error(f"{word} is nothing that a code object has")
+                raise line.error(f"{word} is not a part of a code object")
             line.done()
         line.done()
         code = Code(

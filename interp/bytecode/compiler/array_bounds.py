@@ -1,4 +1,4 @@
-"""How large arrays of unknown size can be, for the buffers that copies of them need.
+"""Upper bounds of arrays of unknown size, for the buffers of their copies.
 
 A formal array ``X[]`` has the size of what it receives. Where it is passed on :IN it is copied, as
 everything passed :IN is [SCO-06] (unconfirmed: by SCO-07 formal arrays are :OUT). Nothing is

@@ -1,4 +1,4 @@
-"""Where values are while code is made, and what an expression has left on the stack."""
+"""Locations of values during code generation, and what an expression leaves on the stack."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all code objects of a program share: types, texts, requests, functions, data."""
+"""Tables shared by all code objects of a program: types, texts, requests, functions, data."""
 
 from __future__ import annotations
 

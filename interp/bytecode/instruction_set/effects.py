@@ -1,4 +1,4 @@
-"""The notation of stack effects, and the steps of the verifiers that it stands for.
+"""The notation of stack effects, and the verifier steps that it stands for.
 
 An effect is ``TAKES -- LEAVES``, the top of the stack at the right. ``x`` is an operand:
 

@@ -1,4 +1,4 @@
-"""What is generated from the instruction set.
+"""Generates code and documents from the instruction set.
 
 ``python -m interp.bytecode.instruction_set --write`` writes the enumeration of opcodes, the headers
 in C and the table in ``docs/bytecode.md``; ``--check`` says whether they are up to date.

@@ -1,4 +1,4 @@
-"""What lies on the stack of operands at each instruction, worked out without running it.
+"""Contents of the operand stack at each instruction, by abstract interpretation.
 
 Each instruction takes values of certain kinds from the stack and leaves others. Where ways meet the
 stack must hold the same. From that follow the largest stack, and that nothing is ever taken from an

@@ -1,4 +1,4 @@
-"""Whether entries fit what they name: the fields of requests, the arguments of functions.
+"""Checks entries against what they name: fields of requests, arguments of functions.
 
 An entry of the table of requests names a request of `interp.port.requests` and has a part for each
 of its fields but ``at``.
@@ -84,7 +84,7 @@ _SPLINE_ITEMS: Mapping[str, tuple[tuple[str, ...], bool]] = {
 def request_mismatch(program: Program, request: str, parts: Sequence[Argument]) -> str | None:
     """Why the parts are not those of the request, or ``None`` where they are."""
     if request not in _REQUESTS:
-        return f"{request} is nothing that can be asked"
+        return f"{request} is not a request"
     return _Fit(program).fields(_REQUESTS[request], parts)
 
 

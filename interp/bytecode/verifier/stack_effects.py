@@ -1,4 +1,4 @@
-"""The steps that the effects of instructions are made of: what is checked, taken, pushed.
+"""The steps of stack effects: what is checked, popped and pushed.
 
 Which instruction has which steps stands in the table of the instruction set, see
 `interp.bytecode.instruction_set.effects`; a method here has the name of its step: ``check_array``,

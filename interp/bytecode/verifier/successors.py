@@ -1,4 +1,4 @@
-"""Where instructions lead: the edges of the control flow of a code object."""
+"""Successors of instructions: the edges of the control flow of a code object."""
 
 from __future__ import annotations
 

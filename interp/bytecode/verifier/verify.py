@@ -1,4 +1,4 @@
-"""Whether a program keeps the rules that executors rely on; nothing else may run.
+"""The verifier: whether a program keeps the invariants that executors rely on.
 
 `verify` gives a `Verified` program, or raises `VerificationError`. An executor may rely on this
 without looking again:

@@ -1,4 +1,4 @@
-"""Whether a program is well formed: every number names something, every constant is of its kind.
+"""Well-formedness: every number names something, every constant is of its kind.
 
 That is all that `interp.bytecode.verifier.verify` asks of types, texts, data, entries, the heads of
 code objects and the operands of instructions, each by itself; what instructions do to the stack is

@@ -1,4 +1,4 @@
-"""What the instructions for elements, rows, views and whole arrays do."""
+"""Instructions for elements, rows, views and whole arrays."""
 
 from __future__ import annotations
 

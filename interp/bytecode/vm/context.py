@@ -1,4 +1,4 @@
-"""What the makers of operations share."""
+"""Context shared by the factories of operations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What variables and their parts are called: for the trace, and for VARSTATE."""
+"""Names of variables and their parts: for the trace, and for VARSTATE."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ class InFrame:
 class Names:
     """Finds out what is called how, and what it has as its value.
 
-    What was assigned is told by its address, so nothing here is certain to be found: a program that
-    tells something else than it has assigned is told nothing.
+    An assignment is reported by its address, so a name may not be found: a program that reports
+    something else than it has assigned gets none.
     """
 
     def __init__(self, program: Program, state: State | InFrame) -> None:

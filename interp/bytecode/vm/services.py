@@ -1,4 +1,4 @@
-"""What instructions need of the machine around them: counting, asking, telling."""
+"""Services of the machine for instructions: counting, requests, events."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ class Services:
         state, counter = self._state, self.counter
 
         def completion(reply: object) -> Operation:
-            if isinstance(reply, int) and not self.entered:  # the end of an action is told once
+            if isinstance(reply, int) and not self.entered:  # the end of an action is reported once
                 counter.allow(reply)
             return after
 

@@ -1,4 +1,4 @@
-"""What the machine works on while it runs: cells, the stack of operands, open calls."""
+"""State of the running machine: cells, the operand stack, open calls."""
 
 from __future__ import annotations
 

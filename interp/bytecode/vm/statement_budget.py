@@ -120,7 +120,7 @@ class Counter:
         return True
 
     def stopped(self) -> int:
-        """The `StopAdvance` that have passed before the last request, or the end; told once."""
+        """The `StopAdvance` that have passed before the last request, or the end; returned once."""
         if self._allowed:
             self._settle()
             self._refill()
@@ -130,7 +130,7 @@ class Counter:
     def passed(self) -> int:
         """The slices that have passed before the last request, or the end, though not asked for.
 
-        They are told once.
+        They are returned once.
         """
         if self._slices == 1 and not self._passed:
             return 0

@@ -30,7 +30,7 @@ class ScriptError(RuntimeFailure):
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """``#NAME``, whose enumeration the variable tells."""
+    """``#NAME``, whose enumeration is that of the variable."""
 
     name: str
 

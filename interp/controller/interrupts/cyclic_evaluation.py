@@ -1,4 +1,4 @@
-"""What is evaluated in every interpolation cycle: cyclic flags and cyclic signals."""
+"""Cyclic flags and cyclic signals, evaluated in every interpolation cycle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the arm is, as the system variables show it [MOT-18, INT-15].
+"""System variables of the arm's position [MOT-18, INT-15].
 
 $POS_ACT and $AXIS_ACT are set-points, $POS_ACT_MES and $AXIS_ACT_MEAS are measured where the robot
 measures. $POS_INT is where the event of an interrupt came, $POS_RET where BRAKE stopped the arm,

@@ -1,4 +1,4 @@
-"""Which part of the controller answers which request."""
+"""Dispatch table: which part of the controller answers which request."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What differs from one release of the controller to the next, as data: see ``profiles/*.toml``.
+"""Differences between releases of the controller, as data: see ``profiles/*.toml``.
 
 Sizes of arrays, the interpolation cycle, how many interrupts there may be, what system variables
 have at the start [CON-07]. A profile is named by its file, or given as the path of another one.

@@ -1,4 +1,4 @@
-"""What the parts of a controller share: clock, trace, system variables, signals, messages."""
+"""State shared by the parts of a controller: clock, trace, variables, signals, messages."""
 
 from __future__ import annotations
 

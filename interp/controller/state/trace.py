@@ -18,7 +18,7 @@ from interp.values.json_form import to_json
 
 TaskName = Literal["robot", "submit"]
 
-#: What executors tell in a trace that is not full.
+#: Events of executors in a trace that is not full.
 WORLD_KINDS: Final = EVERY_KIND - {"line", "assign"}
 
 #: The kinds of events; ``line`` and ``assign`` are of the full level only.
@@ -75,11 +75,11 @@ class Trace:
     """Records events with the time that the controller's clock has.
 
     ``take`` receives each event as it happens; by default they are kept in ``events``. ``kinds``
-    are those that executors are to tell, by default all but lines and assignments, most of what a
-    program is made of; where nobody wants them they cost time for nothing. ``origin``
+    are those that executors are to report, by default all but lines and assignments, most of what a
+    program is made of; where they are not wanted they only cost time. ``origin``
     is the task and the line that cause what changes now; the line is ``None`` for what comes from
-    outside. ``arguments`` are those of calls that are told with them, as they are written, by file,
-    line and name in upper case.
+    outside. ``arguments`` are those of calls that are reported with them, as they are written, by
+    file, line and name in upper case.
     """
 
     def __init__(

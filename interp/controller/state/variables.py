@@ -52,7 +52,7 @@ class Live(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """A variable whose value is computed whenever it is read, and that nobody writes."""
+    """A variable whose value is computed whenever it is read, and that is never written."""
 
     compute: Callable[[], Value]
 
@@ -78,7 +78,7 @@ class Variables:
     """All system variables; names are in upper case.
 
     ``writes`` counts those that were given a value, but not where they had it already, nor signals,
-    which tell of their changes. ``has_read_changing``: one was read that changes with time alone,
+    which report their changes. ``has_read_changing``: one was read that changes with time alone,
     since this was made false.
     """
 

@@ -151,7 +151,7 @@ class WaitCommand(Command):
 
 @dataclass(slots=True, eq=False)
 class CallCommand(Command):
-    """Have the core's owner do something: it is told ``started`` and calls `complete` at the end.
+    """Have the core's owner do something: it receives ``started`` and calls `complete` at the end.
 
     ``what`` means something to the owner only, such as the routine of a trigger.
     """
@@ -187,7 +187,8 @@ class Link:
     def __post_init__(self) -> None:
         if self.delay < 0:
             raise CommandError(
-                f"{self}: nothing acts before its cause; give the place a negative delay instead"
+                f"{self}: an effect cannot precede its cause; give the place a negative delay "
+                f"instead"
             )
 
     def __str__(self) -> str:
@@ -227,7 +228,7 @@ class Transaction:
         """
         mine = set(self.commands)
         if len(mine) < len(self.commands):
-            raise CommandError(f"{self}: a command stands in it twice")
+            raise CommandError(f"{self}: a command occurs in it twice")
         starts = [link for link in self.links if link.effect == "start"]
         for link in starts:
             if link.command not in mine:

@@ -1,8 +1,8 @@
 """The control core: loads transactions, follows the arm's path, and acts when an event happens.
 
 It has no clock of its own. Whoever has one asks `ControlCore.next_time`, goes on to any time with
-`ControlCore.run_until`, and is told what happened up to there. Whatever an event starts is done at
-the very microsecond of that event, on the path as it is planned by then.
+`ControlCore.run_until`, which returns what happened up to there. Whatever an event starts is done
+at the very microsecond of that event, on the path as it is planned by then.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ class ControlCore:
         return self.arm.pending()
 
     def brake(self, now: int, *, is_hard: bool) -> None:
-        """The arm stops on its path; ``stopped`` tells when it stands."""
+        """The arm stops on its path; ``stopped`` reports when it has stopped."""
         self._advance(now)
         self.arm.brake(now, is_hard)
 

@@ -1,4 +1,4 @@
-"""Which kinematics fit a machine."""
+"""Choice of the kinematics that fit a machine."""
 
 from __future__ import annotations
 

@@ -3,13 +3,13 @@
 The meaning of each datum is that of KUKA's operating handbook *KR C2, Machine Data* (2005), which
 later releases keep. Lengths are millimetres, angles degrees, times seconds.
 
-The chain from the robot's foot to its flange, each step told in the one before::
+The chain from the robot's foot to its flange, each step in the frame of the one before::
 
     $TIRORO · Rz(A1) · x $LENGTH_A · Ry(A2) · x $LENGTH_B · Ry(A3)
             · $TX3P3 · Rz(A4) · $DH_4 · Rz(A5) · $DH_5 · Rz(A6) · $TFLWP
 
 with every angle multiplied by its $AXIS_DIR. At zero of all axes the arm is stretched forward;
-$MAMES tells where the axes are mastered and has no part in the chain.
+$MAMES says where the axes are mastered and has no part in the chain.
 """
 
 from __future__ import annotations

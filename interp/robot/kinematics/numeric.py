@@ -5,7 +5,7 @@ kinematics is the Levenberg-Marquardt method with the damping of Sugihara (2011)
 at once; lengths count as shares of the arm's size. An arm of fewer than six joints reaches a pose
 where it can be met; what keeps it from that may turn the flange by `_OFF` at most.
 
-Status and Turn are told apart as for other arms, with axis 5 for the wrist; no source says how
+Status and Turn are distinguished as for other arms, with axis 5 for the wrist; no source says how
 such arms count (unconfirmed).
 """
 

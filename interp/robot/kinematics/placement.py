@@ -1,4 +1,4 @@
-"""Where a programmed point puts the flange: $BASE, $TOOL, $ROBROOT and $IPO_MODE.
+"""Pose of the flange for a programmed point: $BASE, $TOOL, $ROBROOT and $IPO_MODE.
 
 A point P is the pose of the tool in the base. So the flange is in the world at
 ``BASE · P · TOOL⁻¹``, and in front of the robot's foot at ``ROBROOT⁻¹ · BASE · P · TOOL⁻¹``

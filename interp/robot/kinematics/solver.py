@@ -1,4 +1,4 @@
-"""What is asked of the kinematics of an arm, whatever its shape.
+"""The interface of an arm's kinematics, whatever its structure.
 
 Arrays are of float64: ``(..., 6)`` for axes in degrees (mm for linear ones), ``(..., 4, 4)`` for
 homogeneous matrices with positions in mm. A pose is that of the flange in the frame of the robot's

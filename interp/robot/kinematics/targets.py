@@ -1,4 +1,4 @@
-"""Which way an arm reaches a point: Status, Turn, singularities [POS-04 to POS-08].
+"""Solutions for a point: Status, Turn, singularities [POS-04 to POS-08].
 
 A pose can be reached in up to eight ways, and each axis that turns further than 360 degrees reaches
 it more than once. The Status names the way; among the ways within the software limits no two share

@@ -1,4 +1,4 @@
-"""Make the MJCF of the arm that comes along: ``python -m interp.robot.models.generate``."""
+"""Makes the MJCF of the built-in arm: ``python -m interp.robot.models.generate``."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ _AHEAD: Final = tuple(product((0.75, 0.6), (0.4, 0.7, 0.1)))
 _FEET: Final = tuple(product((0.0, 90.0, -90.0, 180.0), (0.0, 180.0)))
 #: mm and degrees from which on a number in a point is garbage.
 _GARBAGE: Final = 1e6
-#: So many points tell where an arm stands.
+#: So many points are enough to place an arm.
 _MOST_POINTS: Final = 64
 #: Axes in degrees of the posture about which places lie, and how far they are from it at most: the
 #: forearm level, the hand half down.
@@ -105,12 +105,12 @@ def arm_or_stand_in(
     source = machine_data_of(sources)
     if source is None:
         machine = fitting_arm(default, (one.text for one in sources), (one.text for one in used))
-        return machine, f"no machine data of an arm: {machine.name} stands in"
+        return machine, f"no machine data of an arm: {machine.name} is used instead"
     try:
         return understood(source), ""
     except (DataListError, MachineDataError) as error:
         machine = default_machine()
-        note = f"{error}: {machine.name} stands in"
+        note = f"{error}: {machine.name} is used instead"
         return with_axis_limits_of(machine, source.text, source.path), note
 
 

@@ -52,7 +52,7 @@ class Curve(Protocol):
 
     @property
     def placement(self) -> Placement:
-        """The frames in force, which tell where the tool is."""
+        """The frames in force, which give the place of the tool."""
         ...
 
     @property

@@ -1,4 +1,4 @@
-"""A circle through three points, and how far along it a motion goes [MOT-12, MOT-13, MOT-20]."""
+"""A circle through three points, and the angle that a motion covers [MOT-12, MOT-13, MOT-20]."""
 
 from __future__ import annotations
 

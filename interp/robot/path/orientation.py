@@ -1,4 +1,4 @@
-"""How the orientation of the tool changes along a path [ORI-01 to ORI-06].
+"""Orientation of the tool along a path [ORI-01 to ORI-06].
 
 The change from one orientation to another is a swivel, which turns the tool's direction the
 shortest way, and then a rotation about that direction; both grow in step with the path. The
@@ -65,7 +65,7 @@ class Turning:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Carried:
-    """A turning told in a frame that turns about an axis by ``angle``: #PATH on circles."""
+    """A rotation in a frame that rotates about an axis by ``angle``: #PATH on circles."""
 
     inner: Turning
     axis: Array

@@ -97,7 +97,7 @@ class _Swept:
 
 
 class Free:
-    """An SPL: a curve of the fifth degree over its own parameter, told over its length.
+    """An SPL: a curve of the fifth degree over its own parameter, parametrised by its length.
 
     ``ends`` has position, first and second derivative at both ends, ``(2, 3, 3)``, over a parameter
     that grows by ``span``.

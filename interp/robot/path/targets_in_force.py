@@ -1,4 +1,4 @@
-"""What a programmed target means: omitted components, relative targets, axes and points.
+"""Meaning of a programmed target: omitted components, relative targets, axes and points.
 
 `Programmed` is the last target that was programmed, whether the arm has got there or not: relative
 motions add to it, and components left out keep its values [MOT-14, MOT-16].
@@ -27,7 +27,7 @@ _EXTERNALS = tuple(f"E{i}" for i in range(1, 7))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
-    """Where a PTP motion leads; ``components`` where it was told as a point.
+    """Where a PTP motion leads; ``components`` where it was given as a point.
 
     ``is_singular`` is message 2868, a notification [POS-08].
     """
@@ -39,7 +39,7 @@ class Goal:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Programmed:
-    """A target as it stands: all axes, and the point with the frames it was told in.
+    """A target as it stands: all axes, and the point with the frames it was given in.
 
     ``components`` are X…C as the program gave them, so that one left out keeps its very value;
     in other frames the components are those of the same place there (unconfirmed).
@@ -58,7 +58,7 @@ class Programmed:
     def reached(
         self, axes: Array, components: tuple[float, ...] | None, placement: Placement
     ) -> Programmed:
-        """The next target, with its components where a point was told."""
+        """The next target, with its components where a point was given."""
         return Programmed(self.arm, axes, components, placement)
 
     def point(self, placement: Placement) -> tuple[float, ...]:
@@ -89,7 +89,7 @@ class Programmed:
     ) -> tuple[float, ...]:
         """X, Y, Z, A, B, C of a Cartesian target; one of axes is the point where they lead.
 
-        Relative to #TOOL the target is a frame told in the last point; relative to #BASE each
+        Relative to #TOOL the target is a frame in the last point; relative to #BASE each
         component adds to that of the last point [MOT-14].
         """
         check_finite(target)

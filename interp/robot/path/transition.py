@@ -1,4 +1,4 @@
-"""How a blend goes over from one path into the next: parameters of both, over one of its own.
+"""The transition of a blend from one path to the next: parameters of both, over its own.
 
 A blend is ``first(one(u)) - P + second(other(u))`` with u from 0 to 1. ``one`` runs from the start
 of the zone to the end of the first path, ``other`` from the start of the second path to the end of
@@ -286,7 +286,7 @@ def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:
 
 @lru_cache(maxsize=16)  # what a blend is judged by are samples of the same few transitions
 def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Array]:
-    """The rates at the float64 of an array ``(n,)``; nobody may write to them."""
+    """The rates at the float64 of an array ``(n,)``; they must not be written to."""
     one, other = transition.rates_at(np.frombuffer(parameters))
     one.setflags(write=False)
     other.setflags(write=False)

@@ -134,7 +134,7 @@ def blend_of(
 
     Of the transitions that are about as soon over, its shape is the one nearest to a parabola.
     ``limits`` are those of the machine data, which hold for all axes; on the path of the tool the
-    acceleration is at most $ACC_MA.CP (an assumption: no rule tells). So the speed may drop
+    acceleration is at most $ACC_MA.CP (an assumption: no rule says). So the speed may drop
     [BLD-15]. Raises `Fault` where the blend leads out of the working range.
     """
     one, other = first.pieces[-1].curve, second.pieces[0].curve

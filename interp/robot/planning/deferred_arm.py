@@ -79,7 +79,7 @@ class DeferredArm:
         return self._arm.sample(times)
 
     def override(self, now: int, percent: float) -> None:
-        """$OV_PRO changes; one that cannot be is told at once."""
+        """$OV_PRO changes; an invalid one is reported at once."""
         if self._is_made or not 0.0 <= percent <= 100.0:
             self._arm.override(now, percent)
         else:

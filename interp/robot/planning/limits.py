@@ -1,4 +1,4 @@
-"""How fast a curve may be travelled, so that no axis exceeds what the machine data allow.
+"""Speed limits along a curve, so that no axis exceeds what the machine data allow.
 
 With u(t) along a curve q(u), an axis has the speed ``q'·u̇`` and the acceleration
 ``q''·u̇² + q'·ü``. Where ``|q''|·v² + |q'|·a`` stays below the limit of each axis, every profile

@@ -1,4 +1,4 @@
-"""What the path passes, and when: the events of planned motions, places among them.
+"""Events of planned motions, and the times at which the path passes their places.
 
 Times follow from the legs of a timeline, so they change when the plan does. An event that was taken
 never comes again.
@@ -121,7 +121,7 @@ def events_of(
 
 
 def _places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
-    """The places of a motion, those in a spline block with the segment they are told for."""
+    """The places of a motion, those in a spline block with the segment they are given for."""
     for place in motion.places:
         yield place, None
     for number, part in enumerate(motion.parts):
@@ -130,7 +130,7 @@ def _places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
 
 
 def _stop_places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
-    """STOP WHEN PATH of a block, those told for a segment with its number."""
+    """STOP WHEN PATH of a block, those for a segment with its number."""
     for place in motion.stop_places:
         yield place, None
     for number, part in enumerate(motion.parts):

@@ -1,4 +1,4 @@
-"""How a stretch of path is travelled: position, speed and acceleration over time.
+"""Motion profile of a stretch of path: position, speed and acceleration over time.
 
 A profile has one degree of freedom and bounded jerk. Ruckig finds it; here it becomes a row of
 cubics that can be evaluated at many times at once. Positions are in whatever unit the caller has,

@@ -1,6 +1,6 @@
 """Spline blocks as tracks: each segment a piece, with the speeds that its ranges ask for.
 
-A block is planned as a whole [SPL-01]. Its points are told in the frames that are in force for the
+A block is planned as a whole [SPL-01]. Its points are given in the frames that are in force for the
 block; speeds may differ by segment.
 """
 

@@ -1,6 +1,6 @@
 """CONST_VEL and TIME_BLOCK: parts of a spline block with a constant speed, or a given duration.
 
-Where a range begins or ends is told in mm from the end of the segment behind it, or from its start
+Where a range begins or ends is given in mm from the end of the segment behind it, or from its start
 [SPL-07].
 """
 

@@ -1,4 +1,4 @@
-"""Straight motions of which each goes on where the one before leads, planned as one.
+"""Collinear motions that follow one another, planned as one.
 
 How fast a straight way may be travelled is seen from all of it, so points on it cost no time: the
 bounds of its motions, and of the blends between them, are parts of those of the whole.

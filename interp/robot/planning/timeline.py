@@ -1,4 +1,4 @@
-"""What the arm does over time: sections of path, and the legs in which they are travelled."""
+"""Timeline of the arm: sections of path, and the legs in which they are travelled."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Section:
 
     ``number`` is that of the motion, of a blend's first; ``following`` that of its second, else
     ``None``. ``start`` and ``end`` are the parameters of the curve between which it is travelled.
-    ``gear`` and ``bend`` tell the speed and acceleration in which this one begins from those in
+    ``gear`` and ``bend`` give the speed and acceleration in which this one begins from those in
     which the section before ends, as in `GearedStretch`. ``is_still`` is a motion of length zero,
     which takes no time. The segments of a spline block have a ``part`` from 0 on.
     """

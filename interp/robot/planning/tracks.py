@@ -1,4 +1,4 @@
-"""From a motion instruction to its path: a curve, its speed, and what is told of it [MOT-11]."""
+"""From a motion instruction to its path: a curve, its speed, and its events [MOT-11]."""
 
 from __future__ import annotations
 
@@ -292,7 +292,7 @@ def _turning(settings: Settings, start: Array, end: Array) -> Turning:
 
 
 def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) -> Orientation:
-    """The orientation along an arc, told in space or in the frame of the path [ORI-04].
+    """The orientation along an arc, given in space or in the frame of the path [ORI-04].
 
     The programmed end point has its orientation where it lies on the circle [MOT-13].
     """

@@ -51,7 +51,7 @@ class Cell:
         """The compiled model, an ``MjModel``.
 
         Its joints are those of the axes that move, each with an actuator that gives it the torque
-        it is told less spring and damper; loads weigh nothing until `put_loads`.
+        it receives less spring and damper; loads weigh nothing until `put_loads`.
         """
         try:
             return self._spec().compile()

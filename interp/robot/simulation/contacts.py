@@ -1,4 +1,4 @@
-"""What an arm touches on its planned way: itself, the floor, and the objects of a scene.
+"""Contacts of an arm on its planned path: with itself, the floor, and the objects of a scene.
 
 Shapes of machine data are assumed (`interp.robot.simulation.links`), so what they touch is a hint;
 between set-points the axes are taken to go straight, in steps in which nothing moves more than

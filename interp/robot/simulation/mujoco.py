@@ -7,7 +7,7 @@ the planned path, half a step away, would leave half a millimetre at 1 m/s to th
 controller knows the masses but not the friction, so that is what measured positions show.
 
 Steps run in MuJoCo itself, a chunk of set-points at a time: spring and damper are part of the
-actuators, and what they are told is the torque plus the set-point times their gains.
+actuators, and their input is the torque plus the set-point times their gains.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class MujocoRobot:
         states, _ = rollout.rollout(
             self._model, self._data, initial_state=start, control=control[None]
         )
-        places = samples.axes.copy()  # axes that are no joints are where they are told
+        places = samples.axes.copy()  # axes without a joint are at their set-points
         places[:, self._columns] = states[0, :, 1 : 1 + self._model.nq] / self._units
         self._check(samples, states[0], places)
         mujoco.mj_setState(self._model, self._data, states[0, -1], _STATE)
@@ -116,7 +116,7 @@ class MujocoRobot:
         return Measured(places, every)
 
     def _rests(self, targets: Array) -> bool:
-        """Whether it stands, and is told to stay: then each step would be like the one before."""
+        """Whether it and its set-point stand still: each step then equals the one before."""
         return (
             not self._speed.any()
             and bool((targets == self._set_point).all())
@@ -134,7 +134,7 @@ class MujocoRobot:
         return Measured(np.tile(self.axes, (count, 1)), np.tile(torques, (count, 1)))
 
     def _control(self, targets: Array) -> tuple[Array, Array]:
-        """Torques and what actuators are told, for steps that end at ``targets`` (n, joints)."""
+        """Torques and the inputs of actuators, for steps that end at ``targets`` (n, joints)."""
         data = self._free_data
         before = np.vstack((self._set_point, targets[:-1]))
         speeds = (targets - before) / (_STEP * 1e-6)

@@ -33,7 +33,7 @@ def mjcf_of(machine: MachineData) -> str:
     """The text of the model; joints are called as the axes are, and so are their actuators.
 
     Joints stand in the order of the axes, external ones last. An actuator gives its joint the
-    torque that it is told, less what a controller adds to its gains
+    torque at its input, less what a controller adds to its gains
     (`interp.robot.simulation.mujoco`).
     """
     reach = reach_of(machine)

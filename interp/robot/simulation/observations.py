@@ -1,4 +1,4 @@
-"""What is seen of an arm besides its trace: what it touches, and torques that it cannot bear.
+"""Observations of an arm besides its trace: contacts, and excessive torques.
 
 Observations change nothing: a program has the same trace with and without them.
 """

@@ -1,4 +1,4 @@
-"""What follows set-points: the interface of a robot, and the two that have no masses."""
+"""The interface of a robot that follows set-points, and the two robots without masses."""
 
 from __future__ import annotations
 

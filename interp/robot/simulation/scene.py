@@ -1,4 +1,4 @@
-"""What stands around an arm: a scene file in TOML.
+"""Objects around an arm: a scene file in TOML.
 
 One table ``[[object]]`` each, lengths in mm, angles in degrees, frames as KRL has them::
 

@@ -114,7 +114,7 @@ class Tracking:
             self._changes.append((time, settings.loads))
 
     def placed(self, time: int, placement: Placement) -> None:
-        """From a time on, not before the last one told, points count in these frames."""
+        """From a time on, not before the last one given, points count in these frames."""
         if time == self._place_times[-1]:
             self._place_times.pop()
             self._placements.pop()

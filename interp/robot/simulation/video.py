@@ -59,7 +59,7 @@ def write_video(
     """Write a video that takes as long as the motion does.
 
     ``times`` (n,) in µs and ``axes`` (n, axes) in degrees or mm are rows of a path record. The
-    suffix of ``path`` tells the form: one of `SUFFIXES`. ``captions`` stand in the frames, one
+    suffix of ``path`` gives the format: one of `SUFFIXES`. ``captions`` stand in the frames, one
     each of `frame_times`. ``on_frame`` is called after each frame. Raises `VideoError` where there
     is no renderer, no MuJoCo, nothing that writes the form, or another suffix.
     """

@@ -198,7 +198,7 @@ def _print_mutants(drawn: Mapping[str, Any]) -> None:
         f"runs; {drawn['unchanged']:,} change nothing that can be seen of the cases tried"
     )
     console.print(
-        f"{drawn['unsure']:,} that no case fails with are on lines that only cases of unconfirmed "
+        f"{drawn['unsure']:,} that no case detects are on lines that only cases of unconfirmed "
         "rules run"
     )
     console.print(f"aim: {drawn['aim']:.0%} of those that a case could notice red")

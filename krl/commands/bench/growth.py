@@ -274,7 +274,7 @@ def _kept(record: Path | None) -> list[dict[str, Any]]:
         rows = known["rows"]
         return [row for row in rows if row["entry"] in _ENTRIES and row["shape"] and "costs" in row]
     except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(f"{record}: no record of krl bench growth to go on from") from None
+        raise InputError(f"{record}: not a record of krl bench growth") from None
 
 
 def _chosen(option: str, wanted: list[str] | None, known: Mapping[str, object]) -> list[str]:

@@ -233,7 +233,7 @@ def _print_origin(console: Console, done: "Surveyed") -> None:
     table.add_column("virtual s", justify="right")
     table.add_column("motions", justify="right")
     table.add_column("skipped", justify="right")
-    table.add_column("stood in", justify="right")
+    table.add_column("stand-ins", justify="right")
     table.add_column("inputs", justify="right")
     table.add_column("where and why", overflow="fold")
     for row in done.rows:

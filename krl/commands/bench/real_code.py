@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _MOST_REASONS = 8
 _STAGES = (
     ("errors", "the checker finds an error"),
-    ("uncalled", "nothing tells what to call it with"),
+    ("uncalled", "no arguments known to call it with"),
     ("unlinked", "it names what no file has"),
     ("refused", "it is not compiled whole"),
     ("unverified", "it does not verify"),

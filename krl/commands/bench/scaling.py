@@ -1,4 +1,4 @@
-"""What the benches of the survey and of the check share: corpora of several sizes, and phases."""
+"""Synthetic corpora of several sizes, and tables of phases, for the benches of survey and check."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, Final

@@ -16,7 +16,7 @@ _SHOWN = 12
 def planted(words: str) -> Iterator[str]:
     """Plant a fault as long as the context lasts; gives its whole name.
 
-    ``words`` are some of it, enough to tell it apart, or a mutant: its name, or the file and line
+    ``words`` are some of it, enough to identify it, or a mutant: its name, or the file and line
     that it alone is on. Raises `InputError` where they are not.
     """
     if "interp" in words and ":" in words:

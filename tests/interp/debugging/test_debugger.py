@@ -390,7 +390,7 @@ def test_selection_within_a_for(debug: Any) -> None:
 @pytest.mark.parametrize(
     ("line", "text"),
     [
-        (19, "line 19 stands in the FOR of line 18, which has not begun"),
+        (19, "line 19 is inside the FOR of line 18, which has not begun"),
         (26, "no statement of MAIN begins in line 26"),
         (13, "no statement of MAIN begins in line 13"),
     ],
