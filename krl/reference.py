@@ -29,8 +29,8 @@ _HEAD = """# Commands
 
 <!-- made by python -m krl.reference --write -->
 
-Exit status everywhere: 0 fine, 1 findings, 2 wrong usage or unreadable input, reported in one
-line on stderr. What takes longer than 10 s says how far it is: by a bar, or where stderr is not a
+Exit status everywhere: 0 fine, 1 findings, 2 wrong usage or unreadable input, with one line on
+stderr. Commands that take longer than 10 s show their progress: by a bar, or if stderr is not a
 terminal by a line each 10 s; `KRL_PROGRESS` in the environment gives other seconds, 0 none.
 """
 

@@ -163,7 +163,7 @@ def _if_equivalent(trial: Trial) -> Trial:
 
 @cache
 def equivalent() -> Mapping[tuple[str, ...], str]:
-    """The changes that no case can notice, and why; identified by their content, not their place."""
+    """The changes that no case can notice, and why; identified by content, not place."""
     keys = ("module", "function", "source", "was", "now")
     return {tuple(row[key] for key in keys): row["reason"] for row in _known()["mutant"]}
 

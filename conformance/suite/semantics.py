@@ -55,8 +55,8 @@ _HEAD = """\
 <!-- Made by conformance/suite/semantics.py from conformance/rules.toml and
 grammar/diagnostics/codes.tsv. Do not edit. -->
 
-What KRL means, as far as it could be found out, and what the workbench does about it today. There
-is no public specification. Each rule says how well it is known, where from, and what is done.
+For anyone who asks what KRL means: all rules that are known, and what the workbench does about
+each. There is no public specification. Each rule has its certainty, its source, and what is done.
 
 **How well it is known.** `P`: a manual page, or a file that KUKA wrote. `T`: a transcription or
 translation of one. `F`: practitioners on a forum. `D`: measured on real controller files. `R`:

@@ -228,7 +228,7 @@ def test_one_page_leads_to_the_last_run(
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert f'href="{DATE}/index.html"' in page
     assert re.search(r'"made": ?"20\d\d-\d\d-\d\dT', page)
-    assert "has told nothing for" in page
+    assert "There has been no nightly run for" in page
 
 
 def test_a_history_that_cannot_be_kept_is_refused_at_once(
@@ -248,9 +248,9 @@ def test_a_run_that_broke_off_is_the_first_failure_of_the_next(
     (tmp_path / "2026-01-01").mkdir()
     _step(monkeypatch, (0, ""))
     status, out = run(tmp_path, capsys, "recover")
-    assert (1, "failed: the nightly run of 2026-01-01 broke off") == (status, out[0])
+    assert (1, "failed: the nightly run of 2026-01-01 did not finish") == (status, out[0])
     page = (tmp_path / DATE / "index.html").read_text(encoding="utf-8")
-    assert '<li class="bad own">the nightly run of 2026-01-01 broke off' in page
+    assert '<li class="bad own">the nightly run of 2026-01-01 did not finish' in page
 
 
 def test_a_run_that_cannot_tell_its_results_is_red(

@@ -176,7 +176,7 @@ def test_an_interrupted_run_keeps_what_was_done(
     ("arguments", "said"),
     [
         (["--auto", "--hold-out", "1"], "--hold-out 1"),
-        (["--auto", "--resume", "--out", "nowhere"], "nothing to go on from"),
+        (["--auto", "--resume", "--out", "nowhere"], "nothing to resume"),
         (["--resume"], "belong to --auto"),
         (["--target", "KRL.g4"], "belong to --auto"),
         (["--without", "3"], "belong to --auto"),

@@ -288,7 +288,7 @@ def test_only_so_many_are_told() -> None:
     """A file of which no line can be read is told in bounded length."""
     found = findings("DEF A()\n" + "5 5\n" * (MOST_TOLD + 50) + "END\n")
     assert MOST_TOLD + 1 == len(found)
-    assert "50 more lines" in found[-1].message
+    assert "50 more unreadable lines" in found[-1].message
 
 
 def test_too_deep_is_no_error() -> None:

@@ -52,7 +52,7 @@ def test_every_other_line_keeps_its_number(line_end: str, before: list[str], bod
         (Driver("T", ("HALT\nHALT",), "work"), {}, "is no statement of KRL"),
         (Driver("T", (), "x = 1"), {}, "no statement of KRL"),
         (Driver("T", (), "nothing"), {}, "no routine is called 'nothing'"),
-        (Driver("T", (), "work"), {"nothing": [["HALT"]]}, "nothing can stand in for it"),
+        (Driver("T", (), "work"), {"nothing": [["HALT"]]}, "no stand-in can replace it"),
         (Driver("T", (), "work"), {"empty": [["HALT"]]}, "empty is empty"),
         (Driver("T", (), "work"), {"helper": [["END"]]}, "'END' is no statement of KRL"),
     ],
