@@ -186,13 +186,14 @@ def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
 
 def _passes_points(one: EndedMotion) -> Iterator[Violation]:
     """A spline block that passes one of its points aside [SPL-03]."""
-    motion, parts = one.motion, one.motion.parts
+    motion = one.motion
+    parts = motion.parts if one.stops else motion.parts[:-1]  # the blend may begin on the last
     if motion.kind != "SPLINE" or motion.settings.placement.mode is not IpoMode.BASE:
         return
     targets = [target for part in parts for target in (part.auxiliary, part.target) if target]
     rows = refined(one.path.times, one.path.axes, one.start, one.end, 8 * len(one.tools) + 2)
     points = one.poses(rows)[:, :3, 3]
-    for target in targets if one.stops else targets[:-1]:
+    for target in targets:
         if all(name in target for name in _POINT):
             point = np.array([target[name] for name in _POINT])
             off = float(nearest(points[:-1], points[1:], point).min())
@@ -215,7 +216,9 @@ def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
         if share[axis] > RATE_MARGIN:
             yield one.broken("axes keep $VEL_AXIS", f"{share[axis]:.1%} of it", "MOT-02")
         return
-    speeds = np.linalg.norm(change_rates(times, one.tools[:, :3, 3]), axis=1) / 1000.0
+    is_fixed = settings.placement.mode is not IpoMode.BASE  # then the base has the speed [ORI-07]
+    poses = np.linalg.inv(one.tools).astype(np.float64) if is_fixed else one.tools
+    speeds = np.linalg.norm(change_rates(times, poses[:, :3, 3]), axis=1) / 1000.0
     every = [settings, *(part.settings for part in motion.parts if part.settings is not None)]
     most_path = min(max(each.velocity for each in every), one.machine.velocity.path)
     if settings.is_reduced:

@@ -54,7 +54,7 @@ _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 #: The fields of a trial but for its mutant.
 OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
 #: So many cases that may fail are run with a mutant that none of them notices.
-MOST: Final = 60
+MOST: Final = 1000
 #: So many seconds of computing a case may take; all of them take less than a tenth of it.
 _SECONDS: Final = 2.0
 #: So much address space in bytes a mutant may take; a usual run takes less than a quarter of it.

@@ -58,8 +58,9 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             ),
         ),
     ),
-    # left out: the cell around the controller, how a run is recorded, what is looked up of one that
-    # has come to its end or stands, loads, which only torques depend on, and what is skipped, or
+    # left out: the cell around the controller, how a run is recorded, what lets time pass at once
+    # where no statement is recorded (a case records all), what is looked up of one that has come to
+    # its end or stands, loads, which only torques depend on, and what is skipped, or
     # gives a zero, where parts of a program are stood in for
     "controller": (
         ("interp.controller.*",),
@@ -79,6 +80,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.state.state.ControllerState.skip",
             "interp.controller.state.trace",
             "interp.controller.state.variables.Variables.part_type",
+            "interp.controller.quiet_time.QuietTime._place",
+            "interp.controller.quiet_time.QuietTime._skipped",
         ),
     ),
     # left out: files of machine data, what checks them, and torques; motions written in Python and

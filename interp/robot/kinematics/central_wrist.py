@@ -53,14 +53,16 @@ class CentralWrist:
         self._after = matrix_of(machine.tflwp)
         self._to_inner = matrix_of(machine.tiroro.inverse())
         self._to_wrist = matrix_of(machine.tflwp.inverse())
-        self._directions = np.array([axis.direction for axis in machine.axes], dtype=np.float64)
+        directions = np.array([axis.direction for axis in machine.axes], dtype=np.float64)
+        self._turns = np.radians(directions)  # radians about Z for a degree
         self._forearm = np.array(machine.tx3p3.position)
         self._mount = matrix_of(machine.tx3p3)[:3, :3]
         self._check_lengths()
         self._twists = [_about_x(link.alpha) for link in (machine.dh_4, machine.dh_5)]
         along, turned = self._wrist()
         sense = self._twists[0][2, 1]  # 1 where $DH_4 twists by 90 degrees, -1 by -90
-        self._senses = np.array([1.0, 1.0, 1.0, along, -sense, along]) * self._directions
+        #: Degrees for a radian of the upright arm.
+        self._senses = np.degrees([1.0, 1.0, 1.0, along, -sense, along]) * directions
         self._zeros = np.array([0.0, math.pi / 2, 0.0, along * turned, 0.0, 0.0])
         self._reverse = np.diag([along, 1.0, along])
 
@@ -74,8 +76,7 @@ class CentralWrist:
 
     def forward(self, axes: npt.ArrayLike) -> Array:
         """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
-        given = np.asarray(axes, dtype=np.float64)
-        theta = np.radians(given) * self._directions
+        theta = np.asarray(axes, dtype=np.float64) * self._turns
         main = _about_z(theta[..., 0]) @ _about_y(theta[..., 1] + theta[..., 2])
         wrist = (
             _about_z(theta[..., 3])
@@ -124,10 +125,9 @@ class CentralWrist:
         the shoulder, the elbow and the turn of each axis. The wrist is turned over or not, as lies
         nearer; where it is straight, A4 is that of the reference.
         """
-        theta = np.radians(references) * self._directions
-        main, wrist = self._main_and_wrist(poses, theta)
-        own = theta[:, 3] * self._senses[3] * self._directions[3] + self._zeros[3]
-        bent = theta[:, 4] * self._senses[4] * self._directions[4]
+        main, wrist = self._main_and_wrist(poses, references * self._turns)
+        own = references[:, 3] / self._senses[3] + self._zeros[3]
+        bent = references[:, 4] / self._senses[4]
         sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
         a4 = np.arctan2(wrist[:, 1, 2], wrist[:, 0, 2])
         a5 = np.arctan2(sine, wrist[:, 2, 2])
@@ -147,8 +147,8 @@ class CentralWrist:
         or its samples are too far apart.
         """
         references = np.array(start, dtype=np.float64)
-        theta = np.radians(references) * self._directions
-        main, wrist = self._main_and_wrist(poses, np.broadcast_to(theta, (len(poses), 6)))
+        theta = np.broadcast_to(references * self._turns, (len(poses), 6))
+        main, wrist = self._main_and_wrist(poses, theta)
         sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
         sign = math.copysign(1.0, references[4] * self._senses[4])
         if not (sine > _BENT).all():
@@ -181,7 +181,7 @@ class CentralWrist:
             c4 * wrist[..., 1, 1] - s4 * wrist[..., 0, 1],
         )
         angles = np.concatenate((main, np.stack((a4, a5, a6), axis=-1)), axis=-1)
-        degrees: Array = np.degrees((angles - self._zeros) * self._senses)
+        degrees: Array = (angles - self._zeros) * self._senses
         return degrees
 
     def _main_axes(self, places: Array, shoulder: Array, elbow: Array) -> Array:
@@ -216,16 +216,15 @@ class CentralWrist:
         where A5 is negative.
         """
         given = np.asarray(axes, dtype=np.float64)
-        theta = np.radians(given) * self._directions
-        behind = self._ahead(theta) < -_MARGIN
+        behind = self._ahead(given * self._turns) < -_MARGIN
         bent = given[..., 2] >= self.machine.elbow - _TOLERANCE
         status: npt.NDArray[np.int64] = behind + 2 * bent + 4 * (given[..., 4] < -_TOLERANCE)
         return status
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
         """How far the wrist centre is from axis 1, in mm, for axes ``(..., 6)``."""
-        theta = np.radians(np.asarray(axes, dtype=np.float64)) * self._directions
-        distance: Array = np.hypot(self._ahead(theta), self._forearm[1])
+        ahead = self._ahead(np.asarray(axes, dtype=np.float64) * self._turns)
+        distance: Array = np.hypot(ahead, self._forearm[1])
         return distance
 
     # ------------------------------------------------------------------------------- the geometry

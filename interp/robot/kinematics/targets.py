@@ -30,7 +30,6 @@ _LIMIT = 1e-6
 _WRIST = 0.01812  # degrees of A5, given in [POS-08]
 _ELBOW = 1e-4  # degrees of A3, and below it mm from axis 1: ours, the manual has no figure
 _OVERHEAD = 1e-6
-_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
 
 
 class TargetStatus(Enum):
@@ -165,11 +164,7 @@ def follow(arm: Kinematics, flanges: npt.ArrayLike, start: Sequence[float]) -> A
     as `check_path`.
     """
     ways = arm.inverse(flanges)
-    if not len(ways):
-        return np.empty((0, 6))
-    path = _one_way(ways, np.asarray(start, dtype=np.float64))
-    if path is None:
-        path = _nearest_ways(arm, ways, np.asarray(start, dtype=np.float64))
+    path = _nearest_ways(arm, ways, np.asarray(start, dtype=np.float64))
     check_path(arm.machine.axes, path)
     return path
 
@@ -266,17 +261,6 @@ def _settled_wrist(
 
 
 # ---------------------------------------------------------------------------------------- a path
-
-
-def _one_way(ways: Array, start: Array) -> Array | None:
-    """The path that stays in the branch nearest to the start, where it is plainly unbroken."""
-    distances = np.abs(_near(ways[0], start) - start).max(axis=1)
-    if np.isnan(distances).all():
-        return None
-    branch = ways[:, int(np.nanargmin(distances))]
-    path: Array = np.unwrap(np.vstack((start, branch)), period=360.0, axis=0)
-    steps = np.abs(np.diff(path, axis=0))
-    return path[1:] if bool((steps < _SAME_WAY).all()) else None
 
 
 def _nearest_ways(arm: Kinematics, ways: Array, start: Array) -> Array:

@@ -17,16 +17,12 @@ from interp.robot.planning.timeline import MICROSECOND, Key, Section, Timeline, 
 
 _APEX = 0.5
 """The parameter of a blend at which the first motion ends and the second begins [TRG-02]."""
-_RANK: dict[EventKind, int] = {
-    "motion_start": 0,
-    "blend_end": 1,
-    "place": 2,
-    "blend_start": 3,
-    "blend_apex": 4,
-    "motion_end": 6,
-    "stopped": 7,
-}
-_AT_END = 5
+_ORDER: Sequence[EventKind | None] = (
+    *("motion_start", "blend_end", "place", "blend_start", "blend_apex"),
+    None,  # places that count from the end
+    "motion_end",
+)
+"""What comes first of events of a motion at one time."""
 _HALVINGS = 30
 _ROUNDING = 1e-9  # of u
 
@@ -96,14 +92,16 @@ def events_of(
     clock = _Clock(passage, timeline)
     found: list[tuple[int, int, ArmEvent]] = []
 
-    def add(kind: EventKind, seconds: float | None, key: int | None = None, rank: int = -1) -> None:
+    def add(
+        kind: EventKind, seconds: float | None, key: int | None = None, is_of_end: bool = False
+    ) -> None:
         if seconds is not None and (kind, key) not in passage.taken:
             time = max(micros(seconds), now)
             is_unwanted = (
                 kind == "motion_end" and passage.out is None and wants_blend(passage.motion)
             )
             event = ArmEvent(time, kind, passage.number, key, is_unwanted)
-            found.append((time, rank if rank >= 0 else _RANK[kind], event))
+            found.append((time, _ORDER.index(None if is_of_end else kind), event))
 
     add("motion_start", clock.start)
     if passage.into is not None:
@@ -114,7 +112,7 @@ def events_of(
     add("motion_end", clock.end)
     for place, part in _places(passage.motion):
         at_start = place.kind == "DISTANCE" and place.position == 0.0
-        add("place", clock.place(place, part), place.key, -1 if at_start else _AT_END)
+        add("place", clock.place(place, part), place.key, not at_start)
     for place, part in _stop_places(passage.motion):
         add("place", clock.last_chance(place, part, now, stop_from), place.key)
     return found
@@ -164,22 +162,13 @@ class _Clock:
     def time(self, section: Section, u: float) -> float | None:
         """When a section's parameter is passed, in seconds; ``None`` if not as planned today."""
         legs = self._timeline.of(section.key)
-        if not legs:
-            return self._beside(section, u)
-        if u <= legs[0].stretch.start:
+        if legs and u <= legs[0].stretch.start:
             return legs[0].begins
         for leg in legs:
             last = leg.last
             if u <= last + _ROUNDING:
                 return leg.ends if u >= last - _ROUNDING else leg.time_at(u)
         return None
-
-    def _beside(self, section: Section, u: float) -> float | None:
-        """A section of no length, between two blends that use up all of a motion."""
-        if section not in self._passage.body or section.end > section.start:
-            return None
-        into = self._passage.into
-        return self.time(into, 1.0) if into is not None and u >= 0.0 else None
 
     def place(self, place: Place, part: int | None) -> float | None:
         """When a place is passed, its delay included, moved into the admissible range."""

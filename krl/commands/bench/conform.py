@@ -42,7 +42,7 @@ def conform(
             metavar="N",
             help="Try so many cases that may fail on a mutant, where more run its lines.",
         ),
-    ] = 60,
+    ] = 1000,
     survivors: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write mutants that no case detects, as TSV."),
