@@ -15,6 +15,7 @@ from itertools import chain
 
 from grammar.check.analysis.context import placed
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
+from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, extended, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found, Module, Scope
@@ -355,9 +356,8 @@ def _units(
 def _read(source: Source) -> ast.Module:
     found = read_module(source.text, source.path)
     if not isinstance(found, ast.Module):
-        first = found[0]
-        reason = first.reason or f"{first.text or 'the end of the file'!r} is not expected here"
-        raise LinkError(f"{source.path}:{first.line}: {reason}")
+        first = syntax_findings(found, source)[0]
+        raise LinkError(f"{source.path}:{first.region.line}: {first.message}")
     if isinstance(found.content, ast.Program):
         for routine in found.content.routines:
             _check_blocks(source, routine)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.diagnostics.error_recovery import recover
+from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
@@ -59,9 +60,8 @@ def readable(source: Source) -> Readable | None:
     syntax = read_module(text, source.path)
     assert isinstance(syntax, ast.Module), "what was recovered can be read"
     reasons = tuple(
-        f"{source.path}:{one.line}: {one.text or 'the end of the file'!r} is not expected here"
-        for one in found.failures
-        if not one.follows
+        f"{source.path}:{one.region.line}: {one.message}"
+        for one in syntax_findings(found.failures, source)
     )
     return Readable(Source(text, source.path), syntax, reasons)
 
