@@ -82,10 +82,7 @@ static void instruction(struct translator *at, int32_t place)
         for (int32_t i = 1; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
             krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
-    case KRL_LOAD_DATA:
-        krl_emit(at, KRL_STEP_GET_DATA)->b = operands[0];
-        krl_push_result(at);
-        break;
+    case KRL_LOAD_DATA: krl_load_data(at, operands[0]); break;
     case KRL_STORE_LOCAL: krl_store_local(at, operands[0]); break;
     case KRL_STORE_DATA: krl_store_data(at, operands[0]); break;
     case KRL_REF_LOCAL: krl_push(at, (struct virtual_value){ADDRESS, operands[0], 0, 0, 0, 0}); break;

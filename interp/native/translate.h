@@ -87,7 +87,8 @@ int krl_is_fresh(const struct translator *at, int32_t number);
 
 /* ---------------------------------------------------------------------------- translate_data_movement.c */
 
-/* The cell that the reference on top leads to. */
+/* A cell of the data lists; the cell that the reference on top leads to. */
+void krl_load_data(struct translator *at, int32_t address);
 void krl_load(struct translator *at);
 
 /* The value on top goes into a register, a cell of the data lists, or where a reference leads. */

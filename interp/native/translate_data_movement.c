@@ -1,6 +1,16 @@
 /* Translating what moves values: variables, references, elements of arrays, rows and views. */
 #include "translate.h"
 
+void krl_load_data(struct translator *at, int32_t address)
+{
+    /* It faults as a variable does that has no value; an index that is wrong faults in another way. */
+    for (int32_t number = 0; number < at->height; number++)
+        if (at->stack[number].kind == ELEMENT)
+            krl_settle(at, number);
+    krl_emit(at, KRL_STEP_GET_DATA)->b = address;
+    krl_push_result(at);
+}
+
 void krl_load(struct translator *at)
 {
     struct virtual_value *item = &at->stack[at->height - 1];
@@ -8,17 +18,16 @@ void krl_load(struct translator *at)
     case ADDRESS:
         item->kind = VARIABLE;
         return;
-    case CONSTANT: {
-        int32_t address = item->a;
+    case CONSTANT:
         at->height--;
-        krl_emit(at, KRL_STEP_GET_DATA)->b = address;
-        break;
-    }
+        krl_load_data(at, item->a);
+        return;
     case ELEMENT: {
         struct virtual_value element = *item;
         krl_secure(at, --at->height);
         krl_reach(at, GET, &element, 0);
-        break;
+        krl_push_result(at);
+        return;
     }
     default:
         if (krl_is_fresh(at, at->height - 1) && at->steps[at->result].op == KRL_STEP_INDEX_VIEW)
@@ -29,7 +38,6 @@ void krl_load(struct translator *at)
             krl_unary(at, KRL_STEP_LOAD);
         return;
     }
-    krl_push_result(at);
 }
 
 void krl_store_local(struct translator *at, int32_t place)
