@@ -9,19 +9,23 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 
 from grammar.diagnostics.diagnostic import Region
+from grammar.diagnostics.expected_tokens import names
 from grammar.semantics.link import words_of
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Answer, Found
 from grammar.semantics.symbols import Kind, Table, TypeSymbol
 from grammar.semantics.types import Enumeration
+from grammar.syntax.build import builder
 from grammar.syntax.references import Space
 from krl.language_server.hover import found_at
 from krl.language_server.symbols import seen_everywhere, type_name
 from krl.language_server.workspace import Looked, OpenProject, certain
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
+_WORD = re.compile(r"[$\w]*$")
 _MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)\.\w*$")
 
 
@@ -31,7 +35,10 @@ class RenameError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A name that can stand somewhere: what it is, and its type if it has one."""
+    """A name that can stand somewhere: what it is, and its type if it has one.
+
+    ``kind`` is ``None`` for a keyword.
+    """
 
     name: str
     kind: Kind | None
@@ -115,19 +122,45 @@ _SPACES = (Space.VALUE, Space.ROUTINE, Space.TYPE)
 
 
 def completions(looked: Looked, offset: int) -> list[Candidate]:
-    """The names that can be written at an offset, each once, those nearby first.
+    """The words that can be written at an offset, each once: keywords, then names, nearby first.
 
-    Behind ``#`` the constants of all enumerations, behind a dot the members of the structure.
+    Behind ``#`` the constants of all enumerations, behind a dot the members of the structure,
+    behind GOTO the labels of the routine.
     """
     line, column = looked.source.place(offset)
     before = looked.source.line(line)[: column - 1]
     if re.search(r"#\s*\w*$", before):
         found = _constants(looked)
-    elif (chain := _MEMBER.search(before)) is not None:
-        found = _members(looked, line, chain[1])
+    elif (member := _MEMBER.search(before)) is not None:
+        found = _members(looked, line, member[1])
+    elif re.search(r"\bGOTO\s+\w*$", before, re.IGNORECASE):
+        found = _labels(looked, line)
     else:
-        found = _visible(looked, line)
+        start = offset - len(before) + len(_WORD.sub("", before))
+        found = chain(_keywords(looked.source.text[:start]), _visible(looked, line))
     return list({one.name.upper(): one for one in reversed([*found])}.values())[::-1]
+
+
+def _keywords(before: str) -> Iterator[Candidate]:
+    """The keywords that the grammar has behind a text whose last line can be read."""
+    failures, recognizer = builder().failures.find(before), builder().failures.recognizer
+    if failures and failures[-1].text:  # the line fails before
+        return
+    kinds = recognizer.kinds(before)[:-1]
+    state = failures[-1].state if failures else recognizer.run(recognizer.start, kinds)[0]
+    expected, lexer = recognizer.expected(state), recognizer.lexer
+    words = {lexer.display[kind] for kind in expected if lexer.is_keyword(kind)}
+    if lexer.kind_of["NAME"] in expected:  # then these would be names
+        words -= names()
+    for word in sorted(words):
+        yield Candidate(word, None)
+
+
+def _labels(looked: Looked, line: int) -> Iterator[Candidate]:
+    scope = looked.scope(line)
+    if scope is not None and scope.routine is not None:
+        for symbol in scope.routine.table.spaces[Space.LABEL].values():
+            yield Candidate(symbol.name, Kind.LABEL)
 
 
 def _visible(looked: Looked, line: int) -> Iterator[Candidate]:

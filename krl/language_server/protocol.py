@@ -34,6 +34,7 @@ _KINDS = {
 }
 
 _COMPLETED: dict[Kind | None, lsp.CompletionItemKind] = {
+    None: lsp.CompletionItemKind.Keyword,
     Kind.ROUTINE: lsp.CompletionItemKind.Function,
     Kind.EXTERNAL: lsp.CompletionItemKind.Function,
     Kind.CONSTANT: lsp.CompletionItemKind.Constant,

@@ -135,7 +135,9 @@ def test_a_name_that_cannot_be_is_refused(
 @pytest.mark.parametrize(
     ("line", "expected", "missing"),
     [
-        ("  PA", {"N", "PARTS", "FETCH", "$OUT", "ABS", "FRAME"}, {"COUNT", "EMPTY", "X"}),
+        ("  PA", {"N", "PARTS", "$OUT", "ABS", "FRAME", "LOOP"}, {"COUNT", "EMPTY", "ENDLOOP"}),
+        ("  IF N==1 TH", {"THEN", "AND"}, {"LOOP", "TO"}),
+        ("AGAIN:\n  GOTO A", {"AGAIN"}, {"N", "LOOP"}),
         ("  BASE_OF = #", {"EMPTY", "FULL", "BASE", "JOINT"}, {"N", "PARTS"}),
         ("  SPOT.", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
     ],
@@ -143,7 +145,7 @@ def test_a_name_that_cannot_be_is_refused(
 def test_what_can_be_written_is_offered(
     project: OpenProject, line: str, expected: set[str], missing: set[str]
 ) -> None:
-    """Names that are seen; constants behind #; members behind a dot, though the line fails."""
+    """What the grammar has there and names that are seen; constants, members, labels alone."""
     found = offered(project, line)
     assert set() == expected - set(found)
     assert set() == missing & set(found)

@@ -32,6 +32,9 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
+# So many letters at the beginning of names that belong together.
+_SHARED = 5
+
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Tell the names that are certain to be unknown, each once in a file."""
@@ -378,11 +381,16 @@ def _is_all_read(context: Context, use: Use) -> bool:
     """Whether every file that a controller would look into for this name is at hand and read.
 
     For a variable: its data list, if it has one, and $CONFIG. What else is GLOBAL lies in packages,
-    and these are known by what they declare, not by what some other file calls.
+    and these are known by what they declare, not by what some other file calls; or in the list of a
+    program that begins as the variable does, and that list may be missing.
     """
-    project = context.project
+    project, begin = context.project, use.name.key[:_SHARED]
     if not isinstance(use.answer, MaybeElsewhere) or _may_be_unread(use):
         return False
-    if use.space in (Space.VALUE, Space.CHANNEL):
-        return project.has_config and not use.name.text.startswith("$")
-    return False
+    if use.space not in (Space.VALUE, Space.CHANNEL) or not project.has_config or begin[0] == "$":
+        return False
+    return not any(
+        one.name.startswith(begin) and one.suffix != ".dat" and project.data_of(one) is None
+        for one in project.modules
+        if one is not context.module
+    )
