@@ -13,7 +13,6 @@ from conformance.sensitivity.planted_fault import (
 from interp.controller.interrupts.interrupt_unit import InterruptUnit
 from interp.controller.interrupts.levels import Levels
 from interp.controller.motion.motion_queue import MotionQueue
-from interp.controller.motion.motions import MotionBuilder
 from interp.controller.state.interrupts import Interrupts
 from interp.controller.state.tasks import PROGRAM, Task
 
@@ -146,11 +145,6 @@ _BRAKING: Final = (
 # ------------------------------------------------------------------------------------ triggers
 
 
-def _placed(alter: Any) -> Plant:
-    """Triggers are placed elsewhere; ``alter`` has kind, position, on_start, delay in ms."""
-    return on(MotionBuilder, "_place", lambda right: lambda self, *row: right(self, *alter(*row)))
-
-
 def _kept(right: Any) -> Any:
     def plan(self: MotionQueue, task: Any, request: Any) -> Any:
         triggers = list(task.triggers)
@@ -170,18 +164,6 @@ def _dropped(right: Any) -> Any:
 
 
 _TRIGGERS: Final = (
-    ("DELAY has the other sign", _placed(lambda k, p, s, d: (k, p, s, -d))),
-    ("DELAY is in hundredths of a second", _placed(lambda k, p, s, d: (k, p, s, 10 * d))),
-    ("triggers come a cycle late", _placed(lambda k, p, s, d: (k, p, s, d + 12))),
-    (
-        "PATH has the other sign",
-        _placed(lambda k, p, s, d: (k, -p if k == "PATH" else p, s, d)),
-    ),
-    ("PATH counts from the start", _placed(lambda k, p, _s, d: (k, p, True, d))),
-    (
-        "DISTANCE 0 and 1 are exchanged",
-        _placed(lambda k, p, s, d: (k, 1 - p if k == "DISTANCE" else p, s, d)),
-    ),
     ("a trigger is for every motion that follows", on(MotionQueue, "plan", _kept)),
     ("only the last trigger counts", on(MotionQueue, "plan", _dropped)),
 )

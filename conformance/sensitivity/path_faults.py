@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Final
 
-import numpy as np
-
 from conformance.sensitivity.planted_fault import (
     Fault,
     Plant,
@@ -17,14 +15,11 @@ from conformance.sensitivity.planted_fault import (
 from interp.controller.motion.motions import MotionBuilder
 from interp.robot.kinematics.placement import Placement
 from interp.robot.path import targets_in_force
-from interp.robot.path.axis_path import JointLine
-from interp.robot.path.pose_path import Blend, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning import blending, path_events, planned_arm, tracks
-from interp.robot.planning.blending import Zone
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.planning.timeline import Timeline
-from interp.robot.planning.tracks import Track, Tracks
+from interp.robot.planning.tracks import Tracks
 
 _CYCLE: Final = 12_000
 
@@ -43,34 +38,6 @@ def faults() -> tuple[Fault, ...]:
 # ------------------------------------------------------------------------------------ blends
 
 
-def _zone(alter: Any) -> Plant:
-    """The zones of blends are others."""
-
-    def make(right: Any) -> Any:
-        def zone_of(first: Track, second: Track) -> Zone | None:
-            found = right(first, second)
-            return None if found is None else alter(found)
-
-        return zone_of
-
-    return on(planned_arm, "zone_of", make)
-
-
-def _chord(right: Any) -> Any:
-    def at(self: Blend, u: Any) -> Any:
-        _, rotations = right(self, u)
-        (start, end), _ = right(self, np.array([0.0, 1.0]))
-        return start + u[:, None] * (end - start), rotations
-
-    return at
-
-
-def _hugging(right: Any) -> Any:
-    return lambda before, after, weights, _slope, *others: right(
-        before, after, weights, 2.9, *others
-    )
-
-
 def _axis_share(alter: Any) -> Plant:
     """``alter`` is given criterion, values of the first motion and those of the own one."""
 
@@ -85,10 +52,6 @@ def _axis_share(alter: Any) -> Plant:
 
 _BLENDS: Final = (
     ("nothing is blended", constant(planned_arm, "zone_of", lambda _first, _second: None)),
-    ("zones are 10 % too large", _zone(lambda z: Zone(z.before * 1.1, z.after * 1.1))),
-    ("the zone behind the point is half as large", _zone(lambda z: Zone(z.before, z.after / 2))),
-    ("a blend is a straight line", on(Blend, "at", _chord)),
-    ("a blend keeps nearer to the corner", on(blending, "Rounding", _hugging)),
     (
         "behind PTP every zone is one of C_PTP",
         _axis_share(lambda _criterion, values, own: ("C_PTP", values, own)),
@@ -111,33 +74,6 @@ def _paths(alter: Any) -> Plant:
     return on(Tracks, "paths", make)
 
 
-def _scaled(**factors: float) -> Any:
-    def alter(limits: Any) -> Any:
-        return tuple(
-            replace(one, **{name: getattr(one, name) * by for name, by in factors.items()})
-            for one in limits
-        )
-
-    return alter
-
-
-def _bulging(right: Any) -> Any:
-    def at(self: StraightLine, u: Any) -> Any:
-        positions, rotations = right(self, u)
-        return positions + np.sin(np.pi * u)[:, None] * np.array([0.0, 0.0, 0.2]), rotations
-
-    return at
-
-
-def _uneven(right: Any) -> Any:
-    def axes(self: Any, u: Any) -> Any:
-        found = np.array(right(self, u))
-        found[:, 0] = right(self, u * u)[:, 0]
-        return found
-
-    return axes
-
-
 def _override(alter: Any) -> Plant:
     return on(
         PlannedArm,
@@ -147,14 +83,11 @@ def _override(alter: Any) -> Plant:
 
 
 _MOTIONS: Final = (
-    ("paths are 5 % too fast", _paths(_scaled(velocity=1.05))),
     ("turns of the tool have no limits", _paths(lambda limits: limits[:1])),
     (
         "$VEL_AXIS and $ACC_AXIS count nothing",
         on(Tracks, "programmed", lambda _: lambda self, _settings: self.limits),
     ),
-    ("a straight line bulges by 0.2 mm", on(StraightLine, "at", _bulging)),
-    ("the first axis is out of step with the others", on(JointLine, "axes", _uneven)),
     (
         "$ORI_TYPE counts nothing",
         on(
