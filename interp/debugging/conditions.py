@@ -14,9 +14,9 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.walk import left_chain
 from interp.port.executor import Reader
-from interp.port.inspection import Seen
+from interp.port.inspection import RELATIONS, Guard, Seen
 from interp.port.requests import Path
-from interp.values.faults import LinkError
+from interp.values.faults import LinkError, RuntimeFailure
 from interp.values.operators import apply, apply_unary
 from interp.values.values import (
     EnumValue,
@@ -47,6 +47,24 @@ def parsed(text: str) -> ast.Expression:
             case (ast.Assignment(value=value),) if len(module.content.routines) == 1:
                 return value
     raise LinkError(f"{text}: this is no expression")
+
+
+def guard_of(text: str) -> Guard | None:
+    """A condition as a machine can look at it; ``None`` for what is not as simple."""
+    try:
+        match parsed(text):
+            case ast.Binary(operator=relation, left=left, right=right) if relation in RELATIONS:
+                name = _text(_Evaluation(lambda _text: None, None, lambda _name: None).steps(left))
+                match right:
+                    case ast.IntegerLiteral(value=number) if number < 2**31:
+                        return Guard(name, relation, number)
+                    case ast.BoolLiteral(value=truth):
+                        return Guard(name, relation, truth)
+                    case ast.EnumConstant():
+                        return Guard(name, relation, right.name.key)
+    except RuntimeFailure:
+        pass
+    return None
 
 
 def root_of(node: ast.Expression) -> str | None:

@@ -29,14 +29,14 @@ from interp.debugging.client import (
     Stop,
     Watch,
 )
-from interp.debugging.conditions import evaluated, parsed, place_of, root_of
+from interp.debugging.conditions import evaluated, guard_of, parsed, place_of, root_of
 from interp.debugging.executor import DebuggedExecutor
-from interp.debugging.history import START, Assigned, History, Selected
+from interp.debugging.history import START, Assigned, Fits, History, Selected
 from interp.debugging.hits import is_hit
-from interp.debugging.names import Names, names_in, signal_in
+from interp.debugging.names import Names, names_in, signal_in, signals_of
 from interp.debugging.selection import reason_against
 from interp.debugging.value_text import value_text
-from interp.port.inspection import Seen, StackFrame
+from interp.port.inspection import Breaks, Guard, Seen, StackFrame
 from interp.port.requests import Fail, Path, Value
 from interp.program.load import CheckedProgram
 from interp.program.statement_paths import routine_at, statement_lines
@@ -46,7 +46,7 @@ from interp.values.values import converted
 #: Called where a program stops; may look around in the debugger, and set what it likes there.
 Client = Callable[["Debugger", Stop], Command]
 _T = TypeVar("_T")
-_NOWHERE: Final[frozenset[tuple[str, int]]] = frozenset()
+_NOWHERE: Final[Breaks] = {}
 
 
 class World(Protocol):
@@ -127,7 +127,7 @@ class Debugger:
         self._tasks: dict[TaskName, DebuggedExecutor] = {}
         self._history = History()
         self._breakpoints: dict[int, list[Breakpoint]] = {}
-        self._places = _NOWHERE
+        self._places: dict[tuple[str, int], Guard | None] = {}
         self._hits: dict[Breakpoint, array[int]] = {}
         self._watches: list[_Watched] = []
         self._stepping: _Stepping | None = None
@@ -163,9 +163,9 @@ class Debugger:
         if self._history.is_searched():
             self._history.end_search()
             raise _Again
-        self._history.has_arrived()  # where no statement came that could be returned to
-        self._is_ended = True
         robot = self._tasks["robot"]
+        self._history.arrived(robot)  # where no statement came that could be returned to
+        self._is_ended = True
         self._stopped(robot, Stop("ended", "robot", robot.at, text=text))
 
     def around(self, inside: Any, per_slice: int, task: TaskName = "robot") -> DebuggedExecutor:
@@ -195,12 +195,16 @@ class Debugger:
             is_hit(one.hits, 1)
             by_line.setdefault(one.line, []).append(one)
         self._breakpoints = by_line
-        self._places = frozenset(
-            (unit.module.path, one.line)
-            for unit in self._program.units.values()
-            for one in breakpoints
-            if _is_of(one.file, unit.module.path)
-        )
+        self._places = {}
+        signals = signals_of(self._program)
+        for unit in self._program.units.values():
+            for one in breakpoints:
+                place = unit.module.path, one.line
+                if _is_of(one.file, unit.module.path):
+                    is_only = place not in self._places
+                    guard = guard_of(one.condition) if one.condition and is_only else None
+                    is_signal = guard is not None and guard.name.upper() in signals
+                    self._places[place] = None if is_signal else guard
         self._hits = {one: self._hits.get(one, array("q")) for one in breakpoints if one.hits}
 
     @property
@@ -323,8 +327,8 @@ class Debugger:
     # ----------------------------------------------------------------------- what goes by
 
     @property
-    def places(self) -> frozenset[tuple[str, int]]:
-        """The files and lines whose statements have to be looked at, wherever `unseen` ends."""
+    def places(self) -> Breaks:
+        """The lines whose statements have to be looked at, wherever `unseen` ends."""
         history = self._history
         is_idle = history.is_repeating and not history.is_looking(self._count())
         return _NOWHERE if is_idle else self._places
@@ -358,12 +362,12 @@ class Debugger:
             else:
                 line = change.line
         self._end_search_at(executor)
-        if history.has_arrived():
+        if arrived := history.arrived(executor):
             self._is_begun = True
             for hits in self._hits.values():
                 del hits[bisect_right(hits, history.here[0]) :]
             self._changed(executor)  # watches have now what they had then
-            return self._stopped(executor, Stop("back", executor.task, executor.at))
+            return self._stopped(executor, arrived)
         if line is not None or history.is_repeating:
             return line
         stop = self._why(executor)
@@ -528,14 +532,20 @@ class Debugger:
     def _step(self, way: str, executor: DebuggedExecutor) -> _Stepping:
         return _Stepping(way, executor.task, executor.height, self._ended_motions(way))
 
-    def _fitting(self, way: str, executor: DebuggedExecutor) -> Callable[[DebuggedExecutor], bool]:
+    def _fitting(self, way: str, executor: DebuggedExecutor) -> Fits:
         """What statement to go back to."""
         if way == "go":
-            return lambda one: self._changed(one) is not None or self._broken(one) is not None
+            return lambda one: self._changed(one) or self._broken(one)
         step = self._step(way, executor)
-        if way == "motion":
-            return lambda one: one.task == step.task and self.arm.ended < step.ended
-        return lambda one: step.is_over(one, 0)
+
+        def fits(one: DebuggedExecutor) -> Stop | None:
+            if way == "motion":
+                is_there = one.task == step.task and self.arm.ended < step.ended
+            else:
+                is_there = step.is_over(one, 0)
+            return Stop("back", one.task, one.at) if is_there else None
+
+        return fits
 
     def _against(self, line: int, executor: DebuggedExecutor, stop: Stop) -> str:
         """Why a line cannot be selected; empty where it can."""

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from interp.controller.state.trace import TaskName
 from interp.port.events import Sink
 from interp.port.executor import Executor, Reader
-from interp.port.inspection import Inspectable
+from interp.port.inspection import Breaks, Inspectable
 from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, StopAdvance, Value
 from interp.values.faults import Fault
 
@@ -21,8 +21,11 @@ class Hook(Protocol):
     """What is shown the statements and faults of debugged executors: the debugger."""
 
     @property
-    def places(self) -> frozenset[tuple[str, int]]:
-        """The files and lines whose statements are shown; the same object while they stay."""
+    def places(self) -> Breaks:
+        """The lines whose statements are shown, at least where the guard of a line holds.
+
+        It is the same object while they stay.
+        """
 
     def unseen(self, shows_places: bool) -> int:
         """How many statements may begin before one has to be shown, but for those of `places`.
@@ -49,7 +52,7 @@ class DebuggedExecutor:
         self.at = At("", 0, 0)
         self._hook = hook
         self._per_slice = per_slice
-        self._places: frozenset[tuple[str, int]] = frozenset()
+        self._places: Breaks = {}
         self._shows_places = True
         #: When the slice ends that the outside has given.
         self._due = inside.begun + per_slice

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from interp.controller.state.trace import TaskName
-from interp.debugging.client import Position
+from interp.debugging.client import Position, Stop
 from interp.debugging.executor import DebuggedExecutor
 from interp.port.requests import Path
 from interp.values.values import Value
@@ -47,8 +47,8 @@ class Selected:
 
 
 Change = Assigned | Selected
-#: Whether to go back to the moment at which a program is about to begin a statement.
-Fits = Callable[[DebuggedExecutor], bool]
+#: Why to go back to the moment at which a program is about to begin a statement, if at all.
+Fits = Callable[[DebuggedExecutor], Stop | None]
 
 
 @dataclass(slots=True)
@@ -59,7 +59,7 @@ class _Search:
     is_of_places: bool
     end: Position
     first: int
-    found: Position | None = None
+    found: tuple[Position, Stop | None] = START, None
 
 
 class History:
@@ -69,6 +69,7 @@ class History:
         self.here: Position = START
         self.changes: list[tuple[Position, Change]] = []
         self._goal: Position | None = None
+        self._stop: Stop | None = None
         self._search: _Search | None = None
 
     @property
@@ -131,16 +132,16 @@ class History:
         """Changes are no longer made."""
         self.changes.clear()
 
-    def has_arrived(self) -> bool:
-        """Whether the moment that was to be returned to has come."""
+    def arrived(self, executor: DebuggedExecutor) -> Stop | None:
+        """Why the program stops where the moment that was to be returned to has come."""
         if self._search is None and self._goal is not None and self.here >= self._goal:
             self._goal = None
             # Whoever goes back to where a line was selected goes back behind that selection.
             undone = next((one for one in self.due() if isinstance(one, Selected)), None)
             if undone is not None:
                 self.changes = self.changes[: self.changes.index((self.here, undone))]
-            return True
-        return False
+            return self._stop or Stop("back", executor.task, executor.at)
+        return None
 
     def is_searched(self, executor: DebuggedExecutor | None = None) -> bool:
         """Whether all moments that a search is about have been looked at, as the next one is."""
@@ -149,8 +150,9 @@ class History:
             return False
         if self.here >= search.end:
             return True
-        if executor is not None and self.here[0] >= search.first and search.fits(executor):
-            search.found = self.here
+        stop = search.fits(executor) if executor and self.here[0] >= search.first else None
+        if stop is not None:
+            search.found = self.here, stop
         return False
 
     def end_search(self) -> None:
@@ -158,8 +160,8 @@ class History:
         search = self._search
         if search is None:
             return
-        if search.found is None and search.first > 0:
+        if search.found[1] is None and search.first > 0:
             stretch = (search.end[0] - search.first) * _GROWTH
             search.first = max(0, search.end[0] - stretch)
         else:
-            self._goal, self._search = search.found or START, None
+            (self._goal, self._stop), self._search = search.found, None

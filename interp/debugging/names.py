@@ -75,6 +75,15 @@ def signal_in(
     return (symbol.first, symbol.last) if isinstance(symbol, SignalSymbol) else None
 
 
+def signals_of(program: CheckedProgram) -> frozenset[str]:
+    """The names of all signals of a program, in upper case."""
+    units = program.units.values()
+    tables = [unit.module.table.table for unit in units if unit.module.table is not None]
+    tables += [one.table.table for unit in units for one in program.routines_of(unit)]
+    symbols = (symbol for table in tables for _, symbol in table.symbols())
+    return frozenset(one.name.upper() for one in symbols if one.kind is Kind.SIGNAL)
+
+
 def _names(table: Table, kinds: frozenset[Kind], *, is_all: bool = True) -> tuple[str, ...]:
     return tuple(
         symbol.name

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { STATEMENTS = 300, PER_SLICE = 40, STOPS = 400, DEPTH = 8, LARGEST = 1 << 16 };
+enum { STATEMENTS = 300, PER_SLICE = 40, STOPS = 400, DEPTH = 8, MOST_BREAKS = 64, LARGEST = 1 << 16 };
 
 static uint64_t images, accepted, runs, stops, faults;
 
@@ -250,10 +250,13 @@ static int try_image(const uint8_t *data, size_t length)
     accepted++;
     if (!krl_give_memory(&machine, DEPTH, NULL))
         abort();
+    if ((machine.breaks = calloc(MOST_BREAKS, sizeof *machine.breaks)) == NULL)
+        abort();
     for (int32_t step = draw(4) ? machine.step_count : 0; step < machine.step_count; step++)
-        if (machine.steps[step].statement >= 0 && draw(4) == 0) {
+        if (machine.steps[step].statement >= 0 && draw(4) == 0 && machine.break_count < MOST_BREAKS) {
             krl_stop_at(&machine.steps[step], KRL_STOP_BREAK);
-            machine.breaks++;
+            machine.breaks[machine.break_count++] = (struct krl_break){
+                step, (int32_t)draw(7) - 1, (int32_t)draw(9), (int)draw(2), krl_of_int((int32_t)draw(3))};
         }
     for (int32_t code = 0; code < machine.program.code_count; code++) {
         int statements = STATEMENTS;

@@ -28,6 +28,7 @@ int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t len
 void krl_unload(struct krl_machine *machine)
 {
     free(machine->steps);
+    free(machine->breaks);
     free(machine->arrays);
     free(machine->calls);
     if (machine->memory != NULL && --machine->memory->users == 0) {
@@ -147,4 +148,19 @@ void krl_close(struct krl_machine *machine)
     machine->statement = call->statement;
     machine->serial = call->serial;
     machine->top = call->step < 0 ? call->top : machine->fp + machine->routines[machine->code].frame;
+}
+
+int krl_passes_break(const struct krl_machine *machine, const krl_cell *fp, int32_t step)
+{
+    const struct krl_break *found = machine->breaks, *end = found + machine->break_count;
+    while (found < end && found->step != step)
+        found++;
+    if (found == end || found->relation < 0)
+        return 0;
+    const krl_cell *place = (found->is_of_frame ? fp : machine->cells) + found->cell;
+    if (place >= machine->cells + machine->memory->count || krl_tag_of(*place) != krl_tag_of(found->right))
+        return 0;
+    int32_t left = krl_int_in(*place), right = krl_int_in(found->right);
+    const int holds[] = {left == right, left != right, left < right, left > right, left <= right, left >= right};
+    return !holds[found->relation];
 }

@@ -71,6 +71,15 @@ enum krl_told {
     KRL_TOLD_BRANCH = 16
 };
 
+/* A step to stop before; with a relation, its place in KRL_COMPARISONS, only where that holds. */
+struct krl_break {
+    int32_t step;
+    int32_t relation; /* -1 for none */
+    int32_t cell;     /* of the frame or of all cells, the left side */
+    int is_of_frame;
+    krl_cell right;
+};
+
 struct krl_machine;
 
 /* Runs a program that was compiled, from one of its entries on, until the interpreter has to go on. */
@@ -84,7 +93,8 @@ struct krl_machine {
     krl_compiled *compiled; /* its steps as C that was compiled, NULL for none */
     const struct krl_outside *outside;
     const int32_t *entries; /* the steps at which that is entered, up to -1; NULL for none */
-    int breaks;             /* steps that have a breakpoint: then nothing is entered */
+    struct krl_break *breaks;
+    int32_t break_count;    /* where there are any nothing is entered */
     int told; /* which events are traced */
     struct krl_routine *routines;
     struct krl_step *steps;
@@ -173,6 +183,9 @@ void krl_close(struct krl_machine *machine);
 /* ---------------------------------------------------------------------------- run.c */
 
 /* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
+/* Whether a breakpoint at a step is passed, as its relation does not hold: both sides are of one type. */
+int krl_passes_break(const struct krl_machine *machine, const krl_cell *fp, int32_t step);
+
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun);
 
 /* Puts handlers into steps; and one into a step before which the machine stops for KRL_STOP_COMPILED or

@@ -9,21 +9,24 @@ something is to be done outside, and gives the operation that does it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from enum import IntEnum
-from typing import cast, overload
+from typing import Final, cast, overload
 
+from grammar.semantics.types import BOOL, INT, Enumeration
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw
-from interp.bytecode.program import Program
+from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm import executor as vm
+from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import Services
 from interp.bytecode.vm.state import Call, Completion, Operation, State
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.native._core import Core
 from interp.port.events import Kind, Sink, wanting
 from interp.port.executor import Reader
+from interp.port.inspection import RELATIONS, Breaks, Guard
 from interp.port.requests import Request
 from interp.program.load import Limits
 from interp.values.faults import FAULTS, LinkError, fault
@@ -51,6 +54,10 @@ class _Matter(IntEnum):
 
 #: The kinds of events as ``enum krl_told`` has them.
 _TOLD: Mapping[Kind, int] = {"line": 1, "assign": 2, "call": 4, "return": 8, "branch": 16}
+#: A statement at which C stops whatever holds.
+_UNGUARDED: Final = (-1, 0, False, 0)
+#: The first relation that asks for an order.
+_ORDER: Final = RELATIONS.index("<")
 _SLUGS = [slug for slug, _ in sorted(FAULTS.items(), key=lambda item: item[1].code)]
 
 
@@ -262,17 +269,34 @@ class Machine(vm.Machine):
     def _core(self) -> _State:
         return cast("_State", self._state)
 
-    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+    def break_at(self, places: Breaks) -> bool:
         """Ask for time before statements that begin in these lines; whether it can do so."""
         if self._told & _TOLD["line"]:
             return False
         steps = [
-            self._core.step(number, place)
+            (self._core.step(number, place), *self._guarded(number, places[where]))
             for number, code in enumerate(self._program.codes)
             for place, one in enumerate(code.instructions)
-            if one.op is Op.LINE and (code.file, one.operands[0]) in places
+            if one.op is Op.LINE and (where := (code.file, one.operands[0])) in places
         ]
         return self._core.break_at(steps) == len(steps)
+
+    def _guarded(self, number: int, guard: Guard | None) -> tuple[int, int, bool, Raw]:
+        """What holds in a code object: relation, cell, whether of the frame, constant; see C."""
+        if guard is None or self._program.codes[number].kind is not CodeKind.ROUTINE:
+            return _UNGUARDED
+        found = Names(self._program, InFrame([], number, 0)).fixed(guard.name)
+        relation, right = RELATIONS.index(guard.relation), guard.constant
+        match right, found:
+            case bool(), (type_, cell, is_of_frame) if type_ == BOOL and relation < _ORDER:
+                return relation, cell, is_of_frame, right
+            case str(), (Enumeration(constants=names), cell, is_of_frame) if relation < _ORDER:
+                keys = [name.upper() for name in names]
+                if right in keys:
+                    return relation, cell, is_of_frame, keys.index(right)
+            case int(), (type_, cell, is_of_frame) if type_ == INT:
+                return relation, cell, is_of_frame, right
+        return _UNGUARDED
 
     def _memory(self) -> object:
         return self._core.snapshot()

@@ -5,6 +5,7 @@
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+#include <stdlib.h>
 #include <structmember.h>
 
 #include "machine.h"
@@ -394,19 +395,26 @@ static PyObject *core_break_at(PyObject *self, PyObject *arguments)
     if (!PyArg_ParseTuple(arguments, "O!", &PyList_Type, &places))
         return NULL;
     krl_thread(machine->steps, machine->step_count);
-    machine->breaks = 0;
+    free(machine->breaks);
+    machine->break_count = 0;
+    machine->breaks = malloc(((size_t)PyList_Size(places) + 1) * sizeof *machine->breaks);
+    if (machine->breaks == NULL)
+        return PyErr_NoMemory();
     for (Py_ssize_t i = 0; i < PyList_Size(places); i++) {
-        long number = PyLong_AsLong(PyList_GetItem(places, i));
-        if (number < 0 || number >= machine->step_count || machine->steps[number].statement < 0)
+        struct krl_break one;
+        PyObject *right;
+        if (!PyArg_ParseTuple(PyList_GetItem(places, i), "iiipO", &one.step, &one.relation, &one.cell,
+                              &one.is_of_frame, &right) || !cell_of(right, &one.right))
+            return NULL;
+        if (one.step < 0 || one.step >= machine->step_count || machine->steps[one.step].statement < 0 ||
+            one.relation >= 6 || one.cell < 0 || one.cell >= machine->memory->count)
             continue;
-        krl_stop_at(&machine->steps[number], KRL_STOP_BREAK);
-        machine->breaks++;
+        krl_stop_at(&machine->steps[one.step], KRL_STOP_BREAK);
+        machine->breaks[machine->break_count++] = one;
     }
-    if (machine->breaks == 0)
+    if (machine->break_count == 0)
         enter_compiled(machine);
-    if (PyErr_Occurred())
-        return NULL;
-    return PyLong_FromLong(machine->breaks);
+    return PyLong_FromLong(machine->break_count);
 }
 
 /* Runs from now on what was compiled from these very steps. The library stays. */

@@ -28,7 +28,7 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     int32_t left = machine->left, statement = machine->statement;
     int fault = KRL_FINE;
 
-    if (machine->breaks && !is_begun && pc->handler == krl_handler(KRL_STOP_BREAK))
+    if (machine->break_count && !is_begun && pc->handler == krl_handler(KRL_STOP_BREAK))
         goto broken;
 #if KRL_THREADED
     goto *labels[2 * pc->op + (pc->statement >= 0 && !is_begun)];
@@ -111,9 +111,10 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     default:
         goto finished; /* there is no such step */
     dispatch:
-        if (pc->handler == krl_handler(KRL_STOP_BREAK))
-            goto broken;
-        if (pc->handler != NULL)
+        if (pc->handler == krl_handler(KRL_STOP_BREAK)) {
+            if (!krl_passes_break(machine, fp, (int32_t)(pc - machine->steps)))
+                goto broken;
+        } else if (pc->handler != NULL)
             goto enter;
         number_of_case = 2 * pc->op + (pc->statement >= 0);
         continue;
@@ -130,6 +131,10 @@ finished:
     stopped.why = KRL_STOP_END;
     goto stop;
 broken: /* where a statement begins its frame has no operands */
+#if KRL_THREADED
+    if (krl_passes_break(machine, fp, (int32_t)(pc - machine->steps)))
+        goto *labels[2 * pc->op + 1];
+#endif
     stopped.why = KRL_STOP_BREAK;
     goto before;
 wait:

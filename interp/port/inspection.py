@@ -6,8 +6,8 @@ an executor that has ended.
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Final, Protocol
 
 from grammar.semantics.types import Type
 from interp.port.executor import Executor
@@ -30,12 +30,30 @@ class Seen:
 
 
 @dataclass(frozen=True, slots=True)
+class Guard:
+    """A relation of a variable, named as in `Inspectable.look`, to a constant.
+
+    ``relation`` is one of `RELATIONS`. The constant is an INT, a BOOL, or the name of one of an
+    enumeration in upper case.
+    """
+
+    name: str
+    relation: str
+    constant: int | bool | str
+
+
+@dataclass(frozen=True, slots=True)
 class StackFrame:
     """A routine that is open and where it is, or an action of an interrupt or a trigger in one."""
 
     name: str
     at: At
     is_action: bool = False
+
+
+#: Files and lines, each with what has to hold there if anything has.
+Breaks = Mapping[tuple[str, int], Guard | None]
+RELATIONS: Final = ("==", "<>", "<", ">", "<=", ">=")
 
 
 class Inspectable(Executor, Protocol):
@@ -53,10 +71,11 @@ class Inspectable(Executor, Protocol):
         """
         ...
 
-    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+    def break_at(self, places: Breaks) -> bool:
         """Ask for time before each statement that begins in one of these lines, and in no others.
 
-        They are files and lines. Whether it does: else it has to be asked at every statement.
+        It need not ask where the guard of a line is FALSE. Whether it does all that: else it has to
+        be asked at every statement.
         """
         ...
 

@@ -6,13 +6,13 @@ own stack is only as deep as blocks and expressions nest within one routine.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from interp.port.events import Sink
 from interp.port.executor import Reader
-from interp.port.inspection import Seen, StackFrame
+from interp.port.inspection import Breaks, Seen, StackFrame
 from interp.port.requests import (
     At,
     CodeHandle,
@@ -197,7 +197,7 @@ class TreeExecutor:
         """The slice that has begun ends once so many statements have begun altogether."""
         self._run.due = count
 
-    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+    def break_at(self, places: Breaks) -> bool:
         """Ask for time before statements that begin in these lines: not this interpreter."""
         return not places
 

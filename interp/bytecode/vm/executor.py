@@ -11,7 +11,7 @@ behind the one that RESUME comes back to.
 from __future__ import annotations
 
 import marshal
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
@@ -26,7 +26,7 @@ from interp.bytecode.vm.statement_budget import Guard
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
-from interp.port.inspection import Seen, StackFrame
+from interp.port.inspection import Breaks, Seen, StackFrame
 from interp.port.requests import (
     At,
     CodeHandle,
@@ -272,7 +272,7 @@ class Machine:
         """The slice that has begun ends once so many statements have begun altogether."""
         self._services.counter.ask_at(count)
 
-    def break_at(self, places: Collection[tuple[str, int]]) -> bool:
+    def break_at(self, places: Breaks) -> bool:
         """Ask for time before statements that begin in these lines: not this machine."""
         return not places
 

@@ -82,7 +82,7 @@ class Names:
             return self._part(variable.name, whole, start, address, type_, dimensions)
         for slot in self.slots(state.code):
             start = state.fp + slot.offset
-            if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
+            if self._is_reference(slot):
                 continue
             if start <= address < start + slot.cells:
                 whole = program.types[slot.variable.type]
@@ -150,6 +150,17 @@ class Names:
         part = offset_of(place[0], steps)
         return None if part is None else (part[1], place[1] + part[0])
 
+    def fixed(self, text: str) -> tuple[Type, int, bool] | None:
+        """The same for what lies in the data lists or at one place of all frames, and which it is.
+
+        Of a frame it is the distance from its first cell, where that is 0 in the state.
+        """
+        slot = self._slot(str(_STEP.findall(text.upper())[0]))
+        if slot is not None and self._is_reference(slot):
+            return None
+        type_, address = self._place(text) or (None, None)
+        return None if type_ is None or address is None else (type_, address, slot is not None)
+
     def look(self, text: str) -> Seen | None:
         """The same with what a debugger wants to know besides; see `interp.port.inspection`."""
         found = self.find(text)
@@ -177,11 +188,12 @@ class Names:
 
         A view that was left out leads nowhere either, but it has sizes.
         """
-        is_direct = isinstance(slot.variable, Local) or slot.variable.mode is Mode.IN
-        return (
-            not is_direct
-            and self._state.cells[self._state.fp + slot.offset + slot.cells - 1] is None
-        )
+        last = self._state.fp + slot.offset + slot.cells - 1
+        return self._is_reference(slot) and self._state.cells[last] is None
+
+    @staticmethod
+    def _is_reference(slot: Slot) -> bool:
+        return isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN
 
     def _slot(self, name: str) -> Slot | None:
         """The parameter or local of a name."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import product
 from typing import Any
 
 import pytest
@@ -127,14 +129,15 @@ def test_only_lines_with_breakpoints_are_looked_at(
     executor: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Forwards and back, the machine in C stops at them and at the ends of slices alone."""
-    text = "DEF MAIN()\nINT I\nFOR I=1 TO 9000\nIF I==50 THEN\nI=51\nENDIF\nENDFOR\nI=7\nEND\n"
+    text = "DEF MAIN()\nINT I\nFOR I=1 TO 9000\n;\nI=I+1-1\nENDFOR\n;\nI=7\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
     stops: list[tuple[str, int]] = []
     looks = 0
 
     def client(debugger: Debugger, stop: Stop) -> Command:
         stops.append((stop.reason, stop.at.line))
-        debugger.set_breakpoints([Breakpoint("main.src", line) for line in (5, 8)])
+        places = [Breakpoint("main.src", 5, condition="I==50"), Breakpoint("main.src", 8)]
+        debugger.set_breakpoints(places)
         if len(stops) == 3:
             return Back("go")
         return Go() if len(stops) < 6 else Quit()
@@ -150,8 +153,61 @@ def test_only_lines_with_breakpoints_are_looked_at(
     debugger, setup = Debugger(program, client), RunSetup(executor=executor)
     debugger.run(lambda: run_program(program, setup, debugger=debugger))
     breakpoints = [("breakpoint", 5), ("breakpoint", 8)]
-    assert [("entry", 3), *breakpoints, ("back", 5), breakpoints[1], ("ended", 8)] == stops
+    assert [("entry", 3), *breakpoints, *breakpoints, ("ended", 8)] == stops
     assert looks < 150
+
+
+_LOOKED_AT = """DEF MAIN()
+DECL INT I
+FOR I=-1 TO 3
+WORK(I, I)
+ENDFOR
+END
+DEF WORK(GIVEN:IN, REF:OUT)
+DECL INT GIVEN, REF, A[2], NONE
+DECL T S
+DECL MODES MODE
+BOOL IS_ODD
+A[2] = GIVEN
+S.N = GIVEN
+SHARED = GIVEN
+MODE = #BUSY
+IF GIVEN > 0 THEN
+MODE = #IDLE
+ENDIF
+IS_ODD = (GIVEN B_AND 1) == 1
+"""
+_LISTED = """DEFDAT MAIN
+STRUC T INT N
+ENUM MODES IDLE, BUSY
+DECL INT SHARED=5
+SIGNAL OUT $OUT[1]
+ENDDAT
+"""
+
+
+def test_conditions_hold_in_the_same_passes() -> None:
+    """Whoever looks at the condition of a breakpoint, it holds where the reference says."""
+    names = ["GIVEN", "REF", "A[2]", "A[1]", "S.N", "MODE", "IS_ODD", "NONE", "SHARED", "OUT", "NO"]
+    sides = product(
+        names, ("==", "<>", "<", ">", "<=", ">="), ("1", "3.0", "TRUE", "#IDLE", "GIVEN")
+    )
+    breakpoints = [
+        Breakpoint("main.src", line, condition=" ".join(side), log=f"{line} {{GIVEN}}")
+        for line, side in enumerate(sides, _LOOKED_AT.count("\n") + 1)
+    ]
+    text = _LOOKED_AT + "A[2] = GIVEN\n" * len(breakpoints) + "END\n"
+    program = load([Source(text, "main.src"), Source(_LISTED, "main.dat")], "main.src")
+
+    def client(debugger: Debugger, _stop: Stop) -> Command:
+        debugger.set_breakpoints(breakpoints)
+        return Go()
+
+    logs: dict[str, list[str]] = {executor: [] for executor in available()}
+    for executor, log in logs.items():
+        debugger, setup = Debugger(program, client, log.append), RunSetup(executor=executor)
+        debugger.run(partial(run_program, program, setup, debugger=debugger))
+    assert len(available()) * [logs["tree"]] == list(logs.values())
 
 
 @settings(max_examples=5)
