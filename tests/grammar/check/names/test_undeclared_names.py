@@ -206,11 +206,20 @@ END"""
     agrees({"cell.src": cell}, is_complete=None)
 
 
-def test_a_slip_in_the_data_list(agrees: Agrees) -> None:
-    """What the program uses often and its list does not have is one slip away from what it has."""
-    data = "DEFDAT CELL\nDECL INT RECIEVED=0 ;> KRL101?\nENDDAT\n"
+@pytest.mark.parametrize(("config", "mark"), [({}, "?"), ({"R1/System/$config.dat": CONFIG}, "")])
+def test_a_slip_in_the_data_list(agrees: Agrees, config: dict[str, str], mark: str) -> None:
+    """What the program uses often and its list does not have is one slip away from what it has.
+
+    Of several such names the declarations are missing, or have other names.
+    """
+    data = f"DEFDAT CELL\nDECL INT RECIEVED=0 ;> KRL101{mark}\nENDDAT\n"
     lines = ["DEF CELL()", *["RECEIVED = 2"] * 5, "END"]
-    agrees({"cell.dat": data, "cell.src": "\n".join(lines)}, is_complete=None)
+    files = {**config, "R1/cell.dat": data, "R1/cell.src": "\n".join(lines)}
+    agrees(files, is_complete=None)
+    files["R1/cell.dat"] = "DEFDAT CELL\nDECL INT RECIEVED=0, DELIVERD=0\nENDDAT\n"
+    told = ["RECEIVED = 2", "DELIVERED = 2"]
+    lines = ["DEF CELL()", *[f"{one} ;> KRL101{mark}" for one in told], *told * 4, "END"]
+    agrees({**files, "R1/cell.src": "\n".join(lines)}, is_complete=None)
 
 
 def test_a_slip_in_what_is_global(agrees: Agrees) -> None:
@@ -290,6 +299,13 @@ def test_a_slip_has_one_name_that_is_near(more: str, count: int) -> None:
     """Of two declarations that are near neither is wrong for certain."""
     found = told({"$config.dat": ENUM.replace("PLCAE", f"PLCAE{more}"), "a.src": PLACES})
     assert count == [path for path, *_ in found].count("$config.dat")
+    uses = "PLACE = 1\n" * 5 + "END\n"
+    data = f"DEFDAT B PUBLIC\nDECL GLOBAL INT PLCAE{more}\nENDDAT\n"
+    assert count == [path for path, *_ in told({"a.src": f"DEF A()\n{uses}", "b.dat": data})].count(
+        "b.dat"
+    )
+    found = told({"a.src": f"DEF A()\nINT PLCAE{more}\n{uses}"})
+    assert count == [line for _, line, _ in found].count(2)
 
 
 def test_a_slip_in_a_declaration_that_moved() -> None:

@@ -186,7 +186,7 @@ def test_what_is_no_program_is_left_out(tmp_path: Path) -> None:
 def test_files_that_are_too_large_may_use_any_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limited: str
 ) -> None:
-    """What is declared by a slip may be used there, so that the use is told, or nothing."""
+    """They are findings, and what is declared by a slip may be used there."""
     program = "DEF A()\n" + "RECEIVED = 1\n" * 5 + "END\n"
     data = "DEFDAT B PUBLIC\nDECL GLOBAL INT RECIEVED=0\nENDDAT\n"
     root = lay(tmp_path, A__src=program, B__dat=data)
@@ -194,13 +194,6 @@ def test_files_that_are_too_large_may_use_any_name(
     lay(root, C__src="DEF C()\n" + "HALT\n" * 100 + "END\n")
     monkeypatch.setattr(limited.format(project_check.__name__), 200)
     assert [("C.src", 1, "KRL003")] == codes(check(root))
-
-
-def test_files_that_are_too_large_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What could be a program and is not looked at is a finding."""
-    monkeypatch.setattr(project_check, "LARGEST", 10)
-    root = lay(tmp_path, A__src="DEF A()\nEXIT\nEND\n")
-    assert [("A.src", 1, "KRL003")] == codes(check(root))
 
 
 def test_syntax_failures_are_told_and_the_rest_is_checked(tmp_path: Path) -> None:
