@@ -38,7 +38,7 @@ KRL comes from other people: backups in archives, files of forums, a survey that
 Nothing of it is trusted. `make hostile` makes inputs by chance from a seed, gives each to the
 command that reads such a thing, and looks at what happens. It fails where a command
 
-- ends otherwise than with status 0, 1 or 2, or tells of a defect of ours;
+- ends otherwise than with status 0, 1 or 2, or reports a defect of ours;
 - needs more than a minute of processor time, or waits for ever;
 - writes, renames or removes anything outside its own folders;
 - sends a control character, or one that turns the direction of writing, to the terminal, in text or
