@@ -1,4 +1,4 @@
-"""SWRITE and SREAD: values into a text and out of it."""
+"""SWRITE and SREAD, beyond what the cases of `data` state."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -49,50 +49,6 @@ def _written(reply: Changes) -> str:
 
 
 # ---------------------------------------------------------------------------------- SWRITE
-
-
-@pytest.mark.parametrize(
-    ("pattern", "value", "expected"),
-    [
-        *(("%d", 5, "5"), ("%d", -5, "-5"), ("%d", INT_MIN, "-2147483648"), ("%i", 7, "7")),
-        *(("%5d", 42, "   42"), ("%-5d", 42, "42   "), ("%05d", 42, "00042"), ("%+d", 42, "+42")),
-        *(("%5d", -42, "   -42"), ("%05d", -42, "-00042"), ("%-5d", -42, "-42   ")),
-        *(("%2d", 12345, "12345"), ("%.4d", 42, "0042"), ("%d", True, "1"), ("%d", False, "0")),
-        *(("%d", 1.5, "1.500000"), ("%+8.4d", 1.56, "  +1.5600"), ("%f", 2, "2.000000")),
-        *(("%f", 0.1, "0.100000"), ("%.2f", -2.345, "-2.35"), ("%8.2f", 3.5, "    3.50")),
-        *(("%+8.4f", 1.56, "  +1.5600"), ("%+8.4f", 125.568, "+125.5680"), ("%.0f", 2.5, "2")),
-        *(("%#.0f", 2.0, "2."), ("%08.2f", -3.5, "-00003.50"), ("%.1f", -0.0, "0.0")),
-        *(("%e", 12345.678, "1.234568e+04"), ("%g", 0.5, "0.5"), ("%g", 1e20, "1e+20")),
-        *(("%x", 255, "ff"), ("%#x", 255, "0xff"), ("%#x", 0, "0"), ("%4x", 255, "  ff")),
-        *(("%x", -1, "ffffffff"), ("%06x", 255, "0000ff"), ("%#06x", 255, "0x00ff")),
-        *(("%u", -1, "4294967295"), ("%u", 7, "7"), ("%.3x", 10, "00a")),
-        *(("%c", "A", "A"), ("%c", 66, "B"), ("%3c", "A", "  A"), ("%-3c|", "A", "A  |")),
-        *(
-            ("%s", "abc", "abc"),
-            ("%s", "", ""),
-            ("%5s", "abc", "  abc"),
-            ("%-5s|", "abc", "abc  |"),
-        ),
-        *(("%.2s", "abc", "ab"), ("%5.2s", "abc", "   ab"), ("%s", True, "TRUE")),
-        *(("%s", False, "FALSE"), ("%s", GREEN, "#GREEN"), ("a%db", 1, "a1b"), ("%d%%", 5, "5%")),
-    ],
-)
-def test_values_are_written_by_format(pattern: str, value: Value, expected: str) -> None:
-    """Each letter writes its values, with flags, width without the sign, precision [FCT-09]."""
-    reply = _swrite(pattern, single(value) if isinstance(value, float) else value)
-    assert expected == _written(reply)
-    assert ("CMD_OK", 1, len(expected)) == _state(reply)
-    assert len(expected) == reply[2]
-
-
-def test_texts_and_several_values_are_written() -> None:
-    """A format without values is its text; several values are written in order [FCT-09]."""
-    assert "50% done" == _written(_swrite("50%% done"))
-    reply = _swrite(":%s%d", _text(8, "TM"), 7)
-    assert ":TM7" == _written(reply)
-    assert ("CMD_OK", 2, 4) == _state(reply)
-    ten = _swrite("%d" * 10, *range(10))
-    assert "0123456789" == _written(ten)
 
 
 def test_offset_is_where_writing_begins() -> None:
@@ -224,16 +180,6 @@ def test_values_are_read_by_format(text: str, pattern: str, expected: Value) -> 
     assert 1 == _state(reply)[1]
 
 
-def test_reading_moves_the_offset() -> None:
-    """Reading begins behind the offset, which then lies behind what was read [FCT-09]."""
-    reply = _sread("12 abc 1.5 rest", "%d %s %f", 3, offset=1)
-    assert [2, "abc", 1.5] == _read(reply)
-    assert 10 == reply[2]
-    assert ("CMD_OK", 3, 9) == _state(reply)
-    again = _sread("12 abc 1.5 rest", "%s", 1, offset=10)
-    assert "rest" == again[4]
-
-
 @pytest.mark.parametrize(
     ("text", "pattern", "variables", "read"),
     [
@@ -253,13 +199,6 @@ def test_reading_stops_at_what_does_not_fit(
     reply = _sread(text, pattern, variables)
     assert list(read) == _read(reply)
     assert ("FMT_ERR", len(read)) == _state(reply)[:2]
-
-
-def test_state_is_whole() -> None:
-    """STATE has the result, no message, the conversions and the characters [FCT-08]."""
-    state = to_json(_sread("5", "%d", 1)[1])
-    expected = {"RET1": "#CMD_OK", "MSG_NO": 0, "MSG_TYPE": None, "MSG_TXT": ""}
-    assert {**expected, "HITS": 1, "LENGTH": 1} == state
 
 
 @given(
