@@ -14,3 +14,8 @@ def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> Table
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def plain(figure: float | None) -> str:
+    """A figure in few digits; a dash where there is none."""
+    return "–" if figure is None else f"{figure:g}"

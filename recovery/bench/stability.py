@@ -11,6 +11,7 @@ import hashlib
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 
 from recovery.bench.assessment import BenchMaterial
 from recovery.bench.mutation import Mutant
@@ -42,8 +43,8 @@ def rankings(
     found = []
     for run in range(runs):
         processes = 1 + run % _MOST_PROCESSES
-        with _hash_seed(run), process_pool(processes, _prepare, material) as pool:
-            found.append(list(pool.map(_ranking, chosen)))
+        with _hash_seed(run), process_pool(processes) as pool:
+            found.append(list(pool.map(partial(_ranking, material), chosen)))
         on_done(1)
     return found
 
@@ -62,15 +63,7 @@ def _hash_seed(seed: int) -> Iterator[None]:
             os.environ[_SEED] = before
 
 
-_materials: list[BenchMaterial] = []  # of a worker process
-
-
-def _prepare(material: BenchMaterial) -> None:
-    _materials[:] = [material]
-
-
-def _ranking(mutant: Mutant) -> str:
-    material = _materials[0]
+def _ranking(material: BenchMaterial, mutant: Mutant) -> str:
     texts = dict(material.shown)
     clusters = cluster(
         survey_texts(material.shown, mutant.grammar),

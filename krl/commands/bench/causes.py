@@ -10,7 +10,7 @@ from krl.errors import FINE
 from krl.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.text_table import figures, plain
 
 _FIGURES = ("files", "clusters", "constructs", "clusters_per_construct", "purity")
 
@@ -49,11 +49,7 @@ def causes(
     console.print(
         figures(
             ("failures of", *(name.replace("_", " ") for name in _FIGURES)),
-            [(row["part"], *(_plain(row[name]) for name in _FIGURES)) for row in rows],
+            [(row["part"], *(plain(row[name]) for name in _FIGURES)) for row in rows],
         )
     )
     return FINE
-
-
-def _plain(value: float | None) -> str:
-    return "–" if value is None else f"{value:g}"

@@ -11,7 +11,7 @@ from krl.errors import FINE, as_input_errors
 from krl.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.text_table import figures, plain
 from support.measure.speed import MB
 
 Damage = Literal["mistakes", "names", "tokens", "lines"]
@@ -121,10 +121,10 @@ def _print_planted(console: Console, planted: Mapping[str, Any]) -> None:
             console.print(
                 figures(
                     (title, "planted", "found", "in place", "findings, median", "p95", "most"),
-                    [(row["kind"], *(_plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
+                    [(row["kind"], *(plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
                 )
             )
-    console.print(f"findings each in the median file: {_plain(planted['median_file'])}")
+    console.print(f"findings each in the median file: {plain(planted['median_file'])}")
     before = planted["unplanted"]
     console.print(
         figures(
@@ -159,7 +159,3 @@ def _print_scaling(console: Console, record: Mapping[str, Any]) -> None:
 
 def _seconds(value: float | None) -> str:
     return "–" if value is None else f"{value:.2f} s"
-
-
-def _plain(value: float | None) -> str:
-    return "–" if value is None else f"{value:g}"

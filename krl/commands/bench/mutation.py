@@ -10,7 +10,7 @@ from krl.errors import FINE, as_input_errors
 from krl.options import JobsOption, JsonOption, all_cores, negatives_or_ours
 from krl.output_files import check_files, write_json
 from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.text_table import figures, plain
 
 _PROGRAMS = Path("corpus", "programs")
 _AIMS = (
@@ -95,13 +95,9 @@ def mutation(
     write_json(record, json_file, indent=1)
     console = Console(highlight=False)
     console.print(
-        figures(("figure", "aim", "reached"), [(n, aim, _plain(record[n])) for n, aim in _AIMS])
+        figures(("figure", "aim", "reached"), [(n, aim, plain(record[n])) for n, aim in _AIMS])
     )
     shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
-    rows = [(kind, *(_plain(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
+    rows = [(kind, *(plain(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
     console.print(figures(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
     return FINE
-
-
-def _plain(value: float | None) -> str:
-    return "–" if value is None else f"{value:g}"
