@@ -324,6 +324,9 @@ MOST_SAMPLES = 64
 SHORT_LIST_EXAMPLES = 30
 PAIR_EXAMPLES = 20
 ITEMS_BEHIND_THE_FIRST = 2
+#: Places without a part, each kind of line of a file once, that show that it is never there. Not
+#: measured.
+NEVER_THERE_EXAMPLES = 50
 #: Elements in a row that may be missing together. Not measured.
 MISSING_RUN = 3
 #: The part of the kinds of line of one word that another has too, for one form to read both. Not

@@ -1,7 +1,7 @@
-"""Lists that are never long: bounded where many are seen, and none of them has many items.
+"""Lists that are never long are bounded, and parts that are never there go, where many are seen.
 
-A form is written from the lines that fail, few of which may have a list. How long lists are is
-decided at the end, over all files that are read.
+A form is written from the lines that fail, few of which may have a list, and other forms may come
+to read what a part was for. Both are decided at the end, over all files that are read.
 """
 
 from __future__ import annotations
@@ -10,14 +10,20 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 
 from grammar.notation.addresses import sequences
-from grammar.notation.edits import Replace
-from grammar.notation.model import Element, Grammar, Group, Literal, Repeat, Rule
+from grammar.notation.edits import RemoveElement, Replace
+from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule, walk
 from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
 from recovery.induction.steps import Inferred
-from recovery.tuning import ITEMS_BEHIND_THE_FIRST, PAIR_EXAMPLES, SHORT_LIST_EXAMPLES
+from recovery.induction.symbols import OperandRules
+from recovery.tuning import (
+    ITEMS_BEHIND_THE_FIRST,
+    NEVER_THERE_EXAMPLES,
+    PAIR_EXAMPLES,
+    SHORT_LIST_EXAMPLES,
+)
 
 
 def bounded_lists(
@@ -30,13 +36,25 @@ def bounded_lists(
         tree = parser.parse(text)
         if isinstance(tree, Tree):
             coverage.add(tree)
+    # what an operand may have somewhere it may have everywhere
+    operands = OperandRules(recognizer).recursive
     for rule in grammar.rules:
         lengths = _lengths(rule, coverage)
         known = start.by_name[rule.name].text if rule.name in start.by_name else ""
-        for address, sequence in () if rule.is_lexer else sequences(rule):
-            for place, element in enumerate(sequence.elements, 1):
+        places = () if rule.is_lexer else reversed([*sequences(rule)])  # the last first: they stay
+        for address, sequence in places:
+            for place, element in reversed([*enumerate(sequence.elements, 1)]):
                 source = rule.source_of(element)
                 rounds = lengths[source]
+                if (
+                    rule.name not in operands
+                    and _is_form(element)
+                    and source not in known
+                    and rounds[0] == rounds.total() >= NEVER_THERE_EXAMPLES
+                ):
+                    edit = RemoveElement(rule.name, (*address, place))
+                    yield Inferred(f"{source} is never there in {rule.name}", (edit,), ())
+                    continue
                 if (
                     not _is_list(element)
                     or source in known
@@ -61,6 +79,18 @@ def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
         for place, element in enumerate(sequence.elements, 1):
             found[rule.source_of(element)] += coverage.rounds[rule.name, (*address, place)]
     return found
+
+
+def _is_form(element: Element) -> bool:
+    """Whether an element may be missing and is more than words, which may be of a kind."""
+    return (
+        isinstance(element, Repeat)
+        and element.operator != "+"
+        and any(
+            isinstance(e, Literal) or (isinstance(e, Reference) and not e.is_token)
+            for e in walk(element)
+        )
+    )
 
 
 def _is_list(element: Element) -> bool:

@@ -29,7 +29,7 @@ _GROWN = _START.replace("NAME ')'", "NAME (',' NAME)* ')'")
 )
 def test_short_lists(start: str, lists: list[str], found: list[str]) -> None:
     """Where many are seen and none is long three items are most; what the start wrote stays."""
-    texts = ["".join(f"F({items})\n" for items in lists)] * 50
+    texts = ["".join(f"F({items})\n" for items in lists)] * 40
     edits = bounded_lists(Recognizer(read(_GROWN + _TOKENS)), read(start + _TOKENS), texts)
     assert found == [getattr(edit, "text", "") for bounded in edits for edit in bounded.edits]
 
@@ -56,3 +56,13 @@ def test_few_lists() -> None:
     """Few lists tell nothing of how long lists may be."""
     edits = bounded_lists(Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), ["F(A,B)\n"])
     assert [] == list(edits)
+
+
+@pytest.mark.parametrize(
+    ("calls", "count"), [(["A"] * 60, 1), (["A"] * 5, 0), (["A", "A,B"] * 60, 0)]
+)
+def test_what_is_never_there(calls: list[str], count: int) -> None:
+    """A part that none of many lines has goes; few lines tell nothing."""
+    grammar = read(_START.replace("NAME ')'", "NAME (',' NAME)? ')'") + _TOKENS)
+    texts = [f"F({call})\n" for call in calls]
+    assert count == len(list(bounded_lists(Recognizer(grammar), read(_START + _TOKENS), texts)))
