@@ -113,8 +113,12 @@ def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> boo
         if series is Series.NONE:
             return True
         letter = longer[start]
-        if longer is wrong and letter.isalpha() and letter == shorter[start - 1 : start]:
-            return True  # a letter doubled
+        if (
+            letter.isalpha()
+            and letter == shorter[start - 1 : start]
+            and (longer is wrong or start > 1)
+        ):
+            return True  # a letter doubled, or one of two lost
         if longer is wrong and letter == "S" and start == len(shorter):
             return False  # one of several, and all of them
         if start == 0:

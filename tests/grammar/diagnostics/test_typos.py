@@ -16,6 +16,7 @@ WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
         ("gripepr", "Gripper"),
         ("robot_stoped", "robot_stopped"),
         ("COUNTT", "COUNT"),
+        ("AM_message", "AMM_message"),
         ("vrogabe", "Vorgabe"),
         ("PARTSS_1", "PARTS_1"),
         ("hangeStation", "ChangeStation"),
