@@ -63,7 +63,7 @@ class Recording:
             raise RecordingError(f"{path}: its cases are no list")
         for number, entry in enumerate(entries, start=1):
             if not isinstance(entry, dict):
-                raise RecordingError(f"{path}: case {number} is no object")
+                raise RecordingError(f"{path}: case {number} is not an object")
             name = entry.get("case", number)
             try:
                 seen[str(entry["case"])] = (str(entry["digest"]), _observation(entry, cycle))

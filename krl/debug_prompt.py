@@ -110,7 +110,7 @@ class Prompt(cmd.Cmd):
         do: Callable[[str], Command | None] | None = getattr(self, f"do_{name[0].lower()}", None)
         try:
             if do is None:
-                raise _WrongCommand(f"{words[0]} is no command; help lists them")
+                raise _WrongCommand(f"{words[0]} is not a command; help lists them")
             rest = line.strip()[len(words[0]) :].strip()
             way = do(" ".join([*name[1:], rest]).strip())
         except (_WrongCommand, RuntimeFailure) as error:
@@ -351,7 +351,7 @@ class Prompt(cmd.Cmd):
         for name in names:
             method = getattr(self, f"do_{_SHORT.get(name, name).split()[0]}", None)
             if method is None:
-                raise _WrongCommand(f"{name} is no command; help lists them")
+                raise _WrongCommand(f"{name} is not a command; help lists them")
             typer.echo((method.__doc__ or "").replace("`", ""))
 
     def _at(self) -> At:

@@ -19,7 +19,7 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     if used:
         yield f"stand-ins: {summary(used)}"
     if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
-        yield f"stand-ins: {done.machine_note}"
+        yield f"arm: {done.machine_note}"
     skipped = done.controller.skipped
     for (file, number), error in islice(skipped.items(), _MOST_TOLD):
         yield f"skipped: {file}:{number}: {error}"

@@ -157,7 +157,7 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
     elif site.expects("(", "="):
         return _Mistake(f"= is missing before {shown}", reason=reason)
     if near := nearest(site.failure.text, filter(str.isalpha, site.failure.expected[:_FEW]), 1):
-        return _Mistake(f"{shown} is no word of KRL", Fix(f"did you mean {near[0]}?"), reason)
+        return _Mistake(f"{shown} is not a word of KRL", Fix(f"did you mean {near[0]}?"), reason)
     if before and site.expects("NEWLINE"):
         return _Mistake(f"{shown} is too much on this line", reason=reason)
     if words and len(site.failure.expected) <= _FEW:
@@ -308,7 +308,7 @@ def _signs(site: ErrorSite) -> _Mistake | None:
         fix = site.swap(f"#{site.tokens[place + 1][0]}", place, place + 1)
         return _Mistake("a constant follows its # without a blank", fix, is_unconfirmed=True)
     if text in ("@", "`", "\\", "?", "~", "!", "§"):
-        return _Mistake(f"{text} is no sign of KRL")
+        return _Mistake(f"{text} is not a sign of KRL")
     return None
 
 
@@ -368,7 +368,7 @@ def _ends(site: ErrorSite) -> _Mistake | None:
         return None
     if len(site.words) == 1 and site.expects("(", "="):
         name = site.tokens[0][0]
-        message = f"{name[:_LONGEST_TOKEN]} alone is no statement"
+        message = f"{name[:_LONGEST_TOKEN]} alone is not a statement"
         return _Mistake(message, Fix("parentheses behind it would make it a call"))
     closer = next((one for one in ")]}" if site.expects(one)), "")
     return _Mistake(f"{closer} is missing", site.append(closer)) if closer else None
@@ -491,7 +491,7 @@ def _edits(site: ErrorSite) -> _Mistake | None:
     if edit is not None:
         wrong = site.tokens[edit.first][0]
         fix = Fix(f"did you mean {edit.text}?", site.region(edit.first), edit.text)
-        return _Mistake(f"{wrong} is no word of KRL", fix, region=site.region(edit.first))
+        return _Mistake(f"{wrong} is not a word of KRL", fix, region=site.region(edit.first))
     edit = doubled(site)
     if edit is not None:
         wrong = site.tokens[edit.first][0]

@@ -145,7 +145,7 @@ def declarable(parameter: Type, *, is_out: bool) -> Verdict:
     Texts may be passed :IN all the same: predefined functions and KUKA's own programs do so.
     """
     if isinstance(parameter, Array) and not is_out and parameter.element not in (CHAR, UNKNOWN):
-        return Verdict(False, ("SCO-07",), "an array that is no text can only be passed :OUT")
+        return Verdict(False, ("SCO-07",), "an array that is not a text can only be passed :OUT")
     return FINE
 
 

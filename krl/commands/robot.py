@@ -147,7 +147,7 @@ def _frame(where: str, given: object) -> "Pose | None":
         return None
     members = _members(where, given)
     if unknown := sorted(set(members) - set(_COMPONENTS)):
-        raise InputError(f"{where}: {unknown[0]} is no component of a frame")
+        raise InputError(f"{where}: {unknown[0]} is not a component of a frame")
     return Pose.of(*(_number(where, {key: 0} | dict(members), key) for key in _COMPONENTS))
 
 

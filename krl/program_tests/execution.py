@@ -241,7 +241,7 @@ def _stood_in(program: CheckedProgram, done: RunResult) -> Iterator[str]:
     lacking = {one.name.upper() for one in program.stand_ins}
     called = (event.fields["name"] for event in done.events if event.kind == "call")
     if names := [name for name in dict.fromkeys(called) if str(name).upper() in lacking]:
-        yield f"    note: in no file, so calls had no effect: {', '.join(names)}"
+        yield f"    note:     in no file, so calls had no effect: {', '.join(names)}"
 
 
 def _told(

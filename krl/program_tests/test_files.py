@@ -132,7 +132,7 @@ def _numbers(name: str, word: str, values: Mapping[str, Any]) -> str:
     """X, Y and Z of a point, also its angles for ``pose``, or its axes for ``axes``."""
     point = values.get(name.upper())
     if not isinstance(point, Mapping):
-        raise ExpectationError(f"{name} is no point with a value")
+        raise ExpectationError(f"{name} is not a point with a value")
     members = "X Y Z A B C" if word == "pose" else "X Y Z"
     if word == "axes":
         members = "A1 A2 A3 A4 A5 A6"
@@ -352,7 +352,7 @@ class _Reader:
         for key, value in table.items():
             line = self._line(key, span)
             if key not in known:
-                raise self.error(line, f"{key} is no key here; there are {', '.join(known)}")
+                raise self.error(line, f"{key} is not a key here; there are {', '.join(known)}")
             wanted = _KEYS[key]
             if not isinstance(value, wanted) or (isinstance(value, bool) and wanted != (bool,)):
                 said = " or ".join(dict.fromkeys(_SAID[one] for one in wanted))

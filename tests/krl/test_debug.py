@@ -99,7 +99,7 @@ def test_watches_changes_and_the_end(
 @pytest.mark.parametrize(
     ("command", "text"),
     [
-        ("fly", "fly is no command; help lists them"),
+        ("fly", "fly is not a command; help lists them"),
         ("break 2", "main.src:2: no statement begins here; the next is line 4"),
         ("break 14 if N=", "N=: this is no expression"),
         ("break x", "break [FILE:]LINE [if CONDITION] [hits N] [log TEXT]"),

@@ -159,7 +159,7 @@ GOOD = json.dumps({"id": "P", **BENT})
         (f"[{GOOD.replace(': 2}', ': -1}')}]", "point 1 ('P'): s is not a whole number from 0"),
         (f'[{GOOD[:-1]},"t":"B10"}}]', "point 1 ('P'): t is not a number"),
         (f'[{GOOD[:-1]},"tool":3}}]', "point 1 ('P'), tool is not an object"),
-        (f'[{GOOD[:-1]},"base":{{"q":3}}}}]', "point 1 ('P'), base: q is no component"),
+        (f'[{GOOD[:-1]},"base":{{"q":3}}}}]', "point 1 ('P'), base: q is not a component"),
     ],
 )
 def test_points_that_are_none(ask: Ask, text: str, said: str) -> None:

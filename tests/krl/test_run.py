@@ -370,7 +370,7 @@ def test_bad_options(run: Run, options: list[str], said: str) -> None:
 @pytest.mark.parametrize(
     ("script", "said"),
     [
-        ("t=0.5 IN[1]=MAYBE\n", ":1: 'MAYBE' is no value"),
+        ("t=0.5 IN[1]=MAYBE\n", ":1: 'MAYBE' is not a value"),
         ("\nwhen HALT press START\n", ":2: "),
         ("t=1 IN[0]=TRUE\n", ":1: "),
         ("t=1 NOWHERE=TRUE\n", ":1: "),

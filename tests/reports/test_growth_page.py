@@ -54,7 +54,7 @@ def test_what_remains_says_why(grown: RecordBuilder, tmp_path: Path) -> None:
 def test_health_is_told(grown: RecordBuilder, tmp_path: Path) -> None:
     """Lookahead and lines with two readings."""
     page = _page(grown("believable"), tmp_path)
-    assert "Of 196 decisions in the rules 85.5 % are taken on one token and 95.2 %" in page
+    assert "Of 196 decisions in the rules 85.5 % need one token and 95.2 %" in page
     assert "1 of 114,000 lines in files that parse can be read in two ways." in page
 
 

@@ -60,7 +60,7 @@ def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
             reason = ""
             if placed.inside is not None:
                 block = "SWITCH" if isinstance(placed.inside.statement, ast.Switch) else "IF"
-                reason = f"{block} is no loop"
+                reason = f"{block} is not a loop"
             yield _finding(
                 context,
                 "exit-outside-loop",

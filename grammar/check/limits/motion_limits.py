@@ -34,7 +34,7 @@ def check_motion_limit(checker: TypeChecker, node: ast.Assignment) -> None:
     low, high, reason = limits
     if not low <= value <= high:
         shown = checker.context.source.text[slice(*node.target.span)]
-        message = f"{shown} reaches from {low:g} to {high:g}"
+        message = f"{shown} must be between {low:g} and {high:g}"
         rules = ("MOT-02", "MOT-04", "ARI-11")
         checker.report(
             "invalid-system-value",
@@ -61,7 +61,7 @@ def _limits(checker: TypeChecker, node: ast.Expression) -> tuple[float, float, s
             if most is not None:
                 return 0, most, f"so says {_MAXIMA[name.key]} in the machine data"
             if place in _FASTEST:
-                return 0, _FASTEST[place], "it is given in metres"
+                return 0, _FASTEST[place], "its unit is based on metres"
     return None
 
 

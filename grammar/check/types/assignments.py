@@ -57,5 +57,5 @@ def _check_limits(
         return
     low, high = limits
     if not low <= value <= high:
-        message = f"{variable.name} reaches from {low} to {high}"
+        message = f"{variable.name} must be between {low} and {high}"
         checker.report("invalid-system-value", node.value, message)

@@ -15,14 +15,14 @@ def check_signal(checker: TypeChecker, node: ast.Signal) -> None:
     checker.infer(node.first)
     key, context = node.name.key, checker.context
     if key.startswith("$") and not context.table.is_system and key not in context.system.variables:
-        message = f"{node.name.text} is no predefined signal"
+        message = f"{node.name.text} is not a predefined signal"
         checker.report("not-predefined-signal", node.name, message, is_unconfirmed=True)
     if node.last is None:
         return
     checker.infer(node.last)
     sides = written_side(node.first), written_side(node.last)
     if None not in sides and sides[0] != sides[1]:
-        message = f"{node.name.text} reaches from {sides[0]} to {sides[1]}"
+        message = f"{node.name.text} mixes {sides[0]} and {sides[1]}"
         checker.report("signal-mixed", node.last, message)
         return
     first, last = _number(checker, node.first), _number(checker, node.last)

@@ -159,7 +159,7 @@ class _Routine:
                 self.checker.report("return-without-value", node, message)
         elif result is None:
             self.checker.infer(node.value)
-            message = f"{name} is no function, so RETURN has no value"
+            message = f"{name} is not a function, so RETURN has no value"
             self.checker.report("return-with-value", node.value, message)
         else:
             symbol, scope = self.routine.table.routine, self.routine.scope

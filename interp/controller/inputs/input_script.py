@@ -250,7 +250,7 @@ class _Line:
         """Seconds, as µs."""
         seconds = float(self._next("number", "a time in seconds"))
         if not 0 <= seconds <= _MOST_SECONDS:
-            self.fail(f"{seconds:g} is no time in seconds")
+            self.fail(f"{seconds:g} is not a time in seconds")
         return microseconds(seconds)
 
     def _count(self, what: str) -> int:
@@ -335,5 +335,5 @@ class _Line:
         if text.startswith("#"):
             return Word(text[1:].upper())
         if text.upper() not in ("TRUE", "FALSE"):
-            self.fail(f"{text!r} is no value")
+            self.fail(f"{text!r} is not a value")
         return text.upper() == "TRUE"

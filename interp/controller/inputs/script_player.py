@@ -160,5 +160,5 @@ class ScriptPlayer:
             return single(float(value))
         before = self._variables.read(path)
         if isinstance(before, bool) != isinstance(value, bool):
-            raise LinkError(f"{value!r} is no value for {path[0]}")
+            raise LinkError(f"{value!r} is not a value for {path[0]}")
         return value

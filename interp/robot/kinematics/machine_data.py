@@ -428,7 +428,7 @@ class _Reader:
         if value is None:
             raise self._error(f"{name} is missing")
         if not isinstance(value, dict):
-            raise self._error(f"{name} is no aggregate")
+            raise self._error(f"{name} is not an aggregate")
         return value
 
     def _member(self, name: str, members: Mapping[str, Any], part: str) -> float:
@@ -438,7 +438,7 @@ class _Reader:
         if value is None:
             raise self._error(f"{name} is missing")
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._error(f"{name} is no number")
+            raise self._error(f"{name} is not a number")
         try:
             number = float(value)
         except OverflowError:

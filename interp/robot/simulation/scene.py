@@ -97,7 +97,7 @@ def read_scene(path: Path) -> Scene:
     entries = found.pop("object", [])
     if found or not isinstance(entries, list):
         name = next(iter(found), "object")
-        raise SceneError(f"{path}: {name!r} is no table [[object]]")
+        raise SceneError(f"{path}: {name!r} is not a table [[object]]")
     if len(entries) > _MOST:
         raise SceneError(f"{path}: {len(entries)} objects; {_MOST} at most")
     objects: list[SceneObject] = []
@@ -126,7 +126,7 @@ class _Reader:
             raise self._error(f"shape of {name!r} is none of {', '.join(SHAPES)}")
         for member in entry:
             if member not in (*SHAPES[shape], *_OPTIONAL):
-                raise self._error(f"{member} is no member of a {shape}")
+                raise self._error(f"{member} is not a member of a {shape}")
         held = entry.get("held", False)
         if not isinstance(held, bool):
             raise self._error("held is neither true nor false")
@@ -165,7 +165,7 @@ class _Reader:
     def _frame(self) -> Pose:
         frame = self._entry.get("frame", {})
         if not isinstance(frame, dict):
-            raise self._error("frame is no table of X, Y, Z, A, B, C")
+            raise self._error("frame is not a table of X, Y, Z, A, B, C")
         for name in frame:
             if name not in _COMPONENTS:
                 raise self._error(f"frame has {name}, which is none of X, Y, Z, A, B, C")
@@ -181,7 +181,7 @@ class _Reader:
 
     def _number(self, name: str, value: Any, *, is_positive: bool = False) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._error(f"{name} is no number")
+            raise self._error(f"{name} is not a number")
         if not math.isfinite(value) or abs(value) > 1e6 or (is_positive and not value > 0.0):
             raise self._error(f"{name} is {value:g}, which cannot be")
         return float(value)

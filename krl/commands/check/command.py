@@ -243,7 +243,7 @@ def _packages(given: list[str]) -> tuple[str, ...]:
     for name in sorted(names):
         if name not in load_packages().names:
             listed = ", ".join(load_packages().names)
-            raise InputError(f"{name} is no option package that is known: {listed}")
+            raise InputError(f"{name} is not an option package that is known: {listed}")
     return tuple(sorted(names))
 
 

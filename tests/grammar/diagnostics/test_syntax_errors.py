@@ -101,7 +101,7 @@ def test_first_finding_is_on_the_line_of_the_negative() -> None:
         ("PART_T LAST", "DECL is missing before PART_T", "DECL PART_T LAST"),
         ("ELSEIF $IN[2] THEN", "KRL has no ELSEIF", None),
         ("N = 7 MOD 2", "KRL has no MOD", None),
-        ("WORK", "WORK alone is no statement", None),
+        ("WORK", "WORK alone is not a statement", None),
         ("HALT $OUT[1] = TRUE", "a second statement on this line", None),
         ("DECL INT WHILE", "WHILE is a keyword and cannot be a name", None),
         ('TEXT[] = "OPEN', "the text is not closed", None),
@@ -165,10 +165,10 @@ def test_a_block_that_is_not_closed_is_named(opener: str, closer: str) -> None:
         ("TOOL_DATA[2] SPINDLE", "= is missing", "TOOL_DATA[2]=SPINDLE"),
         ("FRAMES[2]X = 1", ". is missing", "FRAMES[2].X = 1"),
         ("PTP {A1 0 A2 0}", ", is missing", "PTP {A1 0, A2 0}"),
-        ("WIAT SEC 1", "WIAT is no word of KRL", "WAIT SEC 1"),
+        ("WIAT SEC 1", "WIAT is not a word of KRL", "WAIT SEC 1"),
         ("N INT", "the type INT stands before the name", "INT N"),
-        ("IF N == 1 TEN", "TEN is no word of KRL", "IF N == 1 THEN"),
-        ("GLOBAL INTERUPT DECL 3 WHEN N == 1 DO F()", "INTERUPT is no word of KRL",
+        ("IF N == 1 TEN", "TEN is not a word of KRL", "IF N == 1 THEN"),
+        ("GLOBAL INTERUPT DECL 3 WHEN N == 1 DO F()", "INTERUPT is not a word of KRL",
          "GLOBAL INTERRUPT DECL 3 WHEN N == 1 DO F()"),
         ("PTP {A1 0., A2 0}", "a number ends with a digit", "PTP {A1 0.0, A2 0}"),
     ],
@@ -213,7 +213,7 @@ def test_what_is_missing_is_named(line: str, message: str) -> None:
 def test_a_closer_that_is_misspelt_is_found(wrong: str, right: str) -> None:
     """The line that was to close the file is told, and not the line that it opens with."""
     found = findings(f"DEF A()\nHALT\n{wrong}\n")[0]
-    assert (f"{wrong} is no word of KRL", 3) == (found.message, found.region.line)
+    assert (f"{wrong} is not a word of KRL", 3) == (found.message, found.region.line)
     assert f"did you mean {right}?" == (found.fix and found.fix.text)
 
 

@@ -62,7 +62,7 @@ def test_a_failure_names_called_routines_that_no_file_has(run: Run, tmp_path: Pa
     """A message that an option package would have shown is not looked for in vain."""
     (tmp_path / "tell.src").write_text('DEF tell()\n  MsgNotify("part")\nEND\n', encoding="utf-8")
     outcomes = run("program = 'tell.src'\n[[test]]\nname = 'a'\nexpect = ['message 1']\n")
-    note = "    note:     in no file, so nothing happened there: MSGNOTIFY"
+    note = "    note:     in no file, so calls had no effect: MSGNOTIFY"
     assert outcomes["a"].failures[-1] == note
 
 

@@ -11,9 +11,9 @@ Write = Callable[[str], Path]
 GOOD = "[[test]]\nname = 'x'\nexpect = ['out 1 TRUE']\n"
 
 WRONG = [
-    ("[[test]]\nname = 'x'\nexpekt = []\n", "3: expekt is no key here"),
-    ("cycle = 1\n" + GOOD, "1: cycle is no key here"),
-    ("[[tests]]\nname = 'x'\n", "1: tests is no key here"),
+    ("[[test]]\nname = 'x'\nexpekt = []\n", "3: expekt is not a key here"),
+    ("cycle = 1\n" + GOOD, "1: cycle is not a key here"),
+    ("[[tests]]\nname = 'x'\n", "1: tests is not a key here"),
     ("[[test]]\nexpect = ['out 1 TRUE']\n", "1: name is missing"),
     (GOOD + GOOD, "4: a second test is named 'x'"),
     ("[[test]]\nname = 'x'\n", "1: x expects nothing"),
@@ -78,7 +78,7 @@ def test_front_matter_of_krl_is_checked_too(tmp_path: Path) -> None:
     """What stands behind ;@ is TOML, and a mistake in it is told with the line of the program."""
     path = tmp_path / "test_cell.src"
     path.write_text(";@ seconds = 3\n;@ secnds = 4\nDEF test_cell()\nEND\n", encoding="utf-8")
-    with pytest.raises(TestFileError, match=r"test_cell\.src:2: secnds is no key here"):
+    with pytest.raises(TestFileError, match=r"test_cell\.src:2: secnds is not a key here"):
         read_tests(path)
 
 
