@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Final
 
 from conformance.sensitivity.planted_fault import Fault, group_of, on
 from interp.controller.interrupts.cyclic_evaluation import CyclicEvaluation
-from interp.controller.requests.variable_access import VariableAccess
 from interp.controller.requests.waits import Waits
-from interp.controller.state.clock import Clock
 from interp.controller.state.signals import Signals
 from interp.controller.state.timers import Timers
-
-_IO: Final = ("io", "program")
 
 
 def faults() -> tuple[Fault, ...]:
@@ -28,14 +23,6 @@ def faults() -> tuple[Fault, ...]:
 # ------------------------------------------------------------------------------------ the clock
 
 
-def _down(_right: Any) -> Any:
-    return lambda self, duration: (self.now + int(max(duration, 0))) // self.cycle * self.cycle
-
-
-def _exact(_right: Any) -> Any:
-    return lambda self, duration: math.ceil(self.now + max(duration, 0))
-
-
 def _slow_polls(right: Any) -> Any:
     def later(self: Waits, task: Any) -> int:
         more = 9 * self._state.clock.cycle if task.name == "robot" else 0
@@ -45,8 +32,6 @@ def _slow_polls(right: Any) -> Any:
 
 
 _CLOCK: Final = (
-    ("times to wait are rounded down to cycles", _IO, on(Clock, "tick_after", _down)),
-    ("times to wait are not rounded", ("io", "control"), on(Clock, "tick_after", _exact)),
     (
         "WAIT FOR looks in every tenth cycle only",
         ("io", "control", "program"),
@@ -87,21 +72,6 @@ def _wide_groups(right: Any) -> Any:
     return read
 
 
-def _clamped_analog(right: Any) -> Any:
-    def put(self: Signals, name: str, place: int, value: Any) -> None:
-        right(self, name, place, min(max(value, -1.0), 1.0))
-
-    return put
-
-
-def _pulse_once(right: Any) -> Any:
-    def pulse(self: Signals, number: int, level: bool, seconds: float) -> None:
-        if number not in self._pulses:
-            right(self, number, level, seconds)
-
-    return pulse
-
-
 _SIGNALS: Final = (
     (
         "outputs are switched a cycle late",
@@ -110,12 +80,6 @@ _SIGNALS: Final = (
     ),
     ("groups have their bits the other way round", ("io",), on(Signals, "put", _reversed_groups)),
     ("groups have eight bits at most", ("io",), on(Signals, "read", _wide_groups)),
-    (
-        "analog values beyond the range are cut off silently",
-        ("io", "message"),
-        on(Signals, "_put_analog", _clamped_analog),
-    ),
-    ("a pulse that runs is not restarted", ("io",), on(Signals, "pulse", _pulse_once)),
 )
 
 
@@ -165,14 +129,5 @@ _TIMERS: Final = (
         "cyclic signals are computed once",
         ("io",),
         on(CyclicEvaluation, "enter_signal", _once("_entered")),
-    ),
-    (
-        "ANOUT ON knows no limits",
-        ("io",),
-        on(
-            VariableAccess,
-            "_put_cyclic",
-            lambda _: lambda self, request, _signal: self._state.put(request.path, request.value),
-        ),
     ),
 )
