@@ -214,7 +214,7 @@ def changes(
     What one of the runs has no record of has not changed.
     """
     if before is None:
-        return ["this is the first night", *_steps({}, now), *_wrong(now)]
+        return ["this is the first run", *_steps({}, now), *_wrong(now)]
     told = [*_steps(before, now)]
     if before.get("recover") and now.get("recover"):
         told += _survey(nested(before, "recover"), nested(now, "recover"))

@@ -5,9 +5,10 @@ passed in the run before, a law that was broken, executors that diverge on a ran
 """
 
 from collections.abc import Iterator, Mapping
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 from urllib.parse import urlencode
 
+from reports.number_format import counted
 from reports.record_fields import Record, nested, records, text
 from reports.sanitizing import shown
 
@@ -20,14 +21,19 @@ _CONFORM = ("conform", "conform-arm")
 AGAIN = "-again"
 _ROBOTS = ("none", "kinematic", "mujoco")
 _LONGEST = 200
+_MOST_PROGRAMS = 5
 
 
 class Failure(TypedDict):
-    """``page`` and ``command`` are empty where there is none."""
+    """``page`` and ``command`` are empty where there is none.
+
+    ``files`` are those of a program that shows it, texts by name.
+    """
 
     what: str
     page: str
     command: str
+    files: NotRequired[Record]
 
 
 def failures(
@@ -110,8 +116,18 @@ def _laws(record: Record) -> Iterator[Failure]:
 
 
 def _programs(record: Record) -> Iterator[Failure]:
-    found = len(records(record, "differences"))
-    if found:
-        what = f"{found:,} divergence{'s' if found > 1 else ''} of the fuzzer"
-        command = f"krl fuzz --programs {record.get('programs')} --seed {record.get('seed')}"
-        yield Failure(what=what, page="", command=command)
+    """The first programs on which executors diverge, made small."""
+    found = records(record, "differences")
+    command = f"krl fuzz --programs {record.get('programs')} --seed {record.get('seed')}"
+    for one in found[:_MOST_PROGRAMS]:
+        actual, expected = (shown(text(one, name), _LONGEST) for name in ("actual", "expected"))
+        what = f"program {one.get('program')} of the fuzzer diverges on {text(one, 'executor')}"
+        yield Failure(
+            what=f"{what}: {actual}, where {expected} is expected",
+            page="",
+            command=command,
+            files=nested(one, "files"),
+        )
+    if len(found) > _MOST_PROGRAMS:
+        more = counted(len(found) - _MOST_PROGRAMS, "more divergence")
+        yield Failure(what=f"{more} of the fuzzer", page="", command=command)

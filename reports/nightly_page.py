@@ -35,10 +35,16 @@ _IN_WORDS = {
     "recover.memory_growth_mb": "survey, memory that the largest corpus takes more, MB",
     "check.s_per_mb": "check, s a MB",
     "check.unchanged_s_per_mb": "check of what has not changed, s a MB",
+    "check.projects": "check, projects",
+    "check.peak_mb": "check, memory at most, MB",
+    "check.linear": "check, a MB of the largest corpus against one of the smallest, times",
+    "check.memory_growth_mb": "check, memory that the largest corpus takes more, MB",
     "vm.vm_vs_tree": "bytecode in Python against tree, times",
     "vm.native_vs_tree": "C against tree, times",
     "vm.native_vs_vm": "C against bytecode in Python, times",
     "vm.native_vs_lua": "C against Lua, times",
+    "vm.compiled_vs_native": "native code against the machine in C, times",
+    "vm.c_vs_compiled": "C -O2 against native code, times",
     "arm.planning_ms_per_motion": "planning, ms a motion",
     "arm.simulated_s_lookahead": "motions with look-ahead, simulated s",
     "arm.simulated_s_batch": "the same in batches, simulated s",
@@ -51,6 +57,12 @@ _IN_WORDS = {
     "mutation.rule_top5": "right rule among five, share",
     "mutation.repair_top1": "right repair first, share",
     "mutation.repair_top5": "right repair among five, share",
+    "mutation.item_top1": "right item first, share",
+    "mutation.item_top5": "right item among five, share",
+    "mutation.repeated": "damaged grammars surveyed more than once",
+    "mutation.runs": "surveys of each of these",
+    "mutation.same_ranking": "surveys that agree, share",
+    "mutation.reproducer_median_tokens": "reproducer, tokens in the median",
     "mutation.clusters_per_cause": "clusters a cause",
     "mutation.false_accept": "negatives accepted by the first proposal, share",
 }
@@ -73,6 +85,7 @@ class _Failure:
     what: str
     page: str
     command: str
+    files: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +205,11 @@ def _failure(record: Record) -> _Failure:
         shown(text(record, "what"), 400),
         page if is_ours else "",
         shown(text(record, "command"), 200),
+        tuple(
+            (shown(name, 80), "\n".join(shown(line, 200) for line in content.splitlines()[:200]))
+            for name, content in nested(record, "files").items()
+            if isinstance(content, str)
+        ),
     )
 
 

@@ -30,4 +30,4 @@ const curves = [
   ["divergences of the fuzzer", runs.map((run) => run.divergences)],
   ...benches.map((name) => [name, runs.map((run) => run.bench[name] ?? null)]),
 ];
-document.getElementById("curves").append(...curves.map(([title, values]) => runCurve(title, values)).filter(Boolean));
+document.getElementById("curves")?.append(...curves.map(([title, values]) => runCurve(title, values)).filter(Boolean));

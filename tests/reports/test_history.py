@@ -90,7 +90,7 @@ def test_a_first_night_tells_what_is_wrong() -> None:
     }
     steps = {"recover": {"status": "cut off after 9 minutes", "seconds": 540.0}}
     assert [
-        "this is the first night",
+        "this is the first run",
         "step recover: cut off after 9 minutes",
         "new failure: a/x",
         "fuzz: 2 divergences",

@@ -20,6 +20,15 @@ _LAW = {
 }
 
 
+_DIVERGENCE = {
+    "program": 7,
+    "executor": "vm",
+    "actual": "Write 2",
+    "expected": "Write 1",
+    "files": {"PROG.SRC": "DEF PROG()\nEND\n"},
+}
+
+
 @pytest.mark.parametrize(
     ("step", "record", "what", "page", "command"),
     [
@@ -46,8 +55,8 @@ _LAW = {
         ),
         (
             "fuzz",
-            {"programs": 9, "seed": 4, "differences": [{}, {}]},
-            "2 divergences of the fuzzer",
+            {"programs": 9, "seed": 4, "differences": [_DIVERGENCE]},
+            "program 7 of the fuzzer diverges on vm: Write 2, where Write 1 is expected",
             "",
             "krl fuzz --programs 9 --seed 4",
         ),
@@ -58,7 +67,16 @@ def test_each_step_can_fail(
 ) -> None:
     """A failure says what it is, where it is shown, and which command repeats it."""
     found = failures({step: record}, {step: {"status": "findings"}})
-    assert [{"what": what, "page": page, "command": command}] == found
+    assert [(what, page, command)] == [(one["what"], one["page"], one["command"]) for one in found]
+
+
+def test_a_divergence_has_its_program() -> None:
+    """The first ones, each with its files; the others are counted."""
+    *some, last = failures({"fuzz": {"differences": [_DIVERGENCE] * 7}}, {})
+    assert ([_DIVERGENCE["files"]] * 5, "2 more divergences of the fuzzer") == (
+        [one.get("files") for one in some],
+        last["what"],
+    )
 
 
 @pytest.mark.parametrize("verdict", ["pass", "unconfirmed", "known-failure", "skipped"])
