@@ -13,6 +13,7 @@ from grammar.notation.addresses import sequences
 from grammar.notation.edits import RemoveElement, Replace
 from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule, walk
 from grammar.parser.coverage import GrammarCoverage
+from grammar.parser.lexer import Lexer
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
@@ -48,7 +49,7 @@ def bounded_lists(
                 rounds = lengths[source]
                 if (
                     rule.name not in operands
-                    and _is_form(element)
+                    and _is_form(element, recognizer.lexer)
                     and source not in known
                     and rounds[0] == rounds.total() >= NEVER_THERE_EXAMPLES
                 ):
@@ -81,16 +82,11 @@ def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
     return found
 
 
-def _is_form(element: Element) -> bool:
-    """Whether an element may be missing and is more than words, which may be of a kind."""
-    return (
-        isinstance(element, Repeat)
-        and element.operator != "+"
-        and any(
-            isinstance(e, Literal) or (isinstance(e, Reference) and not e.is_token)
-            for e in walk(element)
-        )
-    )
+def _is_form(element: Element, lexer: Lexer) -> bool:
+    """Whether an element may be missing and has no reserved word, which few lines may have."""
+    names = [e.name for e in walk(element) if isinstance(e, Reference) and e.is_token]
+    may_miss = isinstance(element, Repeat) and element.operator != "+"
+    return may_miss and not any(lexer.is_keyword(lexer.kind_of[name]) for name in names)
 
 
 def _is_list(element: Element) -> bool:
