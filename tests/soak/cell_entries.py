@@ -10,7 +10,7 @@ from tests.soak.given import PROGRAM, REPOSITORY, Entry, Given, krl, put, runnab
 
 SCRIPT = "t=0.5 IN[1]=TRUE\non OUT[3]=TRUE after 0.2 IN[7]=TRUE\nstop at 2\n"
 POINTS = [{"id": 1, "x": 600, "y": 0, "z": 700, "a": 0, "b": 90, "c": 0, "s": 2}]
-PROFILE = (REPOSITORY / "interp" / "controller" / "profiles" / "kss8.toml").read_text(
+PROFILE = (REPOSITORY / "interp" / "controller" / "state" / "profiles" / "kss8.toml").read_text(
     encoding="utf-8"
 )
 MACHINE = (REPOSITORY / "interp" / "robot" / "models" / "kr6r900.dat").read_text(encoding="utf-8")

@@ -53,11 +53,7 @@ def test_failures_and_errors_have_no_traceback(pytester: pytest.Pytester) -> Non
     result = pytester.runpytest_subprocess(*OPTIONS, "--continue-on-collection-errors")
     result.assert_outcomes(failed=1, errors=1)
     result.stdout.fnmatch_lines(
-        [
-            "*test_bad.toml:2: naem is not a key here*",
-            "*expected: out 1 never",
-            "*seen: *work.src:2*",
-        ]
+        ["*test_bad.toml:2: naem is not a key*", "*expected: out 1 never", "*seen: *work.src:2*"]
     )
     assert "Traceback" not in result.stdout.str()
 

@@ -242,7 +242,7 @@ def test_handed_over_are_actions_of_the_same_code_object() -> None:
         ('("$IN" in:INT)', '("$IN" in:REAL)', "field 1 is no path"),
         ('("$IN" in:INT)', '(in:INT "$IN")', "field 1 is no path"),
         ('("$IN" in:INT)', '"$IN"', "field 1 is no path"),
-        ('Read ("$IN"', 'Nothing ("$IN"', "nothing that can be asked"),
+        ('Read ("$IN"', 'Nothing ("$IN"', "is not a request"),
         ('("$OUT" 1) in:BOOL', '("$OUT" 1)', "2 fields are needed"),
         ('("$OUT" 1) in:BOOL', '("$OUT" 1) in:S', "by reference"),
         ('("$OUT" 1) in:BOOL', '("$OUT" 1) ref:BOOL=', "cannot change"),
