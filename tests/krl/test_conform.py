@@ -129,13 +129,13 @@ def test_a_planted_fault_is_found_and_shown_on_the_page(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The case that states the rule fails, the page says what was planted; then it is gone."""
-    words = ("trigger/delay_later", "--executor", "tree", "--robot", "none", "--html", tmp_path)
-    assert 1 == run(*words, "--fault", "delay has the other SIGN")
+    words = ("trigger/two_at_once", "--executor", "tree", "--robot", "none", "--html", tmp_path)
+    assert 1 == run(*words, "--fault", "only the last TRIGGER")
     out = capsys.readouterr().out
-    assert out.startswith("planted: triggers: DELAY has the other sign")
-    assert "trigger/delay_later" in out
+    assert out.startswith("planted: triggers: only the last trigger counts")
+    assert "trigger/two_at_once" in out
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert "A fault was planted: triggers: DELAY has the other sign" in page
+    assert "A fault was planted: triggers: only the last trigger counts" in page
     assert "1 case of 1 failed" in page
     assert 0 == run(*words)
     assert "A fault was planted" not in (tmp_path / "index.html").read_text(encoding="utf-8")
@@ -179,8 +179,11 @@ def test_a_change_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> No
 
 def test_a_fault_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
     """Words that fit several faults name them; words that fit none say where all are named."""
-    assert 2 == run("control/recursion", "--fault", "DELAY")
-    assert "DELAY has the other sign; DELAY is in hundredths of a second" in capsys.readouterr().err
+    assert 2 == run("control/recursion", "--fault", "groups")
+    assert (
+        "groups have their bits the other way round; groups have eight bits at most"
+        in capsys.readouterr().err
+    )
     assert 2 == run("control/recursion", "--fault", "nobody knows this")
     assert "krl bench conform" in capsys.readouterr().err
 

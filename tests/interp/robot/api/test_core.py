@@ -332,7 +332,7 @@ def nonsense(make: Make) -> dict[str, tuple[Transaction, str]]:
     """Transactions that make no sense, and what is said of them."""
     one, two, three = output(1), output(2), output(3)
     return {
-        "twice": (Transaction(one, one), "stands in it twice"),
+        "twice": (Transaction(one, one), "occurs in it twice"),
         "number": (Transaction(make(2), make(1)), "its number is not above 2"),
         "stranger": (Transaction(one).link(two.ended, "start", one), "is not loaded"),
         "foreign": (Transaction(one).link(one.ended, "start", two), "not of this transaction"),
@@ -384,7 +384,7 @@ def test_places_and_delays_are_checked(make_motion: Make) -> None:
     motion = make_motion(1)
     with pytest.raises(CommandError, match="no such place"):
         motion.reached(Place(1, "DISTANCE", 0.0))
-    with pytest.raises(CommandError, match="before its cause"):
+    with pytest.raises(CommandError, match="cannot precede its cause"):
         Transaction(motion).link(motion.started, "start", output(), delay=-1)
     with pytest.raises(CommandError, match="backwards"):
         WaitCommand(-1)
