@@ -299,7 +299,7 @@ def assess_all(
             kind: figures([v for v in assessments if v.mutant.kind == kind], count)
             for kind in sorted({v.mutant.kind for v in assessments})
         },
-        "missed": [_missed(v, material.grammar) for v in assessments if v.repair_rank != 1],
+        "assessments": [_ranks(v, material.grammar) for v in assessments],
     }
 
 
@@ -347,7 +347,7 @@ def _assess(mutant: Mutant) -> Assessment:
     return _assessors[0](mutant)
 
 
-def _missed(assessment: Assessment, whole: Grammar) -> dict[str, Any]:
+def _ranks(assessment: Assessment, whole: Grammar) -> dict[str, Any]:
     return {
         "mutant": assessment.mutant.title(whole),
         "detected": assessment.detected,
