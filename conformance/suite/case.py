@@ -244,7 +244,7 @@ def _front_matter(source: Source) -> Mapping[str, list[str]]:
             break
         match = _FRONT.match(line)
         if match is None or match[1] not in _KEYS:
-            raise CaseError(f"{source.path}: {line!r} is not a front matter")
+            raise CaseError(f"{source.path}: {line!r} is not front matter")
         if match[1] in found and match[1] not in _MANY:
             raise CaseError(f"{source.path}: {match[1]} stands twice")
         found.setdefault(match[1], []).append(match[2])

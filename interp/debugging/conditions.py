@@ -132,7 +132,7 @@ class _Evaluation:
                 return letters(node.text)
             case ast.EnumConstant():
                 if not isinstance(wanted, Enumeration):
-                    raise LinkError(f"the enumeration of #{node.name.text} is unknown")
+                    raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
                 return constant(wanted, node.name.key)
         raise LinkError("only variables, constants and operators can be looked at")
 

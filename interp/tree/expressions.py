@@ -78,7 +78,7 @@ class Expressions(Designators):
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Steps[Value]:
         type_ = self.frame.unit.checked.enumerations.get(node, wanted)
         if not isinstance(type_, Enumeration):
-            raise LinkError(f"the enumeration of #{node.name.text} is unknown")
+            raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
         return constant(type_, node.name.key)
         yield
 

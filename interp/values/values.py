@@ -245,7 +245,7 @@ def empty(type_: Type) -> Value | None:
             )
         case Scalar() | Enumeration():
             return None
-    raise LinkError(f"no value can have the type {type_}")
+    raise LinkError(f"nothing can be of {type_}")
 
 
 _ZEROS: Mapping[Type, Value] = {INT: 0, REAL: 0.0, BOOL: False, CHAR: "\0"}
@@ -264,7 +264,7 @@ def zero(type_: Type) -> Value:
             return EnumValue(type_, 0)
         case Scalar():
             return _ZEROS[type_]
-    raise LinkError(f"no value can have the type {type_}")
+    raise LinkError(f"nothing can be of {type_}")
 
 
 def copied(value: Any) -> Any:

@@ -146,7 +146,7 @@ class Expressions:
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Value:
         type_ = self._context.unit.checked.enumerations.get(node, wanted)
         if not isinstance(type_, Enumeration):
-            raise self._emitter.unlinked(f"the enumeration of #{node.name.text} is unknown")
+            raise self._emitter.unlinked(f"nothing tells which enumeration #{node.name.text} is of")
         try:
             place = constant(type_, node.name.key).index
         except LinkError as error:

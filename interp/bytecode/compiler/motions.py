@@ -272,7 +272,7 @@ class Motions(CodeMaker):
                 enumeration = self._context.unit.checked.enumerations.get(node, type_)
                 if isinstance(enumeration, Enumeration):
                     return constant(enumeration, node.name.key)
-                raise LinkError(f"the enumeration of #{node.name.text} is unknown")
+                raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
         raise LinkError("no literal")
 
     def _as_part(self, value: Known) -> Argument:
@@ -316,7 +316,7 @@ class Motions(CodeMaker):
         """The signal that is meant, by its name here."""
         name = signal_name(self._context.unit, node)
         if name is None:
-            raise self._emitter.unlinked("the signal is unknown")
+            raise self._emitter.unlinked("nothing tells which signal is meant")
         return name
 
 
