@@ -123,7 +123,7 @@ clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
-$(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch])
+$(BASE): pyproject.toml CMakeLists.txt $(wildcard interp/native/*.[ch] interp/native/*/*.[ch])
 	@echo 'building $(VENV): Python packages and, with a C compiler, the machine in C; one or two minutes, once'
 	@command -v $(PYTHON) >/dev/null || { echo 'make: $(PYTHON) not found; install Python 3.11 or later, or say make PYTHON=...' >&2; exit 2; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'make: $(PYTHON) is older than Python 3.11; say make PYTHON=...' >&2; exit 2; }

@@ -40,7 +40,7 @@ def is_available(name: str) -> bool:
 
     if name != COMPILED or not AVAILABLE:
         return name in available()
-    from interp.native.compiled import compiler
+    from interp.native.c_backend.compiled import compiler
 
     return compiler() is not None
 
@@ -114,7 +114,7 @@ class Prepared:
 
     def _compiled(self, limits: Limits, sink: Sink | None) -> Executor:
         """One with native code, else the machine that it is made for."""
-        from interp.native.compiled import CompiledMachine
+        from interp.native.c_backend.compiled import CompiledMachine
 
         try:
             return CompiledMachine(self.verified, self.start, limits, sink)

@@ -7,8 +7,8 @@
  *
  * With KRL_LIBFUZZER this is a target of libFuzzer, else a program: krl_fuzz SECONDS SEED IMAGE...
  */
-#include "machine.h"
-#include "register_code.h"
+#include "vm/machine.h"
+#include "vm/register_code.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <structmember.h>
 
-#include "machine.h"
-#include "register_code.h"
+#include "vm/machine.h"
+#include "vm/register_code.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <dlfcn.h>

@@ -70,7 +70,7 @@ def _native_code(image: bytes) -> Iterator[str]:
     if not AVAILABLE:
         yield "no native code: the machine in C was not built"
         return
-    from interp.native.compiled import keep
+    from interp.native.c_backend.compiled import keep
 
     try:
         keep(verify(read_image(image)))
@@ -125,7 +125,7 @@ def disassemble_image(
         return
     if not AVAILABLE:
         raise InputError("--steps: the machine in C was not built")
-    from interp.native.register_code import listing
+    from interp.native.c_backend.register_code import listing
 
     for line in listing(program, words):
         typer.echo(line)

@@ -188,9 +188,9 @@ def products() -> Mapping[Path, str]:
     document = _ROOT / "docs" / "bytecode.md"
     return {
         _ROOT / "interp" / "bytecode" / "_generated" / "opcodes.py": _opcodes(),
-        native / "isa.gen.h": _header(),
-        native / "operand_ranges.gen.h": _operand_ranges(),
-        native / "stack_effects.gen.h": stack_effects_in_c(instructions()),
+        native / "program" / "isa.gen.h": _header(),
+        native / "verifier" / "operand_ranges.gen.h": _operand_ranges(),
+        native / "verifier" / "stack_effects.gen.h": stack_effects_in_c(instructions()),
         document: _document(document.read_text(encoding="utf-8")),
     }
 

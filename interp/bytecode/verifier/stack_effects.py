@@ -3,7 +3,7 @@
 Which instruction has which steps stands in the table of the instruction set, see
 `interp.bytecode.instruction_set.effects`; a method here has the name of its step: ``check_array``,
 ``take_any``, or only ``array_view`` for an item that is taken or pushed.
-``interp/native/stack_effects.c`` has the same steps.
+``interp/native/verifier/stack_effects.c`` has the same steps.
 """
 
 from __future__ import annotations

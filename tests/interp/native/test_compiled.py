@@ -124,8 +124,8 @@ def _requests(program: Prepared, executor: str, limits: Limits) -> list[Request]
 @pytest.mark.parametrize("text", [COPIES, DEEP], ids=["the caller", "what is called"])
 def test_long_routines_are_not_compiled(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The interpreter runs them, whether they call what is compiled or are called by it."""
-    from interp.native import compiled
     from interp.native._core import Core
+    from interp.native.c_backend import compiled
 
     monkeypatch.setattr(compiled, "_MOST_STEPS", 10)
     program = Prepared(load([Source(text, "run.src")], "run.src"))

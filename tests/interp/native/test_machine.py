@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 import weakref
 from functools import partial
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 
 from conformance.differential.runs import facts_of
 from grammar.syntax.source import Source
+from interp import native
 from interp.bench.kernels import Kernel, kernels_in
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
@@ -184,3 +186,11 @@ def test_kernels_give_the_same(kernel: Kernel) -> None:
         assert isinstance(asked, Write)
         results.append(asked.value)
     assert results[0] == results[1]
+
+
+def test_includes_point_downwards() -> None:
+    """A folder of C includes headers of those below it only."""
+    below = {"program": 0, "image": 1, "verifier": 1, "vm": 1, "translator": 2, "c_backend": 2}
+    for file in Path(native.__file__).parent.glob("*/*.[ch]"):
+        for folder in re.findall(r'#include "(\w+)/', file.read_text(encoding="utf-8")):
+            assert below[folder] < below[file.parent.name], f"{file} includes {folder}"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from interp.native.register_code import Step
-from interp.native.register_flow import RegisterFlow
+from interp.native.c_backend.register_code import Step
+from interp.native.c_backend.register_flow import RegisterFlow
 
 
 def _step(name: str, a: int = 0, b: int = 0, c: int = 0, d: int = 0, *, line: int = -1) -> Step:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 
-from interp.native.register_code import CALLS, ENDS, Step, roles_of
+from interp.native.c_backend.register_code import CALLS, ENDS, Step, roles_of
 
 #: Steps that are left to the interpreter.
 INTERPRETED = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")

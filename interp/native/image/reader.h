@@ -6,7 +6,7 @@
 #ifndef KRL_READER_H
 #define KRL_READER_H
 
-#include "program.h"
+#include "program/program.h"
 
 struct section {
     const uint8_t *bytes;

@@ -8,7 +8,7 @@
 #ifndef KRL_MACHINE_H
 #define KRL_MACHINE_H
 
-#include "program.h"
+#include "program/program.h"
 
 /* A step: what it is, its operands, and the statement that begins with it, if one does. */
 struct krl_step {

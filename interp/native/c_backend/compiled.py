@@ -2,7 +2,7 @@
 
 A step of the machine becomes a line of C that names it (``compiled.h``), so there is one
 description of what steps do, and a program that was compiled stops where the machine stops and asks
-what it asks. What is kept is found by the text that was compiled, with all that it includes.
+what it asks. What is kept is found by the text that was compiled, with all headers.
 """
 
 from __future__ import annotations
@@ -24,16 +24,12 @@ from interp.bytecode.cell_layout import kind_at
 from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
+from interp.native.c_backend.register_code import CALLS, Step, roles_of
+from interp.native.c_backend.register_flow import INTERPRETED, RegisterFlow
 from interp.native.machine import Machine
-from interp.native.register_code import CALLS, Step, roles_of
-from interp.native.register_flow import INTERPRETED, RegisterFlow
 from support.files.user_cache import user_cache
 
-_HERE: Final = Path(__file__).parent
-_HEADERS: Final = (
-    *("compiled.h", "steps.h", "array_operations.h", "machine.h", "register_code.h"),
-    *("program.h", "cells.h", "isa.gen.h"),
-)
+_NATIVE: Final = Path(__file__).parents[1]
 #: Every product and sum is rounded by itself, as by the machine (docs/adr/0013-numbers.md).
 _FLAGS: Final = tuple("-std=c11 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno -w".split())
 _PATIENCE: Final = 600  # seconds that the compiler may take
@@ -87,7 +83,7 @@ def library_of(source: str) -> Path:
     with tempfile.TemporaryDirectory(dir=folder) as work:
         text, made = Path(work, "program.c"), Path(work, "program.so")
         text.write_text(source, encoding="utf-8")
-        called = [command, *_FLAGS, f"-I{_HERE}", str(text), "-o", str(made)]
+        called = [command, *_FLAGS, f"-I{_NATIVE}", str(text), "-o", str(made)]
         try:
             done = subprocess.run(called, capture_output=True, check=False, timeout=_PATIENCE)
         except subprocess.TimeoutExpired as error:
@@ -103,7 +99,7 @@ def library_of(source: str) -> Path:
 
 @cache
 def _headers() -> str:
-    return "".join((_HERE / name).read_text(encoding="utf-8") for name in _HEADERS)
+    return "".join(one.read_text(encoding="utf-8") for one in sorted(_NATIVE.rglob("*.h")))
 
 
 class CompiledMachine(Machine):
@@ -133,7 +129,7 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
         for number, body in compiled.items()
     }
     deferred = set[int]().union(*(routine.deferred for routine in routines.values()))
-    yield '#include "compiled.h"'
+    yield '#include "c_backend/compiled.h"'
     yield "static const struct krl_array arrays[] = {"
     for base, width, dimensions, *sizes, third in arrays or [(0, 0, 0, 1, 1, 1, 0)]:
         yield f"{{{base}, {width}, {dimensions}, {{{', '.join(map(str, sizes))}}}, {third}}},"

@@ -2,8 +2,8 @@
 #ifndef KRL_TRANSLATE_H
 #define KRL_TRANSLATE_H
 
-#include "machine.h"
-#include "register_code.h"
+#include "vm/machine.h"
+#include "vm/register_code.h"
 
 enum virtual_kind {
     IN_PLACE,

@@ -15,7 +15,7 @@
 #pragma GCC optimize("no-tree-dominator-opts")
 #endif
 
-#include "machine.h"
+#include "vm/machine.h"
 
 #define KRL_ARRAY(number) (&arrays[number])
 #define krl_compute machine->outside->compute
@@ -71,7 +71,7 @@ static inline krl_register krl_register_at(const krl_cell *cell)
     return (krl_register){(enum krl_tag)tag, (int32_t)bits, krl_real_of_bits(bits)};
 }
 
-#include "steps.h"
+#include "vm/steps.h"
 
 /* ---------------------------------------------------------------------------- routines */
 

@@ -6,7 +6,7 @@
 #ifndef KRL_VERIFIER_H
 #define KRL_VERIFIER_H
 
-#include "program.h"
+#include "program/program.h"
 
 /* What lies on the stack. Of a view that may be missing, and of a value that was left out (type -1),
  * nothing is ever used but the sizes, which are 0. */

@@ -1,0 +1,1 @@
+"""Register code as native code, by way of C and the compiler at hand."""
