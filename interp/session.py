@@ -86,8 +86,8 @@ class RunSetup:
     a submit program in the same project. ``machine`` is the arm, by default that of the project's
     ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
-    assignment told; without ``is_told`` executors report nothing that the run does not need, which
-    leaves calls and branches out of the trace, without ``is_submit_told`` those of the submit
+    assignment traced; without ``is_traced`` executors report nothing that the run does not need,
+    which leaves calls and branches out of the trace, without ``is_submit_traced`` those of the submit
     program. ``motion`` is how motions are planned: as they
     become known, or in batches. ``until`` is the most virtual time in µs, ``patience`` how long the
     arm may stand before it counts as over; ``limits`` are the most statements and calls.
@@ -108,8 +108,8 @@ class RunSetup:
     machine: MachineData | None = None
     start: tuple[float, ...] | None = None
     is_full: bool = False
-    is_told: bool = True
-    is_submit_told: bool = True
+    is_traced: bool = True
+    is_submit_traced: bool = True
     motion: Literal["lookahead", "batch"] = "lookahead"
     until: int = HOUR
     patience: int = HOUR
@@ -196,7 +196,7 @@ def run_program(
         robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
     tracking = _tracking(arm, robot, machine, start, setup)
     starts = program.starts(prepared.routine, setup.submit)
-    arguments = _stand_in_arguments(program.reached(*starts)) if setup.is_told else None
+    arguments = _stand_in_arguments(program.reached(*starts)) if setup.is_traced else None
     trace = Trace(take, kinds=_kinds(program, setup), arguments=arguments)
     sink, submit_sink = _sinks(trace, program, setup)
     limits = replace(
@@ -289,15 +289,15 @@ def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
     """Events that executors report; at least the calls that interrupts and $ERR need."""
     if setup.is_full:
         return EVERY_KIND
-    return WORLD_KINDS if setup.is_told else _needed_kinds(program)
+    return WORLD_KINDS if setup.is_traced else _needed_kinds(program)
 
 
 def _sinks(trace: Trace, program: CheckedProgram, setup: RunSetup) -> tuple[TaskSink, TaskSink]:
     """Those of the two programs. Calls that only interrupts and $ERR go by are in no trace."""
-    is_told = setup.is_full or setup.is_told
-    silent = None if setup.is_submit_told else _needed_kinds(program)
-    return trace.sink(keeps_calls=is_told), trace.sink(
-        "submit", silent, keeps_calls=is_told and setup.is_submit_told
+    is_traced = setup.is_full or setup.is_traced
+    silent = None if setup.is_submit_traced else _needed_kinds(program)
+    return trace.sink(keeps_calls=is_traced), trace.sink(
+        "submit", silent, keeps_calls=is_traced and setup.is_submit_traced
     )
 
 

@@ -162,11 +162,11 @@ def prepared_run(
     *,
     is_terminal: bool,
     is_full: bool = False,
-    is_told: bool = False,
+    is_traced: bool = False,
 ) -> "tuple[CheckedProgram, RunSetup]":
     """The program and its setup; says on stderr what was left out and what was assumed.
 
-    In a terminal inputs are automatic by default. ``is_full`` and ``is_told`` are those of the
+    In a terminal inputs are automatic by default. ``is_full`` and ``is_traced`` are those of the
     setup. Raises `InputError`, and within `expected_errors` what it turns into that.
     """
     from interp.controller.inputs.automatic_inputs import OPERATOR
@@ -201,7 +201,7 @@ def prepared_run(
         routine=options.routine,
         submit=submit,
         is_full=is_full,
-        is_told=is_told,
+        is_traced=is_traced,
         motion=options.motion.value,
         until=round(seconds * 1e6),
         limits=Limits(statements=options.statements, per_slice=profile.statements),

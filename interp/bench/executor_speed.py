@@ -325,7 +325,7 @@ def _controlled(executor: str, rounds: int) -> float:
     """How many times as long computing takes in a run as without a controller."""
     programs = [_program(_COMPUTING.format(count)) for count in (20, 120)]
     limits = Limits(statements=_LIMITS.statements)
-    setup = RunSetup(executor=executor, is_told=False, limits=limits)
+    setup = RunSetup(executor=executor, is_traced=False, limits=limits)
     best = dict.fromkeys(product((0, 1), (False, True)), math.inf)
     for _ in range(rounds):
         for one, is_run in best:

@@ -209,7 +209,7 @@ def run_main(
     text = script + "\n" + OPERATOR
     script_read = Script.read(text, f"{main.routine}.io")
     setup = replace(
-        setup, submit=main.submit, script=script_read, patience=PATIENCE, is_submit_told=False
+        setup, submit=main.submit, script=script_read, patience=PATIENCE, is_submit_traced=False
     )
 
     def on_time(now: int) -> None:

@@ -52,8 +52,8 @@ class _Matter(IntEnum):
     LEAVE = 2
 
 
-#: The kinds of events as ``enum krl_told`` has them.
-_TOLD: Mapping[Kind, int] = {"line": 1, "assign": 2, "call": 4, "return": 8, "branch": 16}
+#: The kinds of events as ``enum krl_traced`` has them.
+_TRACED: Mapping[Kind, int] = {"line": 1, "assign": 2, "call": 4, "return": 8, "branch": 16}
 #: A statement at which C stops whatever holds.
 _UNGUARDED: Final = (-1, 0, False, 0)
 #: The first relation that asks for an order.
@@ -123,7 +123,7 @@ class _State(Core):
 
     base = 0  # where nothing lies on the stack that is not the frame's
 
-    def __init__(self, _image: bytes, _told: int, _most_calls: int, _beside: Core | None) -> None:
+    def __init__(self, _image: bytes, _traced: int, _most_calls: int, _beside: Core | None) -> None:
         self.stack = _Stack(self)
         self.calls = _Calls(self)
         self.reader: Reader | None = None
@@ -251,12 +251,12 @@ class Machine(vm.Machine):
         *,
         beside: vm.Machine | None = None,
     ) -> None:
-        self._told = sum(bit for kind, bit in _TOLD.items() if wanting(sink, kind) is not None)
+        self._traced = sum(bit for kind, bit in _TRACED.items() if wanting(sink, kind) is not None)
         super().__init__(verified, routine, limits, sink, random, beside=beside)
 
     def _made_state(self, limits: Limits) -> State:
         beside = cast("_State", self._together[0]._state) if self._together else None
-        return cast("State", _State(self._verified.image, self._told, limits.depth, beside))
+        return cast("State", _State(self._verified.image, self._traced, limits.depth, beside))
 
     def _made_ready(self, program: Program) -> ThreadedCode:
         state = cast("_State", self._state)
@@ -271,7 +271,7 @@ class Machine(vm.Machine):
 
     def break_at(self, places: Breaks) -> bool:
         """Ask for time before statements that begin in these lines; whether it can do so."""
-        if self._told & _TOLD["line"]:
+        if self._traced & _TRACED["line"]:
             return False
         steps = [
             (self._core.step(number, place), *self._guarded(number, places[where]))

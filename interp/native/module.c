@@ -42,13 +42,13 @@ static PyObject *refused(const struct krl_refusal *why)
 
 static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords)
 {
-    static char *names[] = {"image", "told", "most_calls", "beside", NULL};
+    static char *names[] = {"image", "traced", "most_calls", "beside", NULL};
     const char *image;
     Py_ssize_t length;
-    int told, most_calls;
+    int traced, most_calls;
     PyObject *beside;
     struct krl_refusal why;
-    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#iiO", names, &image, &length, &told,
+    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#iiO", names, &image, &length, &traced,
                                      &most_calls, &beside))
         return NULL;
     if (beside != Py_None && !PyObject_TypeCheck(beside, core_type)) {
@@ -59,7 +59,7 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     struct core *core = (struct core *)allot(type, 0);
     if (core == NULL)
         return NULL;
-    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, told, &why)) {
+    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, traced, &why)) {
         Py_DECREF(core);
         return refused(&why);
     }
@@ -478,7 +478,7 @@ static PyGetSetDef core_getset[] = {
 };
 
 static PyType_Slot core_slots[] = {
-    {Py_tp_doc, "A program made ready to run, and its memory. Core(image, told, most_calls, beside)."},
+    {Py_tp_doc, "A program ready to run, and its memory. Core(image, traced, most_calls, beside)."},
     {Py_tp_new, core_new},
     {Py_tp_dealloc, core_dealloc},
     {Py_tp_methods, core_methods},

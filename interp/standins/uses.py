@@ -81,7 +81,7 @@ class DataUse:
         return self.members.setdefault(name.key, DataUse(is_part=True))
 
     @property
-    def is_told(self) -> bool:
+    def is_typed(self) -> bool:
         """Whether its type is known."""
         return bool(self.types or self.members or self.constants or self.motions or self.is_text)
 

@@ -89,7 +89,7 @@ def run(
             options,
             is_terminal=sys.stdout.isatty(),
             is_full=is_watched and trace_level is Level.FULL,
-            is_told=is_watched,
+            is_traced=is_watched,
         )
         done = _performed(program, setup, trace)
         _write(done, program, setup, path, html)

@@ -61,7 +61,7 @@ class ControlFlow(CodeMaker):
         self._context.line = self._context.unit.line(node)
         self._emit(Op.LINE, self._context.line, end)
 
-    def _told(self, way: int) -> None:
+    def _branch(self, way: int) -> None:
         self._emit(Op.TELL_BRANCH, way)
 
     # ----------------------------------------------------------------------- branches
@@ -70,11 +70,11 @@ class ControlFlow(CodeMaker):
         """IF."""
         otherwise = Label()
         self._expressions.unless(node.condition, otherwise)
-        self._told(1)
+        self._branch(1)
         self.block(node.body)
         self._emit(Op.JUMP, end)
         self._writer.place(otherwise)
-        self._told(0)
+        self._branch(0)
         self.block(node.otherwise or ())
 
     def switch(self, node: ast.Switch, end: Label) -> None:
@@ -85,14 +85,14 @@ class ControlFlow(CodeMaker):
         branches = [Label() for _ in node.branches]
         try:
             self._choose(node, selector.type, branches)
-            self._told(0)
+            self._branch(0)
             self.block(node.default or ())
             self._emit(Op.JUMP, end)
         except Ended:
             pass
         for number, (branch, label) in enumerate(zip(node.branches, branches, strict=True), 1):
             self._writer.place(label)
-            self._told(number)
+            self._branch(number)
             self.block(branch.body)
             self._emit(Op.JUMP, end)
 
@@ -154,12 +154,12 @@ class ControlFlow(CodeMaker):
         test, done = Label(), Label()
         self._writer.place(test)
         self._expressions.unless(node.condition, done)
-        self._told(1)
+        self._branch(1)
         self._pass(node.body, end)
         self.begin(node, end)
         self._emit(Op.JUMP, test)
         self._writer.place(done)
-        self._told(0)
+        self._branch(0)
 
     def repeat_loop(self, node: ast.Repeat, end: Label) -> None:
         """REPEAT."""
@@ -168,10 +168,10 @@ class ControlFlow(CodeMaker):
         self._pass(node.body, end)
         self.begin(node.condition, end)
         self._expressions.unless(node.condition, go_on)
-        self._told(1)
+        self._branch(1)
         self._emit(Op.JUMP, end)
         self._writer.place(go_on)
-        self._told(0)
+        self._branch(0)
         self._emit(Op.JUMP, again)
 
     def endless_loop(self, node: ast.Loop, end: Label) -> None:

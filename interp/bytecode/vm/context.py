@@ -17,8 +17,8 @@ class Hooks(Protocol):
     """What instructions need of the machine around them."""
 
     #: Whether calls, and their ends, are traced.
-    calls_are_told: bool
-    returns_are_told: bool
+    calls_are_traced: bool
+    returns_are_traced: bool
     #: What ends an action, and what ends the routine that the program began with.
     leave_action: Operation
     finish: Operation

@@ -68,13 +68,13 @@ class ControlRules(Rules):
         receive = self._receiver(callee.parameters)
         hooks = self._runtime.hooks
         is_owner = number in self._runtime.owners
-        is_told = hooks.calls_are_told
+        is_traced = hooks.calls_are_traced
 
         def operation() -> Operation:
             first = state.fp + own
             if len(calls) >= state.most_calls or first + frame > state.most_cells:
                 raise fault("stack")
-            if is_told:
+            if is_traced:
                 hooks.tell_call(number)
             if count:
                 arguments = stack[-count:]
@@ -126,10 +126,10 @@ class ControlRules(Rules):
         kind = self._program.codes[site.code].kind
         if kind is CodeKind.ACTION:
             return hooks.leave_action
-        is_told = hooks.returns_are_told and kind is CodeKind.ROUTINE
+        is_traced = hooks.returns_are_traced and kind is CodeKind.ROUTINE
 
         def operation() -> Operation | None:
-            if is_told:
+            if is_traced:
                 hooks.tell_leave()
             if not calls:
                 return hooks.finish()

@@ -57,8 +57,8 @@ class Services:
         self._surroundings = Surroundings(random, self._names.find)
         self.counter = Counter(state, limits)
         self._limits = limits
-        self.calls_are_told = self._calls is not None
-        self.returns_are_told = self._returns is not None
+        self.calls_are_traced = self._calls is not None
+        self.returns_are_traced = self._returns is not None
         self.entered = 0
         self.leave_action: Operation = lambda: None
         self.finish: Operation = lambda: None
@@ -91,7 +91,7 @@ class Services:
     def line(self, place: int, after: Operation) -> Operation:
         """What `LINE` does at a place of its code object."""
         state, pause = self._state, self._pause
-        begin = after if self._lines is None else self._told_line(self._lines, after)
+        begin = after if self._lines is None else self._traced_line(self._lines, after)
 
         def operation() -> Operation | None:
             state.statement = place
@@ -264,7 +264,7 @@ class Services:
 
     # ----------------------------------------------------------------------- telling
 
-    def _told_line(self, sink: Sink, after: Operation) -> Operation:
+    def _traced_line(self, sink: Sink, after: Operation) -> Operation:
         def operation() -> Operation:
             sink.line(self.at())
             return after
@@ -275,11 +275,11 @@ class Services:
         """What an instruction for the trace does; nothing where it does not want that kind."""
         if instruction.op is Op.TELL_BRANCH:
             branches = self._branches
-            return after if branches is None else self._told_branch(branches, instruction, after)
+            return after if branches is None else self._traced_branch(branches, instruction, after)
         assignments = self._assignments
-        return after if assignments is None else self._told(assignments, instruction, after)
+        return after if assignments is None else self._traced(assignments, instruction, after)
 
-    def _told_branch(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
+    def _traced_branch(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
         way = instruction.operands[0]
 
         def operation() -> Operation:
@@ -288,7 +288,7 @@ class Services:
 
         return operation
 
-    def _told(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
+    def _traced(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
         state, names = self._state, self._names
         op, operands, types = instruction.op, instruction.operands, self._program.types
 

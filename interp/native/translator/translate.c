@@ -183,11 +183,11 @@ static void instruction(struct translator *at, int32_t place)
         break;
     case KRL_FOR_LOCAL: case KRL_FOR_DATA: krl_count_up(at, now); break;
     case KRL_TELL_LOCAL: case KRL_TELL_DATA: case KRL_TELL_REF: case KRL_TELL:
-        if (at->machine->told & KRL_TOLD_ASSIGN)
+        if (at->machine->traced & KRL_TRACED_ASSIGN)
             krl_to_python(at, KRL_MATTER_INSTRUCTION, place);
         break;
     case KRL_TELL_BRANCH:
-        if (at->machine->told & KRL_TOLD_BRANCH)
+        if (at->machine->traced & KRL_TRACED_BRANCH)
             krl_to_python(at, KRL_MATTER_INSTRUCTION, place);
         break;
     case KRL_OPCODE_COUNT: break;

@@ -20,7 +20,7 @@ static void start_here(struct translator *at, int32_t place)
 
 void krl_line(struct translator *at, int32_t place)
 {
-    if (at->machine->told & KRL_TOLD_LINE) {
+    if (at->machine->traced & KRL_TRACED_LINE) {
         start_here(at, place);
         krl_to_python(at, KRL_MATTER_INSTRUCTION, place);
     } else {
@@ -92,7 +92,7 @@ void krl_call_routine(struct translator *at, int32_t place)
         is_copied |= handed->mode == KRL_BY_VALUE && !krl_is_plain(at->program, handed->type);
     }
     krl_settle_all(at);
-    if (at->machine->told & KRL_TOLD_CALL) {
+    if (at->machine->traced & KRL_TRACED_CALL) {
         struct krl_step *check = krl_emit(at, KRL_STEP_CHECK_CALL);
         check->b = number;
         check->c = at->code->frame;
@@ -111,7 +111,7 @@ void krl_leave(struct translator *at, int32_t place)
     int32_t b = 0;
     if (has_value)
         b = krl_operand(at, at->height - 1);
-    if (at->machine->told & KRL_TOLD_RETURN && at->code->kind == KRL_ROUTINE)
+    if (at->machine->traced & KRL_TRACED_RETURN && at->code->kind == KRL_ROUTINE)
         krl_to_python(at, KRL_MATTER_LEAVE, place);
     at->height = 0;
     if (at->code->kind == KRL_ACTION)
@@ -183,7 +183,7 @@ void krl_call_builtin(struct translator *at, int32_t place)
         return;
     }
     enum krl_text_function function = krl_text_function_of(at->program, entry);
-    if (function != KRL_TEXT_FUNCTIONS && !(at->machine->told & KRL_TOLD_ASSIGN)) {
+    if (function != KRL_TEXT_FUNCTIONS && !(at->machine->traced & KRL_TRACED_ASSIGN)) {
         krl_settle_all(at);
         struct krl_step *step = krl_emit(at, KRL_STEP_TEXT);
         step->a = krl_place_of(at, at->height - entry->input_cells);

@@ -77,7 +77,7 @@ void krl_store_data(struct translator *at, int32_t address)
 /* For the trace: what was written last. */
 static void remember(struct translator *at, struct virtual_value where)
 {
-    if (at->machine->told & KRL_TOLD_ASSIGN)
+    if (at->machine->traced & KRL_TRACED_ASSIGN)
         krl_emit(at, where.kind == ADDRESS ? KRL_STEP_REMEMBER_LOCAL : KRL_STEP_REMEMBER_DATA)->a = where.a;
 }
 
@@ -167,7 +167,7 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
     krl_push(at, item);
     /* An index in a place that is no longer the stack's would not stay; the trace needs addresses. */
     int is_above = item.b >= at->code->frame || array.third >= at->code->frame;
-    if ((array.dimensions > 1 && is_above) || at->machine->told & KRL_TOLD_ASSIGN) {
+    if ((array.dimensions > 1 && is_above) || at->machine->traced & KRL_TRACED_ASSIGN) {
         krl_secure(at, first);
         krl_settle(at, first);
     }

@@ -3,11 +3,11 @@
 
 #include <stdlib.h>
 
-int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int told,
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int traced,
                    struct krl_refusal *why)
 {
     memset(machine, 0, sizeof *machine);
-    machine->told = told;
+    machine->traced = traced;
     machine->left = 1;
     machine->checksum = krl_checksum(image, length);
     if (!krl_read_image(&machine->program, image, length, why))

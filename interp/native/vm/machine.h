@@ -63,12 +63,12 @@ struct krl_memory {
 enum { KRL_MOST_CALLS = 1 << 20, KRL_MOST_ENTERED = 64 };
 
 /* Events, as bits. */
-enum krl_told {
-    KRL_TOLD_LINE = 1,
-    KRL_TOLD_ASSIGN = 2,
-    KRL_TOLD_CALL = 4,
-    KRL_TOLD_RETURN = 8,
-    KRL_TOLD_BRANCH = 16
+enum krl_traced {
+    KRL_TRACED_LINE = 1,
+    KRL_TRACED_ASSIGN = 2,
+    KRL_TRACED_CALL = 4,
+    KRL_TRACED_RETURN = 8,
+    KRL_TRACED_BRANCH = 16
 };
 
 /* A step to stop before; with a relation, its place in KRL_COMPARISONS, only where that holds. */
@@ -95,7 +95,7 @@ struct krl_machine {
     const int32_t *entries; /* the steps at which that is entered, up to -1; NULL for none */
     struct krl_break *breaks;
     int32_t break_count;    /* where there are any nothing is entered */
-    int told; /* which events are traced */
+    int traced; /* which events are traced */
     struct krl_routine *routines;
     struct krl_step *steps;
     int32_t step_count;
@@ -158,7 +158,7 @@ enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
 /* ---------------------------------------------------------------------------- machine.c */
 
 /* Loads an image. 0 where it is refused. */
-int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int told,
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int traced,
                    struct krl_refusal *why);
 void krl_unload(struct krl_machine *machine);
 

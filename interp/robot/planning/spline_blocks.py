@@ -75,8 +75,8 @@ def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track
     pieces = _pieces(tracks, motion, segments, np.array(externals), before.axes)
     track = Track(motion, with_ranges(motion, pieces), tracks.limits)
     axes = pieces[-1].curve.end
-    is_told = motion.parts[-1].angle is None
-    point = target.components if is_told else None
+    is_at_target = motion.parts[-1].angle is None
+    point = target.components if is_at_target else None
     return track, before.reached(axes, point, placement)
 
 

@@ -96,7 +96,7 @@ def _seen(run: RunResult) -> list[str]:
 
 def _both(program: CheckedProgram, setup: RunSetup) -> tuple[list[str], list[str]]:
     """What is seen of a run, with whole periods at once and without."""
-    setup = replace(setup, submit="SPS", is_told=False)
+    setup = replace(setup, submit="SPS", is_traced=False)
     quick = _seen(run_program(program, setup))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(QuietTime, "_skipped", lambda *_: 0)
@@ -149,7 +149,7 @@ def test_nothing_is_seen(one: tuple[CheckedProgram, RunSetup]) -> None:
 @pytest.mark.parametrize("body", ["$OUT[1]=$IN[1]\n", "PASS ($IN[2])\n", "", "B=$IN[1]\n"])
 def test_idle_takes_few_looks(looks: list[int], executor: str, body: str) -> None:
     """A minute of it takes some looks a second, and not one in every cycle."""
-    setup = RunSetup(executor=executor, submit="SPS", is_told=False, until=60_000_000)
+    setup = RunSetup(executor=executor, submit="SPS", is_traced=False, until=60_000_000)
     run = run_program(_program(SPS.format("", body)), setup)
     assert ("time", True) == (run.outcome.ending, len(looks) < 60 * 5)
 

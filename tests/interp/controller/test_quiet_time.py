@@ -133,7 +133,7 @@ def test_slices_at_once(executor: str, io: str) -> None:
     """A run that tells no calls gives programs many slices at once; all else comes as it did."""
     program = load([Source(COMPUTES, "main.src")], "main.src", strict=False)
     setup = RunSetup(executor=executor, script=Script.read(io), until=5_000_000)
-    told, quick = run_program(program, setup), run_program(program, replace(setup, is_told=False))
+    told, quick = run_program(program, setup), run_program(program, replace(setup, is_traced=False))
     kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
     assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
 
@@ -145,7 +145,7 @@ def test_computing_between_looks_at_inputs() -> None:
     text = f"{head}{computes}ENDWHILE\nEND\n"
     program = load([Source(text, "main.src")], "main.src", strict=False)
     setup = RunSetup(executor=available()[-1], script=Script.read(OPERATOR), until=5_000_000)
-    told, quick = run_program(program, setup), run_program(program, replace(setup, is_told=False))
+    told, quick = run_program(program, setup), run_program(program, replace(setup, is_traced=False))
     kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
     assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
     assert 4 == quick.controller.automatic_inputs.count == told.controller.automatic_inputs.count
@@ -163,5 +163,5 @@ def test_few_slices_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Waits, "slice", counted)
     text = "DEF main ( )\nINT I\nFOR I=1 TO 100000\nENDFOR\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
-    run_program(program, RunSetup(executor=available()[-1], is_told=False))
+    run_program(program, RunSetup(executor=available()[-1], is_traced=False))
     assert (100, True) == (sum(asked), len(asked) < 5)

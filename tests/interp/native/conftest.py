@@ -43,10 +43,10 @@ def core() -> type[Core]:
 
 
 def steps_of(
-    kind: type[executor.Machine], verified: Verified, is_told: bool, most: int
+    kind: type[executor.Machine], verified: Verified, is_traced: bool, most: int
 ) -> list[Any]:
     """What a machine asks, and tells if it is to, as text: so that faults can be compared."""
-    recorder = Recorder() if is_told else None
+    recorder = Recorder() if is_traced else None
     machine = kind(verified, "MAIN", Limits(statements=400, per_slice=30, depth=6), recorder)
     world, reply = QuietWorld(), None
     found: list[str] = []
@@ -74,9 +74,9 @@ def agreed() -> Compare:
         from interp.native.machine import Machine
 
         verified = verify(assemble(text))
-        for is_told in (True, False):
-            expected = steps_of(executor.Machine, verified, is_told, most)
-            assert expected == steps_of(Machine, verified, is_told, most)
+        for is_traced in (True, False):
+            expected = steps_of(executor.Machine, verified, is_traced, most)
+            assert expected == steps_of(Machine, verified, is_traced, most)
         return expected
 
     return compare
