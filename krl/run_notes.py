@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
 
-_MOST_TOLD = 3
+_MOST_LISTED = 3
 
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
@@ -21,10 +21,10 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
         yield f"arm: {done.machine_note}"
     skipped = done.controller.skipped
-    for (file, number), error in islice(skipped.items(), _MOST_TOLD):
+    for (file, number), error in islice(skipped.items(), _MOST_LISTED):
         yield f"skipped: {file}:{number}: {error}"
-    if len(skipped) > _MOST_TOLD:
-        yield f"skipped: {len(skipped) - _MOST_TOLD} more lines, see --trace or --html"
+    if len(skipped) > _MOST_LISTED:
+        yield f"skipped: {len(skipped) - _MOST_LISTED} more lines, see --trace or --html"
     yield from _seen(done)
     if not done.controller.points and setup.routine is None:
         yield from _elsewhere(program)
@@ -60,18 +60,18 @@ def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
             yield f"no motion; the first one is inside {where}: {unit.source.line(line).strip()}"
         return
     if moving:
-        more = f" and {len(moving) - _MOST_TOLD} more" if len(moving) > _MOST_TOLD else ""
-        names = ", ".join(moving[:_MOST_TOLD])
+        more = f" and {len(moving) - _MOST_LISTED} more" if len(moving) > _MOST_LISTED else ""
+        names = ", ".join(moving[:_MOST_LISTED])
         yield f"no motion in {first.name}; others can be selected with --routine: {names}{more}"
 
 
 def _seen(done: "RunResult") -> Iterator[str]:
     """Contacts and excessive torques; estimates in one line."""
     certain = [seen for seen in done.observations if not seen.is_estimate]
-    for seen in certain[:_MOST_TOLD]:
+    for seen in certain[:_MOST_LISTED]:
         yield f"{seen.kind}: {seen}"
-    if len(certain) > _MOST_TOLD:
-        yield f"seen: {len(certain) - _MOST_TOLD} more"
+    if len(certain) > _MOST_LISTED:
+        yield f"seen: {len(certain) - _MOST_LISTED} more"
     estimates = [seen for seen in done.observations if seen.is_estimate]
     if estimates:
         worst = max(estimates, key=lambda seen: seen.value / seen.limit)

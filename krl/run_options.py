@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from interp.session import RunSetup
 
 _AUTO = "auto"
-_MOST_TOLD = 3
+_MOST_LISTED = 3
 #: Virtual seconds that a run lasts at most, without and with automatic inputs.
 _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
 
@@ -211,11 +211,11 @@ def prepared_run(
         robot_file=own.file,
         scene=own.scene,
     )
-    for why in left[:_MOST_TOLD]:
+    for why in left[:_MOST_LISTED]:
         typer.echo(one_line(f"left out: {why}"), err=True)
-    if len(left) > _MOST_TOLD:
+    if len(left) > _MOST_LISTED:
         typer.echo(
-            f"left out: {len(left) - _MOST_TOLD} more lines and files of the project", err=True
+            f"left out: {len(left) - _MOST_LISTED} more lines and files of the project", err=True
         )
     return program, setup
 

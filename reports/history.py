@@ -22,7 +22,7 @@ _WORSE = 1.25
 _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
 )
-_MOST_TOLD = 40
+_MOST_LISTED = 40
 #: A year of runs is kept; what single cases and clusters were, of the last ones only.
 _MOST_RUNS = 366
 _IN_FULL = 7
@@ -251,10 +251,10 @@ def _survey(before: Record, now: Record) -> Iterator[str]:
             yield f"survey: {what} {count(before, key):,} → {count(now, key):,}"
     old, new = nested(before, "clusters"), nested(now, "clusters")
     yield from (
-        f"survey: new cluster {new[one]}" for one in list(new)[:_MOST_TOLD] if one not in old
+        f"survey: new cluster {new[one]}" for one in list(new)[:_MOST_LISTED] if one not in old
     )
     yield from (
-        f"survey: gone cluster {old[one]}" for one in list(old)[:_MOST_TOLD] if one not in new
+        f"survey: gone cluster {old[one]}" for one in list(old)[:_MOST_LISTED] if one not in new
     )
 
 
@@ -283,10 +283,10 @@ def _shifts(before: Record, now: Record, old: Record | None, new: Record | None)
     was, became = _by_case(before), _by_case(now)
     shifted = [n for n, (_, digest) in became.items() if n in was and was[n][1] != digest]
     details = {} if old is None or new is None else _details(old, new, set(shifted))
-    for name in shifted[:_MOST_TOLD]:
+    for name in shifted[:_MOST_LISTED]:
         yield f"timing shifted: {name}{details.get(name, '')}"
-    if len(shifted) > _MOST_TOLD:
-        yield f"timing shifted: {len(shifted) - _MOST_TOLD} more cases"
+    if len(shifted) > _MOST_LISTED:
+        yield f"timing shifted: {len(shifted) - _MOST_LISTED} more cases"
 
 
 def _details(old: Record, new: Record, names: set[str]) -> dict[str, str]:

@@ -24,7 +24,7 @@ from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
 #: Who has more lines that cannot be read has a file that is no KRL.
-MOST_TOLD = 1_000
+MOST_LISTED = 1_000
 _LONGEST_TOKEN = 60
 # Real lines are never this long, and examining one takes long.
 _FARTHEST = 20_000
@@ -44,7 +44,7 @@ def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[D
         for before, failure in zip([None, *reported], reported, strict=False)
         if before is None or not _is_same_gap(before, failure, source)
     ]
-    shown = reported[:MOST_TOLD]
+    shown = reported[:MOST_LISTED]
     blocks = open_blocks(source, (failure.line for failure in shown))
     found = [_finding(ErrorSite(failure, source, blocks[failure.line])) for failure in shown]
     if len(reported) > len(shown):

@@ -48,7 +48,7 @@ def is_variable(unit: Unit, node: ast.Expression) -> bool:
 
 
 #: Why an aggregate has no value where `structure_of` gives none.
-UNTOLD_STRUCTURE = "nothing tells which structure an aggregate is"
+UNKNOWN_STRUCTURE = "nothing tells which structure an aggregate is"
 
 
 def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | None:

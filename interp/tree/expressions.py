@@ -20,7 +20,7 @@ from grammar.semantics.types import (
 )
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain
-from interp.program.reads import UNTOLD_STRUCTURE, structure_of
+from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.tree.designators import Designators
 from interp.tree.places import LocalPlace, member
 from interp.tree.run import Steps
@@ -99,7 +99,7 @@ class Expressions(Designators):
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Steps[Value]:
         type_ = structure_of(self.frame.unit, node, wanted)
         if type_ is None:
-            raise LinkError(UNTOLD_STRUCTURE)
+            raise LinkError(UNKNOWN_STRUCTURE)
         made = empty(type_)
         whole = LocalPlace([made], type_, ())
         for component in node.components:

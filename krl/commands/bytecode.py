@@ -12,7 +12,7 @@ from krl.program_loading import compile_project
 from support.files.atomic_write import write_atomic
 
 _LARGEST = 64 << 20  # bytes; no program that fits into the machine is nearly as large
-_MOST_TOLD = 20
+_MOST_LISTED = 20
 
 
 def compile_file(
@@ -52,10 +52,10 @@ def compile_file(
     if native:
         told += _native_code(image.data)
     told += image.refusals
-    for line in told[:_MOST_TOLD]:
+    for line in told[:_MOST_LISTED]:
         typer.echo(one_line(line), err=True)
-    if len(told) > _MOST_TOLD:
-        typer.echo(f"and {len(told) - _MOST_TOLD} more", err=True)
+    if len(told) > _MOST_LISTED:
+        typer.echo(f"and {len(told) - _MOST_LISTED} more", err=True)
     count = f"{image.codes:,} code objects, {image.instructions:,} instructions"
     typer.echo(one_line(f"{target}: {count}"))
     return FINDINGS if image.refusals else FINE

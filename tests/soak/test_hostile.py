@@ -55,7 +55,7 @@ COUNTS = REPOSITORY / "reports" / "out" / "hostile"
 LONGEST = 60.0
 LONGEST_WAIT = 300.0
 #: Failures after which it is time to stop.
-MOST_TOLD = 12
+MOST_LISTED = 12
 #: What must not reach a terminal raw: it could steer it, or turn the order of what is read.
 STEERING = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
@@ -185,7 +185,7 @@ def test_nothing_breaks_and_nothing_escapes(
         if canary.read_bytes() != b"alive":
             wrong.append("written over what lies outside")
         failures += [f"{said}: {one}: {err[-300:]!r}" for one in wrong]
-        if len(failures) > MOST_TOLD:
+        if len(failures) > MOST_LISTED:
             break
         guard.elsewhere.clear()
         shutil.rmtree(folder)

@@ -39,7 +39,7 @@ from interp.bytecode.compiler.locations import (
     ViewParameter,
 )
 from interp.bytecode.compiler.memory import Memory
-from interp.program.reads import UNTOLD_STRUCTURE, structure_of
+from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
 from interp.values.values import constant, letters, single
@@ -264,7 +264,7 @@ class Expressions:
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Value:
         structure = structure_of(self._context.unit, node, wanted)
         if structure is None:
-            raise self._emitter.unlinked(UNTOLD_STRUCTURE)
+            raise self._emitter.unlinked(UNKNOWN_STRUCTURE)
         type_ = self._emitter.closed(structure)
         whole = FrameCells(self._writer.temporary(type_), type_)
         self._memory.refer(whole)

@@ -8,7 +8,7 @@ from grammar.check.project.project_check import read_source
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.expected_tokens import in_words
 from grammar.diagnostics.open_blocks import lead, open_blocks
-from grammar.diagnostics.syntax_errors import MOST_TOLD, syntax_findings
+from grammar.diagnostics.syntax_errors import MOST_LISTED, syntax_findings
 from grammar.notation.generate import GRAMMAR
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
@@ -286,8 +286,8 @@ def test_what_follows_is_left_out() -> None:
 
 def test_only_so_many_are_told() -> None:
     """A file of which no line can be read is told in bounded length."""
-    found = findings("DEF A()\n" + "5 5\n" * (MOST_TOLD + 50) + "END\n")
-    assert MOST_TOLD + 1 == len(found)
+    found = findings("DEF A()\n" + "5 5\n" * (MOST_LISTED + 50) + "END\n")
+    assert MOST_LISTED + 1 == len(found)
     assert "50 more unreadable lines" in found[-1].message
 
 
