@@ -87,9 +87,9 @@ class RunSetup:
     ``$machine.dat``, else that of the profile. ``start`` are the axes at the beginning in degrees
     or mm, by default those of $H_POS if the project has it. ``is_full`` has every line and
     assignment traced; without ``is_traced`` executors report nothing that the run does not need,
-    which leaves calls and branches out of the trace, without ``is_submit_traced`` those of the submit
-    program. ``motion`` is how motions are planned: as they
-    become known, or in batches. ``until`` is the most virtual time in µs, ``patience`` how long the
+    which leaves calls and branches out of the trace, without ``is_submit_traced`` those of the
+    submit program. ``motion`` is how motions are planned: as they become known, or in batches.
+    ``until`` is the most virtual time in µs, ``patience`` how long the
     arm may stand before it counts as over; ``limits`` are the most statements and calls.
     ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
     ``scene`` is what stands around the arm, ``robot_file`` an arm in place of that of the project.

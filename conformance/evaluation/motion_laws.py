@@ -61,7 +61,7 @@ def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
         if first < last:
             own = path.axes[rows, ROBOT_AXES:]
             tools = flanges[rows] @ matrix_of(placement.tool)
-            poses = np.linalg.inv(placement.befores(own)) @ tools
+            poses = np.linalg.inv(placement.chains_before(own)) @ tools
             off = np.abs(poses[:, :3, 3] - path.points[rows, :3]).max(axis=1)
             told = np.array([matrix_of(Pose.of(*row)) for row in path.points[rows]])
             off = np.maximum(off, np.degrees(np.abs(told - poses)[:, :3, :3].max(axis=(1, 2))))

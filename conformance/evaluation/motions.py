@@ -74,7 +74,9 @@ class EndedMotion:
         """The tool in the base, (n, 4, 4), where axes (n, axes) stand."""
         placement, own = self.motion.settings.placement, axes[:, ROBOT_AXES:]
         flanges = flanges_of(self.machine.chain, axes[:, :ROBOT_AXES])
-        poses: Array = np.linalg.inv(placement.befores(own)) @ flanges @ matrix_of(placement.tool)
+        poses: Array = (
+            np.linalg.inv(placement.chains_before(own)) @ flanges @ matrix_of(placement.tool)
+        )
         return poses
 
     @cached_property

@@ -56,22 +56,22 @@ def compared(
     language: Language = KRL,
 ) -> Comparison:
     """The grown grammar compared with the target, with sentences and negatives of a fixed seed."""
-    reader, judge = Recognizer(grown), Recognizer(target)
+    reader, reference = Recognizer(grown), Recognizer(target)
     sentences, speller, chance = Sentences(grown), Speller(grown), Random(_SEED)
     drawn = [speller.text(sentences.random(chance)) for _ in range(_SENTENCES)]
     negatives = NegativeSet(language.negatives(_NEGATIVES, _SEED))
-    wanted = [file for file in held if judge.accepts(file.text)]
-    near, unknown = within_reach(judge, shown, wanted)
-    missing = {judge.lexer.kind_of[w] for w in unknown if w not in reader.lexer.kind_of}
-    known = [file for file in wanted if missing.isdisjoint(judge.kinds(file.text))]
+    wanted = [file for file in held if reference.accepts(file.text)]
+    near, unknown = within_reach(reference, shown, wanted)
+    missing = {reference.lexer.kind_of[w] for w in unknown if w not in reader.lexer.kind_of}
+    known = [file for file in wanted if missing.isdisjoint(reference.kinds(file.text))]
     return {
-        "shown": _parsed(reader, [file for file in shown if judge.accepts(file.text)]),
+        "shown": _parsed(reader, [file for file in shown if reference.accepts(file.text)]),
         "held": _parsed(reader, wanted),
         "held_within_reach": _parsed(reader, near),
         "held_known_words": _parsed(reader, known),
         "words_not_shown": unknown,
         "sentences_rejected": {
-            "count": sum(not judge.accepts(text) for text in drawn),
+            "count": sum(not reference.accepts(text) for text in drawn),
             "of": len(drawn),
         },
         "negatives_accepted": {"count": len(negatives.accepted(reader)), "of": len(negatives)},
@@ -79,16 +79,16 @@ def compared(
 
 
 def within_reach(
-    judge: Recognizer, shown: Sequence[CorpusFile], held: Sequence[CorpusFile]
+    reference: Recognizer, shown: Sequence[CorpusFile], held: Sequence[CorpusFile]
 ) -> tuple[list[CorpusFile], list[str]]:
     """The files held out whose neighbours are such in a file shown too, and words not shown.
 
-    The words are those that the judge reserves, of files held out, in no file shown.
+    The words are those that the reference reserves, of files held out, in no file shown.
     """
-    known = frozenset[tuple[int, int]]().union(*(_neighbours(judge, file) for file in shown))
-    pairs = {file.path: _neighbours(judge, file) for file in held}
+    known = frozenset[tuple[int, int]]().union(*(_neighbours(reference, file) for file in shown))
+    pairs = {file.path: _neighbours(reference, file) for file in held}
     new = {k for p in pairs.values() for pair in p for k in pair} - {k for p in known for k in p}
-    lexer = judge.lexer
+    lexer = reference.lexer
     return (
         [file for file in held if pairs[file.path] <= known],
         sorted(lexer.names[kind] for kind in new if lexer.is_keyword(kind)),
@@ -99,6 +99,6 @@ def _parsed(reader: Recognizer, files: Sequence[CorpusFile]) -> Share:
     return {"count": sum(reader.accepts(file.text) for file in files), "of": len(files)}
 
 
-def _neighbours(judge: Recognizer, file: CorpusFile) -> frozenset[tuple[int, int]]:
+def _neighbours(reference: Recognizer, file: CorpusFile) -> frozenset[tuple[int, int]]:
     """Pairs of kinds of token that stand side by side in a file."""
-    return frozenset(pairwise(judge.kinds(file.text)))
+    return frozenset(pairwise(reference.kinds(file.text)))

@@ -22,8 +22,8 @@ from recovery.tuning import GAIN_PER_NEGATIVE
 
 
 @dataclass(frozen=True)  # without slots, as it keeps what its recogniser reads
-class Judge:
-    """Judges edits of the grammar of a recogniser by the negatives that are ``rejected``.
+class EditReview:
+    """Reviews edits of the grammar of a recogniser by the negatives that are ``rejected``.
 
     ``reserved_in`` gives the words of a line that cannot be names (`recovery.language.Language`),
     ``texts`` are programs that the recogniser reads.

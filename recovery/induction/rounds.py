@@ -35,7 +35,7 @@ from recovery.induction.inference import Inference
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
-from recovery.induction.objections import Judge
+from recovery.induction.objections import EditReview
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import Evidence, Inferred, Reading, Refused, Round, Taken, joined
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
@@ -95,7 +95,7 @@ class Induction:
         self._names: str | None = None
         self._prefixes: frozenset[str] = frozenset()
         self._tried: set[Edit] = set()
-        self._judge: Judge | None = None
+        self._review: EditReview | None = None
         self._held_read = Reading(0, 0, 0)
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
@@ -116,18 +116,18 @@ class Induction:
     def _round(self, step: _Step, least: tuple[int, int]) -> Round:
         finder, failures = self.shown.failures(self.grammar)
         recognizer = finder.recognizer
-        if self._judge is None or self._judge.recognizer is not recognizer:
+        if self._review is None or self._review.recognizer is not recognizer:
             self._held_read = reading([finder.find(file.text) for file in self.held])
             rejected = self.negatives.rejected_by(recognizer)
             found = zip(self.shown.files, failures, strict=True)
             good = (file.text for file, failed in found if not failed)
             texts = sorted(good, key=len)[:FOLD_FILES]
-            self._judge = Judge(recognizer, rejected, self._reserved_in, texts)
-        judge = self._judge
+            self._review = EditReview(recognizer, rejected, self._reserved_in, texts)
+        review = self._review
         if step == "fold":
-            taken, refused = self._folded(judge, failures, is_last=least == (1, 1))
+            taken, refused = self._folded(review, failures, is_last=least == (1, 1))
         else:
-            taken, refused = self._inferred(judge, finder, failures, least, inner=step == "inner")
+            taken, refused = self._inferred(review, finder, failures, least, inner=step == "inner")
         self.grammar = apply(self.grammar, joined(taken))
         return Round(reading(failures), self._held_read, tuple(taken), tuple(refused))
 
@@ -135,7 +135,7 @@ class Induction:
 
     def _inferred(
         self,
-        judge: Judge,
+        review: EditReview,
         finder: FailureFinder,
         failures: Failures,
         least: tuple[int, int],
@@ -143,7 +143,7 @@ class Induction:
         inner: bool,
     ) -> tuple[list[Taken], list[Refused]]:
         """What is taken and what refused, of what is inferred from the lines that fail."""
-        recognizer = judge.recognizer
+        recognizer = review.recognizer
         keywords = self._words(recognizer, failures, least)
         if inner:
             whole = self._with_literals(failures, recognizer)
@@ -182,7 +182,7 @@ class Induction:
                 breadth += sum(map(inference.profile.width, rules))
                 scored.append((gain * SYMBOL_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
-        taken, refused = self._chosen(scored, table, judge, least)
+        taken, refused = self._chosen(scored, table, review, least)
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         if taken and not self.shown.gains(self.grammar, taken):  # two forms may undo each other
             lost += [Refused(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken]
@@ -229,11 +229,15 @@ class Induction:
         return max(0.0, read * fewer * len(places) / len(some))
 
     def _chosen(
-        self, scored: Sequence[_Scored], table: FailingLines, judge: Judge, least: tuple[int, int]
+        self,
+        scored: Sequence[_Scored],
+        table: FailingLines,
+        review: EditReview,
+        least: tuple[int, int],
     ) -> tuple[list[Taken], list[Refused]]:
         """The edits that fit together and each deserve it."""
         grammar = self.grammar
-        operands = OperandRules(judge.recognizer).recursive
+        operands = OperandRules(review.recognizer).recursive
         taken: list[Taken] = []
         refused: list[Refused] = []
         done: set[int] = set()
@@ -252,7 +256,7 @@ class Induction:
             ):
                 reason = "only one origin shows it"
             elif evidence.files < LEAST_FILES_ALONE and not table.is_repeated(
-                lines, edits, judge.recognizer
+                lines, edits, review.recognizer
             ):
                 reason = "too few lines of one file show it"
             elif fixed & changed:
@@ -260,7 +264,7 @@ class Induction:
             else:
                 worth = 0.0 if found.is_strict else gain
                 most = evidence.lines if evidence.files < LEAST_FILES_ALONE else math.inf
-                reason = judge.objection(grammar, edits, found.edits, worth, most)
+                reason = review.objection(grammar, edits, found.edits, worth, most)
             if reason:
                 refused.append(Refused(found.title, found.edits, gain, reason))
                 continue
@@ -274,13 +278,13 @@ class Induction:
     # ------------------------------------------------------------------------------------- folding
 
     def _folded(
-        self, judge: Judge, failures: Failures, *, is_last: bool
+        self, review: EditReview, failures: Failures, *, is_last: bool
     ) -> tuple[list[Taken], list[Refused]]:
         """Folds after which the grammar is shorter, accepts no more negatives and reads no less.
 
         Where none is left at the end lists are bounded, for which all has to be read that will be.
         """
-        recognizer, files = judge.recognizer, self.shown.files
+        recognizer, files = review.recognizer, self.shown.files
         reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
         lines = CorpusLines(files, recognizer.lexer).lines
         operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
@@ -290,20 +294,20 @@ class Induction:
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck:
                 continue
-            grammar = judge.recognizer.grammar
-            reason = judge.objection(grammar, fold.edits, fold.edits)
+            grammar = review.recognizer.grammar
+            reason = review.objection(grammar, fold.edits, fold.edits)
             if not reason:
                 shorter = apply(grammar, fold.edits)
                 narrower = Recognizer(shorter)
                 if size(shorter) >= size(grammar) + fold.breadth:
                     reason = "the grammar would not be shorter"
-                elif not all(map(narrower.accepts, judge.texts)):
+                elif not all(map(narrower.accepts, review.texts)):
                     reason = "loses lines that can be read"
             if reason:
                 refused[fold.title] = Refused(fold.title, fold.edits, 0.0, reason)
                 continue
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
-            judge = replace(judge, recognizer=narrower)
+            review = replace(review, recognizer=narrower)
             found = Folding(narrower, operands, self._prefixes).candidates()
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         if is_last and not taken:

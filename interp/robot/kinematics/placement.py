@@ -60,7 +60,7 @@ class Placement:
         """The foot of the robot where external axes ``(n, axes)`` stand: (n, 4, 4), or (4, 4)."""
         return _poses(self.robroot, self.carrier, externals)
 
-    def befores(self, externals: Array) -> Array:
+    def chains_before(self, externals: Array) -> Array:
         """`before` where external axes ``(n, axes)`` stand: (n, 4, 4), or one (4, 4) for all."""
         from numpy.linalg import inv
 

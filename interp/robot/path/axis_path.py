@@ -328,7 +328,7 @@ class PosePathCurve:
         """What comes before the points of the path in the chain to the flange."""
         if not self.placement.is_carried:
             return self._before
-        return self.placement.befores(self.others.at(u))
+        return self.placement.chains_before(self.others.at(u))
 
     def _flanges(self, u: Array) -> Array:
         poses = poses_of(self.tool_path, u)
@@ -375,7 +375,7 @@ def tool_positions(curve: Curve, u: Array) -> Array:
     axes = curve.axes(u)
     flanges = curve.arm.forward(axes[:, :ROBOT_AXES])
     placement = curve.placement
-    base = placement.befores(axes[:, ROBOT_AXES:])
+    base = placement.chains_before(axes[:, ROBOT_AXES:])
     tool = flanges @ matrix_of(placement.tool)
     if placement.mode is IpoMode.TCP:
         base, tool = tool, base

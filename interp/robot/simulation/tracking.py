@@ -213,7 +213,7 @@ class Tracking:
         flanges = self._kinematics.forward(axes[:, :ROBOT_AXES])
         points, tips = np.empty((len(times), 6)), np.empty((len(times), 3))
         for rows, placement in self._stretches(times):
-            before = np.linalg.inv(placement.befores(axes[rows, ROBOT_AXES:]))
+            before = np.linalg.inv(placement.chains_before(axes[rows, ROBOT_AXES:]))
             standing = flanges[rows] @ matrix_of(placement.tool)
             poses = before @ standing
             points[rows, :3] = poses[:, :3, 3]

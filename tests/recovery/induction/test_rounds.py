@@ -17,7 +17,7 @@ from recovery.induction import list_lengths, rounds
 from recovery.induction.corpus_lines import held_out
 from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
-from recovery.induction.objections import Judge
+from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
@@ -263,9 +263,11 @@ def test_a_negative_is_an_objection(toy: Grammar, toy_files: tuple[CorpusFile, .
 def test_damaged_lines_are_an_objection(toy: Grammar, most: int, is_taken: bool) -> None:
     """An edit that reads more lines that have lost or doubled a token than it may is refused."""
     edits = (MakeOptional("assignment", (1, 2)),)  # the sign of an assignment
-    judge = Judge(Recognizer(toy), NegativeSet(()), lambda _line: frozenset(), ["A := 1\nB := 2\n"])
-    assert not judge.objection(toy, edits, edits)
-    assert is_taken == (not judge.objection(toy, edits, edits, most_damaged=most))
+    review = EditReview(
+        Recognizer(toy), NegativeSet(()), lambda _line: frozenset(), ["A := 1\nB := 2\n"]
+    )
+    assert not review.objection(toy, edits, edits)
+    assert is_taken == (not review.objection(toy, edits, edits, most_damaged=most))
 
 
 def test_a_step_is_struck_out(growth: Growth) -> None:
