@@ -8,15 +8,21 @@ from itertools import islice
 # Cost is bounded: so many names are looked at, and none that is longer.
 _MOST_NAMES = 20_000
 _LONGEST_NAME = 64
+_MOST_SHOWN = 3
 
 
-def nearest(name: str, names: Iterable[str], most: int = 3) -> list[str]:
+def nearest(name: str, names: Iterable[str], most: int = _MOST_SHOWN) -> list[str]:
     """Up to ``most`` of ``names`` that differ from ``name`` by few slips, the likeliest first.
 
     A slip is a letter too many, too few or wrong, or two that changed places; letter case is no
     difference. Short names may have one slip, longer ones up to three. Each costs at most the
     length of ``name`` times the number of slips, and the same names give the same answer.
     """
+    return [candidate for _, _, candidate in _ranked(name, names)[:most]]
+
+
+def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
+    """The names that are near, the likeliest first: slips, letters that begin alike, the name."""
     wanted = name.upper()
     if not wanted or len(wanted) > _LONGEST_NAME:
         return []
@@ -29,15 +35,21 @@ def nearest(name: str, names: Iterable[str], most: int = 3) -> list[str]:
         distance = _distance(wanted, key, slips)
         if 0 < distance <= slips and distance < len(wanted):
             found.append((distance, -_common_start(wanted, key), candidate))
-    return [candidate for _, _, candidate in sorted(found)[:most]]
+    return sorted(found)
 
 
-def did_you_mean(name: str, names: Iterable[str]) -> str | None:
-    """``did you mean X or Y?``, where some of ``names`` are near."""
-    found = nearest(name, names)
-    if not found:
+def did_you_mean(name: str, names: Iterable[str], mark: str = "") -> str | None:
+    """``did you mean X?``; where several of ``names`` are equally near, up to three of them."""
+    ranked = _ranked(name, names)
+    return question((near for slips, _, near in ranked if slips == ranked[0][0]), mark)
+
+
+def question(names: Iterable[str], mark: str = "") -> str | None:
+    """``did you mean X or Y?`` for the first names, each once with a ``mark`` in front, if any."""
+    shown = [f"{mark}{one}" for one in {one.upper(): one for one in names}.values()][:_MOST_SHOWN]
+    if not shown:
         return None
-    *first, last = found
+    *first, last = shown
     return f"did you mean {', '.join(first)} or {last}?" if first else f"did you mean {last}?"
 
 

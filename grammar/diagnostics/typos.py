@@ -11,7 +11,7 @@ before a capital (``gnPart``) are a prefix only where other names have it too.
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from enum import Enum
 
 # Shorter names are near too many others.
@@ -19,6 +19,7 @@ _SHORTEST = 4
 _LONGEST = 64
 # A word of a name: letters, or what is no letter.
 _WORD = re.compile(r"[A-Z]+|[^A-Z]+", re.IGNORECASE)
+_NUMBER = re.compile(r"[\d_]+")
 # Both are there in every library.
 _PAIR = {"GET", "SET"}
 # A letter behind a shorter word may number it: POSX, POSY.
@@ -66,16 +67,14 @@ class Typos:
                 for shorter in _shortened(key):
                     self._keys.setdefault(shorter, []).append(key)
 
-    def meant(self, name: str, prefixes: Container[str] | None = None) -> tuple[str, ...]:
+    def meant(self, name: str, *, has_slipped: bool = False) -> tuple[str, ...]:
         """The names that ``name`` may be a slip of, in the order of the alphabet.
 
-        ``prefixes`` are the `small_prefix` of all other names that are written, if these are known.
+        ``has_slipped``: its `small_prefix` is that of no other name.
         """
         wrong = name.upper()
         if not self._shortest <= len(wrong) + 1 <= _LONGEST:
             return ()
-        small = small_prefix(name)
-        has_slipped = bool(small) and prefixes is not None and small not in prefixes
         near = {
             right
             for shorter in _shortened(wrong)
@@ -98,10 +97,7 @@ def small_prefix(name: str) -> str:
 
 
 def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> bool:
-    """Whether two names that share a key are one slip apart, and in no series.
-
-    ``has_slipped``: the wrong one begins with small letters that are no prefix of other names.
-    """
+    """Whether two names that share a key are one slip apart, and in no series."""
     has_slipped = has_slipped and bool(small_prefix(name))
     wrong, right = misspelt.upper(), name.upper()
     pairs = enumerate(zip(wrong, right, strict=False))
@@ -117,6 +113,7 @@ def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> boo
             letter.isalpha()
             and letter == shorter[start - 1 : start]
             and (longer is wrong or start > 1)
+            and {letter} != set(_word(longer, start))
         ):
             return True  # a letter doubled, or one of two lost
         if longer is wrong and letter == "S" and start == len(shorter):
@@ -136,7 +133,7 @@ def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> boo
             return False
         return not (_numbers(misspelt, start, series) or _numbers(name, start, series))
     swapped = right[start + 1 : start + 2] + right[start : start + 1] + right[start + 2 :]
-    return wrong[start:] == swapped and not swapped[:2].isdigit()
+    return wrong[start:] == swapped and not _NUMBER.fullmatch(swapped[:2])
 
 
 def _is_capitalised(name: str) -> bool:
@@ -167,15 +164,16 @@ def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) ->
     """
     if series is Series.DIGITS or name[index] == "_":
         return name[index].isdigit()
-    word = next(word for word in _WORD.finditer(name) if word.start() <= index < word.end())
-    if not word.group().isalpha():
+    word = _word(name, index)
+    if not word.isalpha():
         return True
-    if (
-        len(word.group()) >= _SHORTEST
-        and name[index - 1 : index + 1].islower()
-        and not name.islower()
-    ):
+    if len(word) >= _SHORTEST and name[index - 1 : index + 1].islower() and not name.islower():
         return False
-    if index != word.end() - 1:
+    if name[index + 1 : index + 2].isalpha():
         return False
-    return len(word.group()) < shortest or (name[index].isupper() and name[index - 1].islower())
+    return len(word) < shortest or (name[index].isupper() and name[index - 1].islower())
+
+
+def _word(name: str, index: int) -> str:
+    """The letters, or other characters, among which an index stands."""
+    return next(word[0] for word in _WORD.finditer(name) if index < word.end())

@@ -49,6 +49,9 @@ from grammar.syntax.references import Space
 from support.files.discovery import DRIVE_FOLDERS, is_drive
 from support.lazy_dataclass import dataclass
 
+#: Names with so many letters alike at the beginning belong together.
+SHARED = 5
+
 
 @dataclass(frozen=True, slots=True)
 class File:
@@ -155,6 +158,12 @@ class Project:
             made[space].add((one.symbol.name for one in known if not one.module), Series.DIGITS)
             made[space].add((one.symbol.name for one in known if one.module), Series.LETTERS)
         return made
+
+    @cached_property
+    def without_data(self) -> Set[str]:
+        """How the names of programs without a data list begin, with up to `SHARED` letters."""
+        lacking = (one for one in self.modules if one.suffix != ".dat" and not self.data_of(one))
+        return {one.name[:length] for one in lacking for length in range(1, SHARED + 1)}
 
     def imported(self, found: Found) -> Answer:
         """What an IMPORT stands for: data of another list, which has to be PUBLIC [ADV-05]."""

@@ -26,6 +26,7 @@ from krl.language_server.workspace import Looked, OpenProject, certain
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
 _WORD = re.compile(r"[$\w]*$")
+_TEXT = re.compile(r'"[^"]*"')
 _MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)\.\w*$")
 
 
@@ -125,10 +126,12 @@ def completions(looked: Looked, offset: int) -> list[Candidate]:
     """The words that can be written at an offset, each once: keywords, then names, nearby first.
 
     Behind ``#`` the constants of all enumerations, behind a dot the members of the structure,
-    behind GOTO the labels of the routine.
+    behind GOTO the labels of the routine; none in a comment or a text.
     """
     line, column = looked.source.place(offset)
     before = looked.source.line(line)[: column - 1]
+    if set(_TEXT.sub("", before)) & {";", '"'}:
+        return []
     if re.search(r"#\s*\w*$", before):
         found = _constants(looked)
     elif (member := _MEMBER.search(before)) is not None:

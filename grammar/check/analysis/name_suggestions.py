@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from grammar.diagnostics.diagnostic import Fix
-from grammar.diagnostics.did_you_mean import nearest
+from grammar.diagnostics.did_you_mean import did_you_mean, question
 
-_MOST_NAMES = 3
 # A word of fewer letters is the beginning of too much.
 _SHORTEST = 3
 # A suggestion costs a look at every name that is known, so only the first faults of a file get one.
@@ -26,12 +25,8 @@ class NameSuggestions:
             return None
         self._left -= 1
         known = list(names)
-        near = nearest(name, known, _MOST_NAMES)
-        if not near and len(name) >= _SHORTEST:
+        asked = did_you_mean(name, known, mark)
+        if asked is None and len(name) >= _SHORTEST:
             key = name.upper()
-            near = [one for one in known if one.upper().startswith(key)][:_MOST_NAMES]
-        if not near:
-            return None
-        *first, last = [f"{mark}{one}" for one in near]
-        others = f"{', '.join(first)} or " if first else ""
-        return Fix(f"did you mean {others}{last}?")
+            asked = question((one for one in known if one.upper().startswith(key)), mark)
+        return Fix(asked) if asked else None

@@ -106,7 +106,9 @@ def _gotos(
         if targets is None and context.is_cut(routine):
             continue
         if targets is None:
-            guess = did_you_mean(goto.label.text, own) if guesses > 0 else None
+            all_ = (one.statement for one in routine.statements)
+            labels = (one.name.text for one in all_ if isinstance(one, ast.Label))
+            guess = did_you_mean(goto.label.text, labels) if guesses > 0 else None
             guesses -= 1
             home = homes.get(goto.label.key)
             yield _finding(

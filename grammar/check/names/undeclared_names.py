@@ -22,7 +22,7 @@ from grammar.check.names.unresolved_names import (
 )
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.diagnostics.typos import Series, Typos, small_prefix
-from grammar.semantics.link import Project
+from grammar.semantics.link import SHARED, Project
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, Module, NotFound, Reason
@@ -31,9 +31,6 @@ from grammar.semantics.types import SCALARS, Structure
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
-
-# So many letters at the beginning of names that belong together.
-_SHARED = 5
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -355,9 +352,11 @@ def _near(
         return meant
     if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
         return meant
-    everywhere = context.project.typos[space]
-    prefixes |= everywhere.prefixes
-    return own(space).meant(name, prefixes) or everywhere.meant(name, prefixes)
+    small, everywhere = small_prefix(name), context.project.typos[space]
+    has_slipped = small not in prefixes and small not in everywhere.prefixes
+    return own(space).meant(name, has_slipped=has_slipped) or everywhere.meant(
+        name, has_slipped=has_slipped
+    )
 
 
 def _prefixes(context: Context) -> frozenset[str]:
@@ -384,13 +383,9 @@ def _is_all_read(context: Context, use: Use) -> bool:
     and these are known by what they declare, not by what some other file calls; or in the list of a
     program that begins as the variable does, and that list may be missing.
     """
-    project, begin = context.project, use.name.key[:_SHARED]
+    project, begin = context.project, use.name.key[:SHARED]
     if not isinstance(use.answer, MaybeElsewhere) or _may_be_unread(use):
         return False
     if use.space not in (Space.VALUE, Space.CHANNEL) or not project.has_config or begin[0] == "$":
         return False
-    return not any(
-        one.name.startswith(begin) and one.suffix != ".dat" and project.data_of(one) is None
-        for one in project.modules
-        if one is not context.module
-    )
+    return begin not in project.without_data

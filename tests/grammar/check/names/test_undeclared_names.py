@@ -51,6 +51,59 @@ def test_a_constant_without_its_mark_is_told() -> None:
     ]
 
 
+@pytest.mark.parametrize(("other", "mark"), [("jbPart", "701-"), ("HOME", "101?")])
+def test_small_letters_that_another_name_begins_with_are_a_prefix(
+    agrees: Agrees, other: str, mark: str
+) -> None:
+    """Whether the other name is declared, or that prefix is written more than once."""
+    data = "DEFDAT B PUBLIC\nDECL GLOBAL INT gbToolReady=0, {}=0\nENDDAT\n"
+    lines = ["DEF A() ;> KRL702-", f"jbToolReady = 1 ;> KRL{mark}", "END"]
+    agrees({"b.dat": data.format(other), "a.src": "\n".join(lines)}, is_complete=None)
+    lines.insert(1, f"INT {other}")
+    agrees({"b.dat": data.format("NEXT"), "a.src": "\n".join(lines)}, is_complete=None)
+
+
+@pytest.mark.parametrize(
+    ("declared", "line"),
+    [
+        ("TAKE_2, TAKE_21", "TAKE_22 = 1"),
+        ("GRIPE, GRIPPED", "GRIPED = 1\nGRIPED = 2\nGRIPED = GRIPPED"),
+        ("TAKE_2", "TAKE_22 = 1\nTAKE_22 = = 2"),
+    ],
+)
+def test_a_name_is_swapped_with_one_that_is_near_alone(declared: str, line: str) -> None:
+    """Of several that are near none is meant for certain, nor where a line may declare the name."""
+    data = f"DEFDAT CELL\nDECL INT {declared}\nENDDAT\n"
+    found = told({"cell.dat": data, "cell.src": f"DEF CELL()\n{line}\nEND\n"})
+    assert "KRL101" not in [code for *_, code in found]
+
+
+@pytest.mark.parametrize(("modules", "code"), [("AB", "KRL101"), ("ABC", "KRL701")])
+def test_data_of_many_modules_are_missing(
+    finds: Callable[..., list[Diagnostic]], modules: str, code: str
+) -> None:
+    """What three modules use was declared in a file that has gone."""
+    files = {"R1/System/$config.dat": CONFIG}
+    for name in modules:
+        files[f"R1/{name}.dat"] = f"DEFDAT {name}\nENDDAT\n"
+        files[f"R1/{name}.src"] = f"DEF {name}()\nLOST = 1\nEND\n"
+    found = [one.code for one in finds(files, is_complete=None) if "LOST" in one.message]
+    assert {code} == set(found)
+
+
+def test_what_several_modules_declare_is_not_missing(
+    finds: Callable[..., list[Diagnostic]],
+) -> None:
+    """Which of two is meant is unknown, and that one of them is there is not."""
+    files = {
+        f"{name}/{name}.dat": f"DEFDAT {name} PUBLIC\nDECL GLOBAL INT PARTS=0\nENDDAT\n"
+        for name in "BC"
+    }
+    files["a.src"] = "DEF A()\nPARTS = 1\nEND\n"
+    found = finds(files, is_complete=None)
+    assert [] == [one for one in found if one.path == "a.src" and one.code == "KRL701"]
+
+
 def test_a_slip_of_a_routine_is_a_warning(agrees: Agrees) -> None:
     """A routine that is not there is probably the one that is called nearly so."""
     cell = """DEF CELL()
@@ -152,7 +205,8 @@ def test_slips_in_components_of_unknown_structures(
 ) -> None:
     """A component that is written once, and nearly so again and again, is a slip."""
     lines = [f"M[{n}].PLACEPOS = {n}" for n in range(1, 4)]
-    text = "\n".join(["DEF U()", *lines, "M[4].PLCAEPOS = 4", "M[5].OTHER = 5", "END"])
+    twice = ["M[6].PLACEPSO = 6"] * 2
+    text = "\n".join(["DEF U()", *lines, "M[4].PLCAEPOS = 4", "M[5].OTHER = 5", *twice, "END"])
     found = finds({"U.src": text}, is_complete=None)
     assert [(5, "KSS2125", "warning")] == [
         (one.region.line, one.code, one.severity) for one in found if one.severity != "note"
@@ -196,12 +250,17 @@ END"""
 
 
 def test_two_names_that_are_used_once_each_and_one_slip_apart(agrees: Agrees) -> None:
-    """Where nothing declares either the second is told, but not of names that people pair."""
+    """Where nothing declares either the second is told, but not of names that people pair.
+
+    Nor is it of short names.
+    """
     cell = """DEF CELL() ;> KRL702-
   CONVEYOR = 1 ;> KRL701-
   CONVEOYR = 1 ;> KRL101?
   LEFT_A = 1 ;> KRL701-
   LEFT_B = 1 ;> KRL701-
+  STAPL = 1 ;> KRL701-
+  STPAL = 1 ;> KRL701-
 END"""
     agrees({"cell.src": cell}, is_complete=None)
 
@@ -292,6 +351,13 @@ def test_what_cannot_be_read_may_use_a_declaration(other: str) -> None:
     found = told({"$config.dat": ENUM, "a.src": PLACES, "b.src": f"DEF B()\n{other}"})
     assert [2, 3] == [line for path, line, _ in found if path == "a.src"]
     assert "$config.dat" not in [path for path, *_ in found]
+
+
+@pytest.mark.parametrize(("line", "is_slip"), [("HALT", True), ("CUNTER = = 1", False)])
+def test_a_line_that_cannot_be_read_may_use_a_variable(line: str, is_slip: bool) -> None:
+    """Then it is not declared by a slip for certain."""
+    found = told({"a.src": f"DEF A()\nINT CUNTER\nCOUNTER = 1\nCOUNTER = 2\n{line}\nEND\n"})
+    assert is_slip == (("a.src", 2, "KRL101") in found)
 
 
 @pytest.mark.parametrize(("more", "count"), [("", 1), (", PLAEC", 0)])
