@@ -324,8 +324,8 @@ MOST_SAMPLES = 64
 SHORT_LIST_EXAMPLES = 30
 PAIR_EXAMPLES = 20
 ITEMS_BEHIND_THE_FIRST = 2
-#: Places without a part, each kind of line of a file once, that show that it is never there. Not
-#: measured.
+#: Places without a part, each kind of line of a file once, that show that it is never there. With
+#: 50 and 200 the same goes from 13 grown grammars, with 20 one part more; no held-out file is lost.
 NEVER_THERE_EXAMPLES = 50
 #: Elements in a row that may be missing together. Not measured.
 MISSING_RUN = 3

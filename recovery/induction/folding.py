@@ -289,11 +289,20 @@ class Folding:
                 if all(signs) and len(signs) == len(element.alternatives):
                     alike.update(dict.fromkeys(signs, frozenset(signs)))
         for name in sorted(self.rules.within_lines):
+            alternatives = [a for a in self.grammar.by_name[name].alternatives if a.elements]
             for number, alternative in enumerate(self.grammar.by_name[name].alternatives, 1):
                 first, *others = alternative.elements or (None,)
                 often = first.operator if isinstance(first, Repeat) else ""
                 sign = _sign(first.item if isinstance(first, Repeat) else first)
-                more = alike.get(sign, frozenset()) - {sign}
+                rest = self._source(name, others)
+                beside = {
+                    known
+                    for a in alternatives
+                    if self._source(name, a.elements[1:]) == rest
+                    for e in walk(a.elements[0])
+                    if (known := _sign(e))
+                }
+                more = alike.get(sign, frozenset()) - beside
                 if others and more:
                     text = f"({' | '.join(sorted({sign, *more}))}){often}"
                     title = f"{', '.join(sorted(more))} ahead of operands in {name}"

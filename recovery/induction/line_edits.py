@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence, Set
 from itertools import pairwise
 
 from grammar.notation.addresses import Address
-from grammar.notation.edits import AddAlternative, Insert, Replace
+from grammar.notation.edits import AddAlternative, Insert, MakeOptional, Replace
 from grammar.notation.model import Element, Repeat
 from recovery.induction.forms import samples_of
 from recovery.induction.line_hosts import LineHosts
@@ -42,9 +42,26 @@ class LineEdits:
         self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
 
     def edits(self) -> Iterator[Inferred]:
-        """Kinds of line where another one is expected, then forms of lines."""
+        """Blank lines, kinds of line where another one is expected, then forms of lines."""
+        yield from self._blank_lines()
         yield from self._line_rules()
         yield from self._statements()
+
+    def _blank_lines(self) -> Iterator[Inferred]:
+        """Blank lines among those of ``(x NEWLINE)*``; ahead of them where an end may be several.
+
+        There a line of nothing would be read in several ways.
+        """
+        blank = (self.at.lexer.line_kind,)
+        members = tuple(n for n, line in enumerate(self.at.lines) if line.form.kinds == blank)
+        several = self.at.rules.matcher.rules_for(blank * 2)
+        for rule, at, line, end in self.hosts.looped if members else ():
+            edit: Insert | MakeOptional = Insert(rule, at, f"({end})?")
+            if not end.endswith("+") and end not in several:
+                if isinstance(line, Repeat):
+                    continue  # blank lines are read there
+                edit = MakeOptional(rule, (*at, 1, 1))
+            yield Inferred(f"blank lines in {rule}", (edit,), members)
 
     def _line_rules(self) -> Iterator[Inferred]:
         """A kind of line where another one is expected."""

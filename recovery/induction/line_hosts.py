@@ -105,7 +105,7 @@ class LineHosts:
 
     @cached_property
     def _whole_lines(self) -> frozenset[str]:
-        """Rules that gather alternatives and are somewhere all of a line but its end."""
+        """Rules that are all of a line but its end, in a loop or as they gather alternatives."""
         ends = {*self.at.profile.line_ends, self.at.lexer.line_end}
         found: set[str] = set()
         for rule in self.at.grammar.rules:
@@ -120,7 +120,27 @@ class LineHosts:
                     for before, name, behind in zip(["", *called], called, called[1:], strict=False)
                     if behind in ends and (not before or before in ends)
                 )
-        return frozenset(filter(self.at.profile.is_hub, found & self.at.rules.reaches.keys()))
+        looped = {
+            e.name for *_, line, _ in self.looped for e in walk(line) if isinstance(e, Reference)
+        }
+        found &= self.at.rules.reaches.keys()
+        return frozenset(n for n in found if n in looped or self.at.profile.is_hub(n))
+
+    @cached_property
+    def looped(self) -> list[tuple[str, Address, Element, str]]:
+        """Loops ``(x NEWLINE)*``: the rule that has one, its place, ``x``, and the line end."""
+        end = self.at.profile.line_end
+        return [
+            (rule.name, (*address, place), element.item.alternatives[0].elements[0], text)
+            for rule in self.at.grammar.rules
+            for address, sequence in (() if rule.is_lexer else sequences(rule))
+            for place, element in enumerate(sequence.elements, 1)
+            if isinstance(element, Repeat) and isinstance(element.item, Group)
+            if element.operator != "?" and len(element.item.alternatives) == 1
+            if len(element.item.alternatives[0].elements) == 2
+            if (text := rule.source_of(element.item.alternatives[0].elements[1]))
+            in (end, f"{end}+")
+        ]
 
     @cached_property
     def written_out(self) -> frozenset[str]:

@@ -132,6 +132,15 @@ def test_what_holds_in_one_place_holds_in_another(
     assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
 
 
+def test_signs_that_an_operand_has(grammar: Grammar) -> None:
+    """A sign ahead of an operand that an alternative of its own reads is not added again."""
+    text = grammar.text.replace(
+        "primary : '-'? NUMBER", "primary : '-' primary | '+' primary | NUMBER"
+    )
+    folds = Folding(Recognizer(read(text)), ()).candidates()
+    assert [] == [fold.title for fold in folds if "ahead of operands" in fold.title]
+
+
 _LIKE = """grammar Like;
 
 program : (line NEWLINE)* EOF ;

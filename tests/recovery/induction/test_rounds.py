@@ -230,6 +230,17 @@ def test_a_start_in_another_style_grows() -> None:
     assert [True, True, True, False, False] == [recognizer.accepts(text) for text in texts]
 
 
+@pytest.mark.parametrize("end", ["NEWLINE", "NEWLINE+", "eol"])
+def test_a_start_that_is_a_loop_of_lines_grows(
+    toy: Grammar, toy_files: tuple[CorpusFile, ...], end: str
+) -> None:
+    """However few kinds of line it has, and where it reads no blank lines."""
+    start = _with(toy, "NEWLINE* statement*", f"(simpleStatement {end})*")
+    files = [CorpusFile(f.path, f"\n{f.text}\n", f.origins) for f in toy_files]
+    recognizer = Recognizer(_grown(start, tuple(files)).grammar)
+    assert [] == [file.path for file in files if not recognizer.accepts(file.text)]
+
+
 def test_the_ledger_replays(growth: Growth) -> None:
     """The constructs, replayed on the start, give the grammar byte for byte."""
     assert growth.grammar.text == in_force(growth.start, growth.constructs).text
