@@ -47,9 +47,10 @@ def load_program(
 
 
 class Image(NamedTuple):
-    """A compiled program as bytes; ``refusals`` are what ends it when it is reached."""
+    """A program compiled from so many files; ``refusals`` are what ends it when it is reached."""
 
     data: bytes
+    files: int
     codes: int
     instructions: int
     refusals: tuple[str, ...]
@@ -71,9 +72,11 @@ def compile_project(file: Path, *, strict: bool = False) -> tuple[Image, list[st
             raise LinkError(str(error)) from error
         codes = made.program.codes
         refusals = tuple(f"{one.path}:{one.line}: {one.reason}" for one in made.refusals)
-        return Image(data, len(codes), sum(len(code.instructions) for code in codes), refusals)
+        return Image(
+            data, len(sources), len(codes), sum(len(code.instructions) for code in codes), refusals
+        )
 
-    return _made_once(file, f"image {strict}", compiled)
+    return _made_once(file, f"image of files {strict}", compiled)
 
 
 def _made_once(

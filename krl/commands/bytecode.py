@@ -57,6 +57,8 @@ def compile_file(
     if len(told) > _MOST_LISTED:
         typer.echo(f"and {len(told) - _MOST_LISTED} more", err=True)
     count = f"{image.codes:,} code objects, {image.instructions:,} instructions"
+    if image.files > 1:
+        count += f", from {image.files:,} files of the project"
     typer.echo(one_line(f"{target}: {count}"))
     return FINDINGS if image.refusals else FINE
 

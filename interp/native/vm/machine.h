@@ -182,10 +182,10 @@ void krl_close(struct krl_machine *machine);
 
 /* ---------------------------------------------------------------------------- run.c */
 
-/* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
 /* Whether a breakpoint at a step is passed, as its relation does not hold: both sides are of one type. */
 int krl_passes_break(const struct krl_machine *machine, const krl_cell *fp, int32_t step);
 
+/* Runs from a step on; with `is_begun` the statement that begins there has begun already. */
 struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_begun);
 
 /* Puts handlers into steps; and one into a step before which the machine stops for KRL_STOP_COMPILED or

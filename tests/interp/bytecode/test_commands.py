@@ -95,7 +95,7 @@ def test_compiled_programs_round_trip(
     assert 1 == main(["compile", str(project)])
     told = capsys.readouterr()
     assert "main.src:3: Gone is declared nowhere" in told.err
-    assert "1 code objects" in told.out
+    assert "1 code objects, 8 instructions, from 2 files of the project" in told.out
     assert 0 == main(["disasm", str(image)])
     text.write_text(capsys.readouterr().out, encoding="utf-8")
     assert "data MAIN.N INT = 4" in text.read_text(encoding="utf-8")
