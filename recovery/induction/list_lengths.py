@@ -22,15 +22,19 @@ from recovery.induction.symbols import OperandRules
 from recovery.tuning import (
     ITEMS_BEHIND_THE_FIRST,
     NEVER_THERE_EXAMPLES,
+    NEVER_THERE_ORIGINS,
     PAIR_EXAMPLES,
     SHORT_LIST_EXAMPLES,
 )
 
 
 def bounded_lists(
-    recognizer: Recognizer, start: Grammar, texts: Iterable[str]
+    recognizer: Recognizer, start: Grammar, texts: Iterable[str], origins: int
 ) -> Iterator[Inferred]:
-    """Edits for the short lists of rules that ``start`` has not, or not so; texts that parse."""
+    """Edits for the short lists of rules that ``start`` has not, or not so; texts that parse.
+
+    Few ``origins`` do not show that a part is never there.
+    """
     grammar = recognizer.grammar
     parser, coverage = Parser(recognizer), GrammarCoverage(grammar)
     for text in texts:
@@ -48,7 +52,8 @@ def bounded_lists(
                 source = rule.source_of(element)
                 rounds = lengths[source]
                 if (
-                    rule.name not in operands
+                    origins >= NEVER_THERE_ORIGINS
+                    and rule.name not in operands
                     and _is_form(element, recognizer.lexer)
                     and source not in known
                     and rounds[0] == rounds.total() >= NEVER_THERE_EXAMPLES
@@ -83,10 +88,10 @@ def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
 
 
 def _is_form(element: Element, lexer: Lexer) -> bool:
-    """Whether an element may be missing and has no reserved word, which few lines may have."""
+    """Whether an element is optional or repeated, without a reserved word, which may be rare."""
     names = [e.name for e in walk(element) if isinstance(e, Reference) and e.is_token]
-    may_miss = isinstance(element, Repeat) and element.operator != "+"
-    return may_miss and not any(lexer.is_keyword(lexer.kind_of[name]) for name in names)
+    is_reserved = any(lexer.is_keyword(lexer.kind_of[name]) for name in names)
+    return isinstance(element, Repeat) and not is_reserved
 
 
 def _is_list(element: Element) -> bool:

@@ -311,10 +311,12 @@ class Induction:
             found = Folding(narrower, operands, self._prefixes).candidates()
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         if is_last and not taken:
-            texts = (file.text for file, wrong in zip(files, failures, strict=True) if not wrong)
+            read = [file for file, wrong in zip(files, failures, strict=True) if not wrong]
+            texts = (file.text for file in read)
+            origins = len(frozenset[str]().union(*(file.origins for file in read)))
             bounds = [
                 Taken(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
-                for bounded in bounded_lists(recognizer, self._start, texts)
+                for bounded in bounded_lists(recognizer, self._start, texts, origins)
                 if bounded.edits not in self.struck
             ]
             taken, too_short = self.shown.kept(self.grammar, bounds, self._names)
