@@ -91,9 +91,7 @@ class PathExecution:
                 return True
         return False
 
-    def halt(
-        self, route: Sequence[Section], time: float, override: float, *, is_hard: bool
-    ) -> None:
+    def halt(self, route: Sequence[Section], time: float, *, is_hard: bool) -> None:
         """Stop on the route as soon as can be."""
         leg = self._under_way(time)
         if leg is None or not route:
@@ -101,19 +99,17 @@ class PathExecution:
             self._timeline.cut(time if past is None else max(time, past.ends))
             return
         time = max(time, leg.begins)
-        begins, legs = self._ramp_down(leg, route, time, override, is_hard)
+        begins, legs = self._ramp_down(leg, route, time, is_hard)
         self._timeline.cut(begins)
         for each in legs:
             self._timeline.append(each)
 
-    def stop_from(
-        self, route: Sequence[Section], time: float, override: float
-    ) -> tuple[Key, float] | None:
+    def stop_from(self, route: Sequence[Section], time: float) -> tuple[Key, float] | None:
         """Where a stop that begins at a time would end; ``None`` where the arm stands then."""
         leg = self._timeline.leg_at(time)
         if leg is None or leg.ends <= time:
             return None
-        _, legs = self._ramp_down(leg, route, time, override, is_hard=False)
+        _, legs = self._ramp_down(leg, route, time, is_hard=False)
         last = legs[-1] if legs else leg
         return last.section.key, last.last
 
@@ -152,14 +148,14 @@ class PathExecution:
                 return
 
     def _ramp_down(
-        self, leg: Leg, route: Sequence[Section], time: float, override: float, is_hard: bool
+        self, leg: Leg, route: Sequence[Section], time: float, is_hard: bool
     ) -> tuple[float, list[Leg]]:
         """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
         while route and route[0].key < leg.section.key:
             route = route[1:]
         for state, begins, rest in self._ahead_of(leg, route, time):
             entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
-            profiles = braking(_steps(entries), state, override, is_hard=is_hard)
+            profiles = braking(_steps(entries), state, is_hard=is_hard)
             if profiles is None:  # it cannot before the leg ends
                 continue
             legs, start = [], begins

@@ -304,14 +304,14 @@ class PlannedArm:
         if self._is_braked or was == self._override:
             return
         if self._override == 0.0:
-            self._halt(was, is_hard=False)
+            self._halt(is_hard=False)
         else:
             self._reschedule(self._plan.route)
 
     def brake(self, now: int, is_hard: bool) -> None:
         """See `interp.robot.arm.Arm.brake`."""
         self._observe(now)
-        self._halt(self._override or 1.0, is_hard=is_hard)
+        self._halt(is_hard=is_hard)
         self._brakes.append(None)
         self._tell_stop()
 
@@ -336,7 +336,7 @@ class PlannedArm:
         self._observe(now)
         is_moving = self._execution.is_moving(now * MICROSECOND)
         if is_moving and not self._is_braked:
-            self._halt(self._override or 1.0, is_hard=False)
+            self._halt(is_hard=False)
             self._tell_stop()
         else:
             self._timeline.cut(now * MICROSECOND if not is_moving else self._end())
@@ -391,16 +391,16 @@ class PlannedArm:
         time = self._now * MICROSECOND
         return self._execution.go(route, time, self._override, new_behind=new_behind)
 
-    def _halt(self, override: float, *, is_hard: bool) -> None:
+    def _halt(self, *, is_hard: bool) -> None:
         """Stop on the path."""
         self._agenda = None
-        self._execution.halt(self._plan.route, self._now * MICROSECOND, override, is_hard=is_hard)
+        self._execution.halt(self._plan.route, self._now * MICROSECOND, is_hard=is_hard)
 
     def _stop_from(self, time: float) -> tuple[Key, float] | None:
         """Where a brake at a time would end; ``None`` where the arm stands then."""
         if self._is_braked:
             return None
-        return self._execution.stop_from(self._plan.route, time, self._override or 1.0)
+        return self._execution.stop_from(self._plan.route, time)
 
 
 def _sections(track: Track) -> tuple[Section, ...]:

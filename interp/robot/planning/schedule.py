@@ -196,13 +196,15 @@ def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool)
 
 
 def braking(
-    steps: Sequence[GearedStretch], state: PathState, override: float, *, is_hard: bool
+    steps: Sequence[GearedStretch], state: PathState, *, is_hard: bool
 ) -> list[SpeedProfile] | None:
     """Profiles that stand still as soon as can be; the last ends within its step.
 
+    The override has no part in it, as it scales no acceleration [MOT-09].
+
     ``None`` where the acceleration cannot be taken back on the first span.
     """
-    spans = _spans(steps, state, override, is_hard=is_hard)
+    spans = _spans(steps, state, 1.0, is_hard=is_hard)
     speed, acceleration = _start(spans, state)
     profiles: list[SpeedProfile] = []
     for place, span in enumerate(spans):

@@ -9,9 +9,11 @@ import pytest
 
 from interp.robot.arm import Approximation
 from interp.values.faults import Fault
+from tests.interp.robot.conftest import Driver
+from tests.interp.robot.test_random_motions import do
 
 if TYPE_CHECKING:
-    from tests.interp.robot.conftest import Driver
+    from interp.robot.kinematics.machine_data import MachineData
 
 FIRST = {"X": 500.0, "Y": 200.0, "Z": 600.0, "A": 0.0, "B": 160.0, "C": 0.0}
 SECOND = {**FIRST, "Y": -100.0}
@@ -262,3 +264,20 @@ def test_override_that_is_none(driver: Driver, percent: float) -> None:
     with pytest.raises(Fault) as caught:
         driver.arm.override(0, percent)
     assert 1422 == caught.value.number
+
+
+def test_an_override_in_the_moment_of_a_brake_changes_no_stop(machine: MachineData) -> None:
+    """The override scales no acceleration [MOT-09], of blends that are slower by it neither."""
+    near = Approximation(cdis=300.0, cptp=100.0)
+    ends = set()
+    for override in (100.0, 5.0):
+        driver = Driver(machine)
+        for x in (350.0, 595.0):
+            target = {"X": x, "Y": 0.0, "Z": 400.0, "A": 0.0, "B": 180.0, "C": 0.0}
+            driver.move("LIN", target, approximation=near, criteria=("C_DIS",), velocity=2.0)
+        for share in (1.0, 1.0, 1.0, 0.1):
+            do(driver, ("wait", share))
+        driver.arm.override(driver.now, override)
+        do(driver, ("brake", False))
+        ends.add(driver.now)
+    assert 1 == len(ends)

@@ -125,7 +125,7 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
 def test_braking_crosses_a_seam() -> None:
     """Who is too fast to stop within a stretch stops in the next one."""
     steps = [GearedStretch(stretch(0.0, 0.5, 1.0), 0.0), GearedStretch(stretch(0.5, 1.0, 1.0), 1.0)]
-    profiles = braking(steps, PathState(0.45, 1.0, 0.0), 1.0, is_hard=False)
+    profiles = braking(steps, PathState(0.45, 1.0, 0.0), is_hard=False)
     assert profiles is not None
     assert 2 == len(profiles)
     assert 50.0 == pytest.approx(profiles[0].length)
@@ -137,7 +137,7 @@ def test_the_hardest_ramp_is_the_shortest() -> None:
     steps = [GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)]
     lengths = []
     for is_hard in (False, True):
-        profiles = braking(steps, PathState(0.0, 1.0, 0.0), 1.0, is_hard=is_hard)
+        profiles = braking(steps, PathState(0.0, 1.0, 0.0), is_hard=is_hard)
         assert profiles is not None
         lengths.append(profiles[0].length)
     assert lengths[1] < 0.6 * lengths[0]
