@@ -20,7 +20,7 @@ from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.requests.waits import IDLE_AFTER
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
-from interp.port.executor import Recurrent
+from interp.port.executor import Counting, Recurrent
 from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
 
 #: Requests that leave no trace but in what they write.
@@ -47,9 +47,14 @@ class QuietTime:
     _before: tuple[int, ...] | None = None
     _mark: _Mark | None = None
     _reach: int = 0
+    _begun: int | None = None
+    _since: int = -1
 
-    def begin_tick(self) -> None:
-        """A tick begins: what changes from here on is its doing."""
+    def begin_tick(self, robot: Task) -> None:
+        """A tick begins: what changes from here on is its doing; a run may go on in its middle."""
+        if self._since == self.state.clock.now:
+            return
+        self._since, self._begun = self.state.clock.now, _begun(robot)
         counts = self._counts()
         if self._before != counts or self.state.variables.has_read_changing:
             self._mark = None
@@ -71,7 +76,9 @@ class QuietTime:
         times = [limit, state.actions.next_time(), self.automatic.wake]
         times += (task.blocked.wake for task in tasks if task.blocked and _is_timed(task))
         end = min(time for time in times if time is not None)
-        if all(_waits(task, Wait) for task in tasks[1:]):  # which have longer slices
+        robot, *others = tasks  # which have longer slices
+        is_same = _begun(robot) == self._begun is not None  # no condition has called a function
+        if _waits(robot, Wait, *[Poll][:is_same]) and all(_waits(task, Wait) for task in others):
             return end - end % clock.cycle
         if any(task.blocked and task.blocked.wake != now for task in tasks if not _is_timed(task)):
             return now  # a slice would begin too soon behind the stretch
@@ -128,6 +135,11 @@ class QuietTime:
     def _counts(self) -> tuple[int, ...]:
         state = self.state
         return state.trace.count, state.variables.writes, self.queue.count, self.acts
+
+
+def _begun(task: Task) -> int | None:
+    """How many statements have begun, if the executor says so."""
+    return task.executor.begun if isinstance(task.executor, Counting) else None
 
 
 def _is_timed(task: Task) -> bool:

@@ -116,7 +116,7 @@ class Scheduler:
         if len(self.tasks) > 1 and states["submit"] == "P_FREE":  # [SUB-02]
             states["submit"] = "P_ACTIVE"
         while True:
-            self.quiet.begin_tick()
+            self.quiet.begin_tick(self._robot)
             self._settle()
             if self._outcome is not None:
                 return self._outcome

@@ -73,6 +73,11 @@ class DebuggedExecutor:
         """How many calls deep the program is."""
         return self.inside.depth
 
+    @property
+    def begun(self) -> int:
+        """How many statements have begun."""
+        return self.inside.begun
+
     def advance(self, reply: Value | Fault | None = None) -> Request:
         """Compute until the controller is needed."""
         inside, hook = self.inside, self._hook

@@ -69,13 +69,18 @@ class Executor(Protocol):
 
 
 @runtime_checkable
-class Recurrent(Protocol):
-    """An executor that can say whether its state recurs."""
+class Counting(Protocol):
+    """An executor that counts statements."""
 
     @property
     def begun(self) -> int:
-        """How many statements have begun."""
+        """How many statements have begun, those of conditions included."""
         ...
+
+
+@runtime_checkable
+class Recurrent(Counting, Protocol):
+    """An executor that can say whether its state recurs."""
 
     @property
     def spare(self) -> int:

@@ -35,21 +35,40 @@ SCRIPT = "t=20.0005 IN[7]=TRUE\nt=31 IN[3]=TRUE\nt=40.001 IN[8]=TRUE\n"
 
 def _run(text: str, executor: str = "tree", script: str = "", until: int = 90) -> RunResult:
     program = load([Source(text, "main.src")], "main.src", strict=False)
-    setup = RunSetup(executor=executor, script=Script.read(script), until=until * 1_000_000)
+    script_read = Script.read(script)
+    setup = RunSetup(
+        executor=executor, script=script_read, is_traced=False, until=until * 1_000_000
+    )
     return run_program(program, setup)
 
 
-def test_same_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+#: A condition that calls a function that changes something; a timer, and a script between ticks.
+COUNTS = """DEF main ( )
+DECL INT N
+N=0
+WAIT FOR TURNS (N)
+END
+DEFFCT BOOL TURNS (N:OUT )
+INT N
+N=N+1
+RETURN N>900
+ENDFCT
+"""
+TIMES = "DEF main ( )\n$TIMER[1]=-2500\n$TIMER_STOP[1]=FALSE\nWAIT FOR $TIMER_FLAG[1]\nEND\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "script"),
+    [(WAITS, SCRIPT), (COUNTS, ""), (TIMES, "t=2.0005 IN[9]=FALSE\n")],
+)
+def test_same_trace(monkeypatch: pytest.MonkeyPatch, text: str, script: str) -> None:
     """Jumps over quiet stretches are not seen in the trace."""
-    quick = _run(WAITS, script=SCRIPT).events
-
-    def never(_self: QuietTime, _tasks: Any, now: int, _limit: int) -> int:
-        return now
-
-    monkeypatch.setattr(QuietTime, "end", never)
-    assert [one.line() for one in _run(WAITS, script=SCRIPT).events] == [
-        one.line() for one in quick
-    ]
+    quick = [_run(text, executor, script) for executor in ("tree", "vm")]
+    monkeypatch.setattr(QuietTime, "end", lambda _self, _tasks, now, _limit: now)
+    slow = _run(text, "vm", script)
+    for run in quick:
+        assert str(slow.outcome) == str(run.outcome)
+        assert [one.line() for one in slow.events] == [one.line() for one in run.events]
 
 
 def test_waiting_takes_few_looks(looks: list[int]) -> None:
