@@ -182,7 +182,7 @@ def run_program(
             texts = [unit.source.text for unit in program.reached(*starts)]
             machine = with_assumed_limits(reaching(machine, texts))
             note = f"no machine data of an arm: {machine.name} is used instead, without axis limits"
-        profile = replace(profile, is_tolerant=is_tolerant)
+        profile = replace(profile, is_tolerant=is_tolerant, brings_arm=setup.skips_failures)
     else:
         machine = machine_of_program(program, profile)
     torque_note = ""

@@ -5,10 +5,12 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from interp.controller.state.trace import TraceEvent
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
 
 _MOST_LISTED = 3
+_START_REFUSED = 1443
 
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
@@ -25,11 +27,25 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
         yield f"skipped: {file}:{number}: {error}"
     if len(skipped) > _MOST_LISTED:
         yield f"skipped: {len(skipped) - _MOST_LISTED} more lines, see --trace or --html"
+    for event in islice(refused(done), _MOST_LISTED):
+        yield f"{event.task} program: {event.place}: {event.fields['text']}"
     yield from _seen(done)
     if not done.controller.points and setup.routine is None:
         yield from _elsewhere(program)
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"
+
+
+def refused(done: "RunResult") -> Iterator["TraceEvent"]:
+    """What did not end the run though a controller refuses it.
+
+    That is a fault of the submit program, and a first motion that is none (1443).
+    """
+    for event in done.events:
+        is_fault = event.kind == "fault" and event.task == "submit"
+        is_refused = event.kind == "message" and event.fields["number"] == _START_REFUSED
+        if is_fault or is_refused:
+            yield event
 
 
 def _elsewhere(program: "CheckedProgram") -> Iterator[str]:

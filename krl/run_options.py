@@ -191,7 +191,9 @@ def prepared_run(
         file, strict=options.strict, stands_in=not options.strict, routine=options.routine
     )
     submit = submit_of(program) if is_auto and options.submit is None else options.submit
-    seconds = options.max_time or (_AUTO_SECONDS if is_auto else _SECONDS)
+    seconds = options.max_time
+    if seconds is None:
+        seconds = _AUTO_SECONDS if is_auto else _SECONDS
     profile = Profile.load(options.profile or _agreed_profile(file))
     setup = RunSetup(
         executor=options.executor.value if options.executor is not None else available()[-1],

@@ -17,7 +17,7 @@ import typer
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.output_files import check_files
 from krl.progress import progress_bar
-from krl.run_notes import run_notes
+from krl.run_notes import refused, run_notes
 from krl.run_options import (
     FileArgument,
     Robot,
@@ -108,6 +108,7 @@ def run(
     if html is not None:
         typer.echo(one_line(f"page: {html}"))
     is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped
+    is_fine &= next(refused(done), None) is None
     is_fine &= all(seen.is_estimate for seen in done.observations)
     reached = program.reached(*program.starts(setup.routine, setup.submit))
     is_fine &= all(unit.module.path not in program.damaged for unit in reached)

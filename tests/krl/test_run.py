@@ -154,6 +154,30 @@ def test_motions_that_cannot_be(run: Run, body: str, number: int | None, said: s
     assert 1 == out.count("\n")
 
 
+def test_first_motion_is_a_line(run: Run) -> None:
+    """A line that a program begins with is executed as PTP, but refused with --strict."""
+    body = "LIN {X 500,Y 0,Z 700,A 0,B 180,C 0} C_DIS\nLIN {X 500,Y 99,Z 700,A 0,B 180,C 0}\n"
+    status, out, err = run(body)
+    assert (1, True) == (status, out.startswith("main.src: end after "))
+    said = "main.src:2: the first motion is not allowed as such: executed as PTP"
+    assert f"robot program: {said}" == err.splitlines()[-1]
+    assert "(message 1443)" in run(body, "--strict")[1]
+
+
+def test_no_time(run: Run) -> None:
+    """A run of no time ends at once."""
+    assert "main.src: time after 0 s at main.src:2\n" == run("WAIT SEC 1\n", "--until", "0")[1]
+
+
+def test_submit_that_ends(run: Run, tmp_path: Path) -> None:
+    """A submit program that counts as endless is reported behind the run."""
+    (tmp_path / "sps.sub").write_text("DEF SPS ( )\nLOOP\nENDLOOP\nEND\n", encoding="utf-8")
+    more = ("--submit", "SPS", "--statements", "2000")
+    status, _, err = run("WAIT SEC 1\n", *more)
+    said = "submit program: sps.sub:2: it has not ended after 2,000 statements\n"
+    assert (1, said) == (status, err)
+
+
 @pytest.mark.parametrize(("missing", "number"), [("$TOOL", 1419), ("$BASE", 1516)])
 def test_missing_frames(run: Run, tmp_path: Path, missing: str, number: int) -> None:
     """Where the profile has none, a Cartesian target needs a tool and a base first [MOT-15]."""

@@ -40,6 +40,8 @@ _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 _KINDS: Final = frozenset({"PTP", "LIN", "CIRC", "SPTP", "SLIN", "SCIRC", "SPL"})
 _JOINT: Final = frozenset({"PTP", "SPTP"})
+#: How the arm is brought to the end of a line that a program begins with.
+_BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
 
 
 @dataclass(slots=True, eq=False)
@@ -125,9 +127,11 @@ class MotionBuilder:
         if kind not in _KINDS or kind == "SPL":
             raise own_fault("motion_kind")
         target = target_of(request.target)
-        is_first = self._number == 0 and not self._state.profile.is_tolerant
-        if is_first and (suffix or kind not in _JOINT or not is_complete(target)):
-            raise message_fault(1443)
+        criteria = request.criteria
+        if self._is_first and (suffix or kind not in _JOINT or not is_complete(target)):
+            if not suffix and kind in _BROUGHT:
+                kind, criteria = _BROUGHT[kind], ()
+            self._refuse_start(request.at, kind)
         snapshot = self._variables.snapshot(request.values)
         self._check_frames(snapshot, kind, target)
         settings = self._settings(snapshot)
@@ -141,7 +145,7 @@ class MotionBuilder:
             request.angle,
             bool(suffix),
             None if request.reference is None else f"#{request.reference.lstrip('#')}",
-            request.criteria,
+            criteria,
         )
         built = PlannedMotion(motion, snapshot)
         built.motion = replace(motion, places=self._places(built, triggers))
@@ -149,12 +153,8 @@ class MotionBuilder:
 
     def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> PlannedMotion:
         """A spline block. Raises `Fault`."""
-        if (
-            self._number == 0
-            and not self._state.profile.is_tolerant
-            and not _begins_completely(request)
-        ):
-            raise message_fault(1443)
+        if self._is_first and not _begins_completely(request):
+            self._refuse_start(request.at, request.keyword)
         snapshot = self._variables.snapshot(request.values)
         built = PlannedMotion(
             Motion(0, request.at, request.keyword, self._settings(snapshot)), snapshot
@@ -187,6 +187,21 @@ class MotionBuilder:
             stop_places=tuple(stops),
         )
         return built
+
+    @property
+    def _is_first(self) -> bool:
+        """Whether there was no motion, and none before it may be lost."""
+        return self._number == 0 and not self._state.profile.is_tolerant
+
+    def _refuse_start(self, at: At, kind: str) -> None:
+        """A motion that no program may begin with [MOT-10].
+
+        Where somebody only looks at a program it is executed all the same, as one of this kind.
+        """
+        error = message_fault(1443)
+        if not self._state.profile.brings_arm:
+            raise error
+        self._state.messages.post("robot", at, 1443, f"{error}: executed as {kind}")
 
     def back_to(self, at: At, axes: Sequence[float]) -> PlannedMotion:
         """The way back to where an interrupt routine has stopped the arm."""

@@ -45,7 +45,8 @@ class Profile:
     ``submit_every`` is in cycles. ``sizes`` are those of arrays, ``most`` how many there may be of
     something at once. ``values`` are initial values by name, as `interp.values.json_form` writes
     them. ``is_tolerant``: a motion that cannot be planned and a predefined routine that is not
-    simulated are skipped, each with a message, instead of being a fault.
+    simulated are skipped, each with a message, instead of being a fault. ``brings_arm``: to where a
+    program begins with a motion that may not be its first.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Profile:
     most: Mapping[str, int]
     values: Mapping[str, Any]
     is_tolerant: bool = False
+    brings_arm: bool = False
 
     @staticmethod
     def load(name: str = "kss8") -> Profile:
