@@ -96,11 +96,13 @@ def pages(
 
 @pytest.fixture
 def resize(browser: webdriver.Chrome) -> Iterator[Callable[[int], None]]:
-    """Makes the window so many pixels wide."""
+    """Makes the window so many pixels wide, and waits for charts, which are drawn anew then."""
+    drawn = "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));"
 
     def to(width: int) -> None:
         size = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        browser.execute_async_script(drawn)
 
     yield to
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
