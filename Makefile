@@ -18,7 +18,7 @@ help:
 	@echo 'make recover      survey the corpus and write the page (ARGS="PATH --json FILE")'
 	@echo 'make growth       replay the ledger over the corpus and write the page'
 	@echo 'make conformance  run the conformance cases on every executor and write the page'
-	@echo 'make nightly      everything once, at most an hour, and what changed since last night'
+	@echo 'make nightly      everything once, at most an hour, and what changed since the last run'
 	@echo 'make fuzz         random programs on all executors (ARGS="--programs 100000")'
 	@echo 'make fuzz-readers bytes that break a reader, guided by coverage (ARGS="image -max_total_time=600")'
 	@echo 'make real-code    every routine of the corpus on all executors (ARGS="PATH")'
