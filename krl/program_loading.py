@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path, PurePath, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
@@ -133,8 +134,10 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     if archive is None and (file.is_dir() or file.suffix.lower() == ".zip"):
         raise InputError(f"{file}: holds {_programs_in(file)}")
     root = archive or project_root(file)
+    is_mixed = archive is None and not _is_project(root)
     try:
-        found = [one for one in discover([root]) if isinstance(one, Found)]
+        roots = _near(root, _Disk()) if is_mixed else [root]
+        found = [one for one in discover(roots) if isinstance(one, Found)]
     except IngestError as error:
         raise InputError(str(error)) from error
     if archive is None:
@@ -152,11 +155,11 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     found = _of_one_project(found, root, main)
     sources: list[Source] = []
     left: list[str] = []
-    if len(found) > _MOST_FILES or sum(one.size for one in found) > _MOST_BYTES:
+    is_large = len(found) > _MOST_FILES or sum(one.size for one in found) > _MOST_BYTES
+    if is_mixed or is_large:
         whole, found = found, _named_from(asked, found)
-        left.append(
-            f"{len(whole) - len(found):,} of {len(whole):,} files that the program does not name"
-        )
+        unnamed = f"{len(whole) - len(found):,} of {len(whole):,} files"
+        left += [f"{unnamed} that the program does not name"] * (len(found) < len(whole))
     for one in found:
         data = read(one)
         decoded = data.reason if isinstance(data, Skipped) else decode(data)
@@ -258,8 +261,9 @@ def project_root(path: Path) -> Path:
     """The folder that holds the project of a file or folder, from wherever one enters it.
 
     That is what lies around R1 or STEU, or around a drive of another name (`is_drive`). A folder
-    without such a layout around it is a project itself; the files of one that lies in a folder with
-    KRL of its own, Program for instance, belong to that.
+    without such a layout around it is a project itself; the files of one that lies in a folder of
+    KRL, Program for instance, belong to that. A folder with a few programs among much else is not
+    taken for one: of that a program has what it names (`read_sources`).
     """
     path = path.resolve()
     return _root_around(path if path.is_dir() else path.parent, _Disk())
@@ -270,7 +274,7 @@ class _Folders(Protocol[_Folder_contra]):
 
     def folders_in(self, folder: _Folder_contra) -> list[str]: ...
 
-    def has_krl(self, folder: _Folder_contra) -> bool: ...
+    def is_of_krl(self, folder: _Folder_contra) -> bool: ...
 
 
 def _root_around(folder: _P, folders: _Folders[_P]) -> _P:
@@ -285,28 +289,42 @@ def _root_around(folder: _P, folders: _Folders[_P]) -> _P:
             return one.parent if "STEU" in beside else one
         if _PARTS & set(map(str.upper, names)) and one.name.upper() == "KRC":
             return one
-    while folder != folder.parent and folders.has_krl(folder.parent):
+    while folder != folder.parent and folders.is_of_krl(folder.parent):
         folder = folder.parent
     return folder
 
 
+def _is_controller(root: Path) -> bool:
+    from support.files.discovery import is_drive
+
+    names = _Disk().folders_in(root)
+    return is_drive(names) or not _PARTS.isdisjoint(map(str.upper, names))
+
+
+def _is_project(root: Path) -> bool:
+    """Whether all KRL below the root of a project belongs to it."""
+    return _is_controller(root) or _Disk().is_of_krl(root)
+
+
+def _near(folder: Path, disk: "_Disk") -> list[Path]:
+    """The KRL files of a folder, and those of folders in it that hold some, and so on."""
+    inner = (folder / name for name in disk.folders_in(folder))
+    below = (_near(one, disk) for one in inner if not one.is_symlink() and disk.programs(one))
+    return [*disk.programs(folder), *chain.from_iterable(below)]
+
+
 def project_paths(path: Path) -> list[Path]:
-    """What to read for all that a file or folder sees: its controller, or the files beside it.
+    """What to read for all that a file or folder sees: its project, or the files beside it.
 
     A folder or an archive without a controller around it is all there is.
     """
-    from support.files.discovery import is_drive
-
     archive, _ = _in_archive(path)
     if archive is not None or not path.exists():
         return [archive or path]
-    root = project_root(path)
-    names = _Disk().folders_in(root)
-    if is_drive(names) or not _PARTS.isdisjoint(map(str.upper, names)):
+    root, is_program = project_root(path), path.is_file() and _is_krl(path)
+    if _is_controller(root) or (is_program and _is_project(root)):
         return [_as_given(root, path)]
-    if not path.is_file() or path.suffix.lower() not in _ENDINGS:
-        return [path]
-    return [one for one in path.parent.iterdir() if one.suffix.lower() in _ENDINGS]
+    return _Disk().programs(path.parent) if is_program else [path]
 
 
 def _as_given(root: Path, path: Path) -> Path:
@@ -321,16 +339,28 @@ class _Disk:
     """Folders on disk; one that cannot be looked into holds nothing."""
 
     def folders_in(self, folder: Path) -> list[str]:
-        try:
-            return [one.name for one in folder.iterdir() if one.is_dir()]
-        except OSError:
-            return []
+        return [one.name for one in _entries(folder) if one.is_dir()]
 
-    def has_krl(self, folder: Path) -> bool:
-        try:
-            return any(one.suffix.lower() in _ENDINGS for one in folder.iterdir())
-        except OSError:
-            return False
+    def programs(self, folder: Path) -> list[Path]:
+        """The KRL files directly in it."""
+        return [path for one in _entries(folder) if _is_krl(path := Path(one))]
+
+    def is_of_krl(self, folder: Path) -> bool:
+        """Whether at least half of the files in it are KRL."""
+        files = [_is_krl(Path(one)) for one in _entries(folder) if one.is_file()]
+        return 0 < len(files) <= 2 * sum(files)
+
+
+def _entries(folder: Path) -> "list[os.DirEntry[str]]":
+    try:
+        with os.scandir(folder) as entries:
+            return [one for one in entries if not one.name.startswith(".")]
+    except OSError:
+        return []
+
+
+def _is_krl(path: Path) -> bool:
+    return path.suffix.lower() in _ENDINGS
 
 
 class _Listing:
@@ -348,5 +378,5 @@ class _Listing:
     def folders_in(self, folder: PurePosixPath) -> list[str]:
         return list(self._folders.get(folder, ()))
 
-    def has_krl(self, folder: PurePosixPath) -> bool:
+    def is_of_krl(self, folder: PurePosixPath) -> bool:
         return folder in self._with_krl

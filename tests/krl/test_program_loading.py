@@ -6,7 +6,7 @@ from zipfile import ZipFile
 import pytest
 
 from krl.cli import main
-from krl.program_loading import load_program, project_root, read_sources
+from krl.program_loading import load_program, project_paths, project_root, read_sources
 
 FILES = {
     "R1/Program/main.src": "DEF main ( )\nhelp ( )\nEND\n",
@@ -79,6 +79,33 @@ def test_cut_at_the_programs(tmp_path: Path) -> None:
     (backup / "R1" / "Program").rename(tmp_path / "cut")
     found = [_files(tmp_path / "cut" / name) for name in ("main.src", "Parts/part.src")]
     assert [["Parts/part.src", "main.src"]] * 2 == found
+
+
+MIXED = ("notes.txt", "plan.pdf", "a.png", "b.png", "other.src", "help.src")
+
+
+@pytest.mark.parametrize("files", [MIXED, ("part.src", *MIXED[4:])])
+def test_folder_above(tmp_path: Path, files: tuple[str, ...]) -> None:
+    """A folder above is of a project where half of its files are KRL, for a run and a check."""
+    for name in (*files, "cell/main.src"):
+        (file := tmp_path / name).parent.mkdir(exist_ok=True)
+        file.write_text(f"DEF {file.stem} ( )\nEND\n", "utf-8")
+    inside = tmp_path / "cell" / "main.src"
+    is_taken = files != MIXED
+    wanted = ["cell/main.src", *sorted(files)] if is_taken else ["main.src"]
+    assert wanted == _files(inside)
+    assert [tmp_path if is_taken else tmp_path / "cell"] == project_paths(inside)
+
+
+def test_program_among_other_files(tmp_path: Path) -> None:
+    """Of a folder in which other files are the most a program has what it names."""
+    for name in (*MIXED, "lib/Lib/part.src", "lib/own.src", "text/more/far.src", "main.src"):
+        (file := tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+        file.write_text(f"DEF {file.stem} ( )\nEND\n", "utf-8")
+    (tmp_path / "main.src").write_text("DEF main ( )\nhelp ( )\npart ( )\nEND\n", "utf-8")
+    sources, _, left = read_sources(tmp_path / "main.src")
+    assert ["help.src", "lib/Lib/part.src", "main.src"] == sorted(one.path for one in sources)
+    assert ["2 of 5 files that the program does not name"] == left
 
 
 def test_archive(tmp_path: Path) -> None:
