@@ -133,7 +133,7 @@ def rules(conformed: Record | Path | str) -> pd.DataFrame:
 
 def nightly_runs(history: Path | str = Path("reports", "history.jsonl")) -> pd.DataFrame:
     """A row a nightly run: date, files that parse, verdicts, divergences, every bench figure."""
-    from reports.history import read_history
+    from reports.nightly.history import read_history
 
     rows = []
     for run in read_history(Path(history)):

@@ -146,7 +146,7 @@ class Run:
     def write_page(self, file: PathLike) -> None:
         """Write the page of the run."""
         from interp.run_record import record_of
-        from reports.run_page import write_run_page
+        from reports.programs.run_page import write_run_page
 
         write_run_page(record_of(*self._whole), Path(file))
 

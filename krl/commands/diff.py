@@ -66,7 +66,7 @@ def diff(
     record = {"old": old.as_posix(), "new": new.as_posix(), **compare(*sources)}
     write_json(record, json_file, 1)
     if html is not None:
-        from reports.diff_page import write_diff_page
+        from reports.programs.diff_page import write_diff_page
 
         typer.echo(f"page: {write_diff_page(record, html)}", err=True)
     if format_ is Format.JSON:
@@ -145,7 +145,7 @@ def _text(record: Record) -> Iterator[str]:
 
 
 def _routine(one: Record) -> Iterator[str]:
-    from reports.diff_view import routine_name, routine_words
+    from reports.programs.diff_view import routine_name, routine_words
 
     yield f"{one['file']}:{one['line']}: {routine_name(one)} {routine_words(one)}"
     for hunk in one["hunks"]:
@@ -155,7 +155,7 @@ def _routine(one: Record) -> Iterator[str]:
 
 
 def _datum(one: Record) -> str:
-    from reports.diff_view import point_words
+    from reports.programs.diff_view import point_words
 
     said = point_words(one)
     if len(said) > _LONGEST:
@@ -164,7 +164,7 @@ def _datum(one: Record) -> str:
 
 
 def _summary(record: Record) -> str:
-    from reports.number_format import counted
+    from reports.rendering.number_format import counted
 
     files = record["files"]
     nouns = {"names": "name", "routines": "routine", "points": "point", "data": "other item"}

@@ -43,7 +43,7 @@ def growth(
     from grammar.notation.generate import GRAMMAR
     from recovery.growth.growth import growth as replayed
     from recovery.ledger.ledger import Ledger, preliminary_of, replay
-    from reports.growth_page import write_growth_page
+    from reports.recovery.growth_page import write_growth_page
 
     roots = corpus_or_ours(paths)
     if constructs is not None and not constructs.is_dir():

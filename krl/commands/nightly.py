@@ -19,7 +19,7 @@ from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.output_files import check_files, write_json
 
 if TYPE_CHECKING:
-    from reports.nightly_failures import Failure
+    from reports.nightly.nightly_failures import Failure
 
 _DEFAULT_OUT = Path("reports", "out", "nightly")
 _DEFAULT_HISTORY = Path("reports", "history.jsonl")
@@ -109,12 +109,18 @@ def _reported(
     made: dict[str, Any], went: dict[str, dict[str, Any]], folder: Path, history: Path
 ) -> "list[Failure]":
     """What failed; writes history, record, pages and summary of a run, and says what is new."""
-    from reports.claims_page import write_claims_page
-    from reports.history import append_run, changes, known_before, nightly_record, read_history
-    from reports.nightly_failures import failures
-    from reports.nightly_page import write_nightly_page
-    from reports.nightly_store import bound_store, write_entry_page
-    from reports.nightly_summary import nightly_summary
+    from reports.conformance.claims_page import write_claims_page
+    from reports.nightly.history import (
+        append_run,
+        changes,
+        known_before,
+        nightly_record,
+        read_history,
+    )
+    from reports.nightly.nightly_failures import failures
+    from reports.nightly.nightly_page import write_nightly_page
+    from reports.nightly.nightly_store import bound_store, write_entry_page
+    from reports.nightly.nightly_summary import nightly_summary
     from support.files.atomic_write import write_atomic
 
     out, name = folder.parent, folder.name
@@ -144,7 +150,7 @@ def _reported(
 
 def _broken_off(folder: Path) -> "Iterator[Failure]":
     """A failure for the run before this one, where that did not write its record at the end."""
-    from reports.nightly_failures import OF_THE_RUN, Failure
+    from reports.nightly.nightly_failures import OF_THE_RUN, Failure
 
     earlier = [one for one in folder.parent.iterdir() if one.is_dir() and one.name < folder.name]
     if earlier and not (last := max(earlier)).joinpath("night.json").exists():
@@ -153,9 +159,9 @@ def _broken_off(folder: Path) -> "Iterator[Failure]":
 
 def _write_breakdown(what: str, went: dict[str, dict[str, Any]], folder: Path) -> None:
     """Write summary, record and page with the one failure that a run has broken down."""
-    from reports.nightly_failures import OF_THE_RUN, Failure
-    from reports.nightly_page import write_nightly_page
-    from reports.nightly_summary import nightly_summary
+    from reports.nightly.nightly_failures import OF_THE_RUN, Failure
+    from reports.nightly.nightly_page import write_nightly_page
+    from reports.nightly.nightly_summary import nightly_summary
     from support.files.atomic_write import write_atomic
 
     own = Failure(what=OF_THE_RUN + what, page="", command="")
@@ -209,7 +215,7 @@ def _performed(
     A step that is done already took no time; one that failed is tried once more, and is flaky where
     it does not fail then. Cases that failed are a step of their own, behind theirs.
     """
-    from reports.nightly_failures import AGAIN, failed_cases
+    from reports.nightly.nightly_failures import AGAIN, failed_cases
 
     begun = time.monotonic()
     left_to_do = deque(enumerate(steps, 1))

@@ -272,7 +272,7 @@ class _Surveyor:
 
     def write_page(self, record: "SurveyRecord") -> Path:
         """Write the page of a record, dated now; return where it is."""
-        from reports.survey_page import write_survey_page
+        from reports.recovery.survey_page import write_survey_page
 
         record["version"] = metadata.version("krl-workbench")
         record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")

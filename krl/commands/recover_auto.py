@@ -195,7 +195,7 @@ def _write(
     """Write everything; returns the page."""
     from grammar.notation.edits import to_data
     from recovery.ledger.construct_file import text_of
-    from reports.auto_page import write_auto_page
+    from reports.recovery.auto_page import write_auto_page
     from support.files.atomic_write import write_atomic
 
     record["seconds"] = round(time.monotonic() - began, 1)

@@ -196,7 +196,7 @@ def _write(
     if path is not None and done.path is not None:
         _write_path(done.path.columns(), path)
     if html is not None:
-        from reports.run_page import write_run_page
+        from reports.programs.run_page import write_run_page
 
         write_run_page(_record(done, program, setup), html)
 
@@ -221,7 +221,7 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
 
 
 def _record(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> dict[str, Any]:
-    """What the page of a run is made of; see `reports.run_page.write_run_page`."""
+    """What the page of a run is made of; see `reports.programs.run_page.write_run_page`."""
     from importlib import metadata
 
     from interp.run_record import record_of

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from interp.testing.coverage import CoverageRecord, coverage_of
-from reports.coverage_page import CoveredFile
+from reports.programs.coverage_page import CoveredFile
 from support.files.decode import decode
 from support.files.untrusted import read_bytes
 

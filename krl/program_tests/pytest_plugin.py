@@ -144,7 +144,7 @@ class _Coverage:
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Write page and file, and name them."""
         from krl.program_tests.coverage_files import covered_files
-        from reports.coverage_page import write_coverage_page, write_lcov
+        from reports.programs.coverage_page import write_coverage_page, write_lcov
 
         files = covered_files(self._records)
         html, lcov = self._config.option.krl_cov_html, self._config.option.krl_lcov

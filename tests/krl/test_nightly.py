@@ -262,7 +262,7 @@ def test_a_run_that_cannot_tell_its_results_is_red(
         raise OSError(28, "No space left on device")
 
     _step(monkeypatch, (0, ""))
-    monkeypatch.setattr("reports.claims_page.write_claims_page", broken)
+    monkeypatch.setattr("reports.conformance.claims_page.write_claims_page", broken)
     assert 0 != run(tmp_path, capsys, "recover")[0]
     for name in ("index.html", "summary.md", "night.json"):
         text = (tmp_path / DATE / name).read_text(encoding="utf-8")

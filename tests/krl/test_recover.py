@@ -465,7 +465,7 @@ def test_the_page_comes_before_the_causes(
         shown.append((pending, len(record["clusters"]), len(record.get("start", ()))))
         return folder / "index.html"
 
-    monkeypatch.setattr("reports.survey_page.write_survey_page", write)
+    monkeypatch.setattr("reports.recovery.survey_page.write_survey_page", write)
     given = ["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"]
     assert 0 == main(given)
     assert [

@@ -11,15 +11,15 @@ from selenium import webdriver
 
 from grammar.comparison.backups import compare
 from grammar.syntax.source import Source
-from reports.auto_page import write_auto_page
-from reports.claims_page import write_claims_page
-from reports.conform_page import write_conformance_page
-from reports.coverage_page import CoveredFile, write_coverage_page
-from reports.diff_page import write_diff_page
-from reports.growth_page import write_growth_page
-from reports.nightly_page import write_nightly_page
-from reports.run_page import write_run_page
-from reports.survey_page import write_survey_page
+from reports.conformance.claims_page import write_claims_page
+from reports.conformance.conform_page import write_conformance_page
+from reports.nightly.nightly_page import write_nightly_page
+from reports.programs.coverage_page import CoveredFile, write_coverage_page
+from reports.programs.diff_page import write_diff_page
+from reports.programs.run_page import write_run_page
+from reports.recovery.auto_page import write_auto_page
+from reports.recovery.growth_page import write_growth_page
+from reports.recovery.survey_page import write_survey_page
 from tests.reports.browsing import find_all, load
 from tests.reports.test_claims_page import RECORDS
 from tests.reports.test_conform_browser import conform_record

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from reports.claims_page import write_claims_page
-from reports.claims_view import claims_view
+from reports.conformance.claims_page import write_claims_page
+from reports.conformance.claims_view import claims_view
 
 RECORDS: dict[str, dict[str, Any]] = {
     "growth": {

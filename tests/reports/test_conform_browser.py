@@ -8,8 +8,8 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 
-from reports.conform_page import write_conformance_page
-from reports.nightly_page import write_nightly_page
+from reports.conformance.conform_page import write_conformance_page
+from reports.nightly.nightly_page import write_nightly_page
 
 pytestmark = pytest.mark.browser
 

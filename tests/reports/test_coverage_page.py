@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from reports.coverage_page import CoveredFile, write_coverage_page
+from reports.programs.coverage_page import CoveredFile, write_coverage_page
 
 
 def test_files_are_named_below_the_folder_that_they_share(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from reports.embedding import embedded_json, inline_source, printable, script_hash
+from reports.rendering.embedding import embedded_json, inline_source, printable, script_hash
 
 
 def test_control_characters_become_one_visible_sign_each() -> None:

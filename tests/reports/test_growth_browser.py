@@ -8,7 +8,7 @@ from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
-from reports.growth_page import write_growth_page
+from reports.recovery.growth_page import write_growth_page
 from tests.reports.browsing import HAS_INK, find, find_all, load, row_titles
 
 pytestmark = pytest.mark.browser

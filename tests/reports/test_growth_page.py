@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from reports.growth_page import write_growth_page
+from reports.recovery.growth_page import write_growth_page
 from tests.reports.page_elements import LOADING_ATTRIBUTES, Elements
 
 RecordBuilder = Callable[[str], dict[str, Any]]

@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from reports.history import append_run, changes, known_before, nightly_record, read_history
-from reports.nightly_page import write_nightly_page
+from reports.nightly.history import append_run, changes, known_before, nightly_record, read_history
+from reports.nightly.nightly_page import write_nightly_page
 
 
 def _case(name: str, verdict: str, time: int = 1_000) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from reports.nightly_failures import failures
-from reports.nightly_page import write_nightly_page
+from reports.nightly.nightly_failures import failures
+from reports.nightly.nightly_page import write_nightly_page
 
 
 def _conform(verdict: str, reason: str = "line 7: out 1 TRUE; seen: nothing") -> dict[str, Any]:

@@ -22,7 +22,7 @@ from interp.robot.simulation.scene import Scene, SceneObject
 from interp.run_record import RunRecord, record_of
 from interp.session import RunSetup, run_program
 from interp.values.poses import Pose
-from reports.run_page import write_run_page
+from reports.programs.run_page import write_run_page
 from tests.reports.browsing import find, find_all
 
 pytestmark = pytest.mark.browser

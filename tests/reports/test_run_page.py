@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from reports.run_page import write_run_page
+from reports.programs.run_page import write_run_page
 
 Json = dict[str, Any]
 

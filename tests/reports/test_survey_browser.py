@@ -11,7 +11,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
-from reports.survey_page import write_survey_page
+from reports.recovery.survey_page import write_survey_page
 from tests.reports.browsing import find, find_all, load, row_titles
 
 RecordBuilder = Callable[[str], dict[str, Any]]

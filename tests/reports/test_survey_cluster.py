@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from reports.survey_cluster import DETAILS, Detail, clip_around, cluster_data
+from reports.recovery.survey_cluster import DETAILS, Detail, clip_around, cluster_data
 
 
 def _only(cluster: dict[str, Any], detail: Detail = DETAILS[0]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from reports.survey_page import write_survey_page
+from reports.recovery.survey_page import write_survey_page
 from tests.reports.page_elements import LOADING_ATTRIBUTES, Elements
 
 RecordBuilder = Callable[[str], dict[str, Any]]

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from reports.number_format import percent, size
-from reports.survey_view import SurveyView, survey_view
+from reports.recovery.survey_view import SurveyView, survey_view
+from reports.rendering.number_format import percent, size
 
 RecordBuilder = Callable[[str], dict[str, Any]]
 

@@ -270,7 +270,7 @@ def _write(
             record["fault"] = fault
         write_json(record, json_file)
         if html is not None:
-            from reports.conform_page import write_conformance_page
+            from reports.conformance.conform_page import write_conformance_page
 
             typer.echo(one_line(f"page: {write_conformance_page(record, html)}"))
     if junit is not None:

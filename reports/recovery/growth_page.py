@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from reports.construct_data import clipped, construct_data
-from reports.embedding import embedded_json, printable
-from reports.growth_view import growth_view
-from reports.number_format import clip
-from reports.page import render, source
-from reports.record_fields import Record, count, nested, number, records, text, texts
+from reports.recovery.construct_data import clipped, construct_data
+from reports.recovery.growth_view import growth_view
+from reports.rendering.embedding import embedded_json, printable
+from reports.rendering.number_format import clip
+from reports.rendering.page import render, source
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from support.files.atomic_write import write_atomic
 
 _MAX_STEPS = 2000

@@ -8,14 +8,14 @@ from typing import Any
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
-from reports.embedding import inline_source, script_hash
-from reports.number_format import counted
+from reports.rendering.embedding import inline_source, script_hash
+from reports.rendering.number_format import counted
 
 
 def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:
     """The page of a template, with our ``script`` and style sheets inside it.
 
-    ``data`` is what the script reads, as `reports.embedding.embedded_json` made it; ``view`` is
+    ``data`` is what the script reads, as `embedding.embedded_json` made it; ``view`` is
     what the template shows. Foreign text is escaped.
     """
     return (

@@ -9,9 +9,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from reports.embedding import printable
-from reports.number_format import clip
-from reports.record_fields import Record, count, nested, optional_count, records, text, texts
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import clip
+from reports.rendering.record_fields import (
+    Record,
+    count,
+    nested,
+    optional_count,
+    records,
+    text,
+    texts,
+)
 
 Json = dict[str, Any]
 

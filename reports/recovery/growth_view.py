@@ -6,10 +6,10 @@ Everything here is text ready to print; all foreign text has passed through `pri
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.construct_data import anchor
-from reports.embedding import printable
-from reports.number_format import Figure, clip, counted, moment, percent, share, size
-from reports.record_fields import Record, count, nested, number, records, text, texts
+from reports.recovery.construct_data import anchor
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import Figure, clip, counted, moment, percent, share, size
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 
 _BIGGEST = 40
 _MAX_FILES = 400

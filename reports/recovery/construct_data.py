@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from reports.embedding import printable
-from reports.number_format import clip
-from reports.record_fields import Record, count, nested, text, texts
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import clip
+from reports.rendering.record_fields import Record, count, nested, text, texts
 
 _MAX_TEXT = 8000
 _MAX_EXAMPLES = 12

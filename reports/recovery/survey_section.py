@@ -7,10 +7,10 @@ text has passed through `printable`.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.embedding import printable
-from reports.number_format import clip, percent, share
-from reports.record_fields import Record, count, records, text
-from reports.survey_cluster import cluster_id, is_follower, title_of
+from reports.recovery.survey_cluster import cluster_id, is_follower, title_of
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import clip, percent, share
+from reports.rendering.record_fields import Record, count, records, text
 
 _NUMBER_WORDS = dict(
     enumerate(("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=2)

@@ -5,12 +5,12 @@ from itertools import accumulate, chain
 from pathlib import Path
 from typing import Any, TypeVar
 
-from reports.embedding import embedded_json, printable
-from reports.number_format import clip
-from reports.page import render, source
-from reports.record_fields import Record, count, nested, number, records, text, texts
-from reports.run_view import run_view
-from reports.sanitizing import plain
+from reports.programs.run_view import run_view
+from reports.rendering.embedding import embedded_json, printable
+from reports.rendering.number_format import clip
+from reports.rendering.page import render, source
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import plain
 from support.files.atomic_write import write_atomic
 
 _MAX_SAMPLES = 6_000

@@ -9,9 +9,9 @@ from datetime import datetime
 from pathlib import Path
 from shutil import rmtree
 
-from reports.embedding import embedded_json
-from reports.nightly_page import MOST_EARLIER
-from reports.page import render, source
+from reports.nightly.nightly_page import MOST_EARLIER
+from reports.rendering.embedding import embedded_json
+from reports.rendering.page import render, source
 from support.files.atomic_write import write_atomic
 
 #: What is kept of a run when its pages are no longer linked, and of how many runs.

@@ -6,10 +6,18 @@ Everything here is text ready to print; all foreign text has passed through `pri
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.embedding import printable
-from reports.number_format import Figure, clip, counted, moment, percent, share, size
-from reports.record_fields import Record, count, nested, number, optional_count, records, text
-from reports.survey_section import Section, section
+from reports.recovery.survey_section import Section, section
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import Figure, clip, counted, moment, percent, share, size
+from reports.rendering.record_fields import (
+    Record,
+    count,
+    nested,
+    number,
+    optional_count,
+    records,
+    text,
+)
 
 _MAX_CLUSTERS = 2000
 _MAX_PATHS = 200

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from reports.conform_view import VERDICTS, conform_view
-from reports.embedding import embedded_json
-from reports.page import render, source
-from reports.record_fields import Record, count, nested, number, records, text, texts
-from reports.sanitizing import plain, shown
+from reports.conformance.conform_view import VERDICTS, conform_view
+from reports.rendering.embedding import embedded_json
+from reports.rendering.page import render, source
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import plain, shown
 from support.files.atomic_write import write_atomic
 
 Json = dict[str, Any]

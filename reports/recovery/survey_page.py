@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from reports.construct_data import construct_data
-from reports.embedding import embedded_json
-from reports.page import render, source
-from reports.record_fields import Record, nested, records, text
-from reports.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
-from reports.survey_section import Section
-from reports.survey_view import survey_view
+from reports.recovery.construct_data import construct_data
+from reports.recovery.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
+from reports.recovery.survey_section import Section
+from reports.recovery.survey_view import survey_view
+from reports.rendering.embedding import embedded_json
+from reports.rendering.page import render, source
+from reports.rendering.record_fields import Record, nested, records, text
 from support.files.atomic_write import write_atomic
 
 # The embedded data stays below this, which keeps the whole page below 5 MB.

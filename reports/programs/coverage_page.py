@@ -6,9 +6,9 @@ from pathlib import Path
 from posixpath import commonpath
 from typing import Any
 
-from reports.embedding import embedded_json, printable
-from reports.number_format import percent, share
-from reports.page import render
+from reports.rendering.embedding import embedded_json, printable
+from reports.rendering.number_format import percent, share
+from reports.rendering.page import render
 from support.files.atomic_write import write_atomic
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from reports.record_fields import Record, count, nested, number, records, text
+from reports.rendering.record_fields import Record, count, nested, number, records, text
 from support.files.atomic_write import write_atomic
 
 Json = dict[str, Any]

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.embedding import embedded_json
-from reports.nightly_failures import OF_THE_RUN
-from reports.number_format import Figure, counted, percent, share
-from reports.page import render, source
-from reports.record_fields import Record, count, nested, number, records, text, texts
-from reports.sanitizing import plain, shown
+from reports.nightly.nightly_failures import OF_THE_RUN
+from reports.rendering.embedding import embedded_json
+from reports.rendering.number_format import Figure, counted, percent, share
+from reports.rendering.page import render, source
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import plain, shown
 from support.files.atomic_write import write_atomic
 
 _MAX_RUNS = 400
@@ -109,7 +109,7 @@ def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one nightly run, and return its path.
 
     ``record`` is a line of the history with ``changes``, the sentences of
-    `reports.history.changes`, ``failures`` (`reports.nightly_failures.Failure`), and ``history``,
+    `history.changes`, ``failures`` (`nightly_failures.Failure`), and ``history``,
     the lines up to it; every field may be absent. The page appears whole or not at
     all. Raises OSError when the folder cannot be made or written.
     """

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.embedding import embedded_json
-from reports.number_format import Figure, counted, percent, share
-from reports.page import render
-from reports.record_fields import Record, count, nested, number, records, text, texts
-from reports.sanitizing import shown
+from reports.rendering.embedding import embedded_json
+from reports.rendering.number_format import Figure, counted, percent, share
+from reports.rendering.page import render
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import shown
 from support.files.atomic_write import write_atomic
 
 _MAX_ROUNDS = 200

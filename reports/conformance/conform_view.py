@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from reports.number_format import Figure, counted, moment, percent, share
-from reports.record_fields import Record, count, nested, number, records, text, texts
-from reports.sanitizing import shown
+from reports.rendering.number_format import Figure, counted, moment, percent, share
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import shown
 
 VERDICTS = ("pass", "fail", "unconfirmed", "known-failure", "skipped")
 
@@ -58,7 +58,7 @@ class ConformView:
 
 
 def conform_view(record: Mapping[str, Any]) -> ConformView:
-    """The view of a record, as `reports.conform_page.write_conformance_page` takes it."""
+    """The view of a record that `conform_page.write_conformance_page` takes."""
     suites = records(record, "suites")
     columns = _columns(suites)
     failed = count(nested(record, "case_verdicts"), "fail")

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from reports.diff_view import diff_view
-from reports.embedding import embedded_json
-from reports.page import render
+from reports.programs.diff_view import diff_view
+from reports.rendering.embedding import embedded_json
+from reports.rendering.page import render
 from support.files.atomic_write import write_atomic
 
 

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from reports.embedding import printable
-from reports.number_format import clip, counted
-from reports.record_fields import Record, count, nested, records, text, texts
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import clip, counted
+from reports.rendering.record_fields import Record, count, nested, records, text, texts
 
 _MOST = 2_000
 _LONGEST = 400

@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from reports.embedding import printable
-from reports.number_format import clip
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import clip
 
 _MOST_ITEMS = 2_000
 _DEEPEST = 8

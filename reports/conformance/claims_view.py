@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from reports.number_format import Figure, counted, percent, share
-from reports.record_fields import Record, count, nested, number, records, text
-from reports.sanitizing import shown
+from reports.rendering.number_format import Figure, counted, percent, share
+from reports.rendering.record_fields import Record, count, nested, number, records, text
+from reports.rendering.sanitizing import shown
 
 #: The commands that make each record, by its name in a nightly run.
 _COMMANDS: Final[Mapping[str, str]] = {

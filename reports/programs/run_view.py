@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from reports.embedding import printable
-from reports.number_format import Figure, clip, counted, moment
-from reports.record_fields import Record, count, nested, number, records, text
+from reports.rendering.embedding import printable
+from reports.rendering.number_format import Figure, clip, counted, moment
+from reports.rendering.record_fields import Record, count, nested, number, records, text
 
 _ENDS = {
     "end": "ran to its end",
@@ -35,7 +35,7 @@ class RunView:
 
 
 def run_view(record: Mapping[str, Any]) -> RunView:
-    """The view of a run's record, as `reports.run_page.write_run_page` takes it."""
+    """The view of a run's record, as `reports.programs.run_page.write_run_page` takes it."""
     outcome, path = nested(record, "outcome"), nested(record, "path")
     kind = text(outcome, "kind")
     how = [text(record, name) for name in ("executor", "robot", "profile", "machine")]

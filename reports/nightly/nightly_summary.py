@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from reports.number_format import counted
-from reports.record_fields import nested, number, records, text, texts
-from reports.sanitizing import shown
+from reports.rendering.number_format import counted
+from reports.rendering.record_fields import nested, number, records, text, texts
+from reports.rendering.sanitizing import shown
 
 _MOST = 40
 
@@ -13,7 +13,7 @@ _MOST = 40
 def nightly_summary(record: Mapping[str, Any]) -> str:
     """Failures with how to repeat them, what changed, and how the steps went.
 
-    ``record`` is that of `reports.nightly_page.write_nightly_page`. Names and messages are set as
+    ``record`` is that of `nightly_page.write_nightly_page`. Names and messages are set as
     code: they may be of other people, and link, mention and embed nothing.
     """
     return "\n".join(_lines(record))

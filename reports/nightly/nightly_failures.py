@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping
 from typing import NotRequired, TypedDict
 from urllib.parse import urlencode
 
-from reports.number_format import counted
-from reports.record_fields import Record, nested, records, text
-from reports.sanitizing import shown
+from reports.rendering.number_format import counted
+from reports.rendering.record_fields import Record, nested, records, text
+from reports.rendering.sanitizing import shown
 
 #: How the text of a failure begins that is of the nightly run itself, and not of a step.
 OF_THE_RUN = "the nightly run "
@@ -41,7 +41,7 @@ def failures(
 ) -> list[Failure]:
     """All failures of a run, from the records and the states of its steps by name.
 
-    ``before`` is what was known before it (`reports.history.known_before`).
+    ``before`` is what was known before it (`reports.nightly.history.known_before`).
     """
     return [
         *_steps(steps),

@@ -1,0 +1,1 @@
+"""Pages of a conformance run and of the paper's claims."""

@@ -1,0 +1,1 @@
+"""The page of a nightly run, its history, its failures and its summary."""

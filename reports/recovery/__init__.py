@@ -1,0 +1,1 @@
+"""Pages of the recovery of a grammar: survey, growth, automatic recovery."""

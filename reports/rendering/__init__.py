@@ -1,0 +1,1 @@
+"""What all pages share: templates, embedding of untrusted texts, figures, typed records."""
