@@ -80,8 +80,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.state.state.ControllerState.skip",
             "interp.controller.state.trace",
             "interp.controller.state.variables.Variables.part_type",
-            "interp.controller.quiet_time.QuietTime._place",
-            "interp.controller.quiet_time.QuietTime._skipped",
+            "interp.controller.quiet_time",
+            "interp.controller.state.variables.Variables._is_loose",
         ),
     ),
     # left out: files of machine data, what checks them, and torques; motions written in Python and
@@ -102,7 +102,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                 f"interp.robot.api.control_core.ControlCore.{name}"
                 for name in (
                     *("link", "run_out", "apply", "_act", "_end_path", "_stuck"),
-                    *("_check", "_check_link", "_settle"),
+                    *("_check", "_check_link", "_settle", "_cancel_stuck"),
                 )
             ),
             "interp.robot.kinematics.*._check_*",

@@ -15,15 +15,17 @@ are missing, is left as it is, and so is the condition of an ``if`` that does no
 texts, annotations, assertions, ``strict`` of a zip among them, defaults of parameters, class
 bodies, and what stands behind a ``return`` or ``raise``: they decide nothing, or what they have
 decided cannot be replaced in a module that is loaded. A boundary is not moved where a number that
-is not whole is compared: what is equal to it is so by chance.
+is not whole is compared: what is equal to it is so by chance. Where a factor is within a
+ten-thousandth of 1, division for multiplication changes what rounding does.
 """
 
 from __future__ import annotations
 
 import ast
+import math
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 Operator = Literal["comparison", "arithmetic", "connective", "condition", "constant", "statement"]
@@ -62,6 +64,8 @@ _ARITHMETIC: Final[Mapping[type[ast.operator], type[ast.operator]]] = {
 }
 #: A number from here on is doubled instead: one more or less would be lost in rounding.
 _LARGE: Final = 100.0
+#: A factor as near to 1 keeps off the errors of rounding.
+_ROUNDING: Final = 1e-4
 _COMPOUND: Final = (ast.If, ast.While, ast.For, ast.With, ast.Try, ast.Match)
 #: Exceptions that report a mistake to a caller in Python, or who wrote machine data, a profile or a
 #: program with names that nothing declares: a controller would not select it.
@@ -117,13 +121,13 @@ class Change:
 class _Scope:
     """Where a node lies: names of functions and classes around it, and its statement's lines.
 
-    ``reals`` are the names that the module gives to numbers that are no whole ones.
+    ``reals`` are the names that the module gives to numbers that are no whole ones, and these.
     """
 
     names: tuple[str, ...] = ()
     lines: tuple[int, int] = (0, 0)
     assignment: ast.Assign | ast.AnnAssign | None = None
-    reals: frozenset[str] = frozenset()
+    reals: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def is_function(self) -> bool:
@@ -136,7 +140,7 @@ class _Scope:
 
 def changes(tree: ast.Module) -> Iterator[Change]:
     """All changes of a module, in the order of its source."""
-    scope = _Scope(reals=frozenset(_reals(tree)))
+    scope = _Scope(reals=_reals(tree))
     for statement in tree.body:
         match statement:
             case ast.FunctionDef() | ast.ClassDef():
@@ -147,11 +151,26 @@ def changes(tree: ast.Module) -> Iterator[Change]:
                 yield from _of_value(statement, name)
 
 
-def _reals(tree: ast.Module) -> Iterator[str]:
+def _reals(tree: ast.Module) -> dict[str, float]:
+    found = {}
     for statement in tree.body:
         if isinstance(statement, ast.Assign | ast.AnnAssign) and _is_real(statement.value, ()):
             targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-            yield from (one.id for one in targets if isinstance(one, ast.Name))
+            value = _value(statement.value, {})
+            found.update({one.id: value for one in targets if isinstance(one, ast.Name)})
+    return found
+
+
+def _value(node: ast.AST | None, reals: Mapping[str, float]) -> float:
+    """The number that an expression of numbers gives, NaN where it is none."""
+    match node:
+        case ast.Constant(float(value)):
+            return value
+        case ast.Name(name):
+            return reals.get(name, math.nan)
+        case ast.BinOp(left, ast.Sub(), right):
+            return _value(left, reals) - _value(right, reals)
+    return math.nan
 
 
 def _is_real(node: ast.AST | None, reals: Collection[str]) -> bool:
@@ -233,7 +252,7 @@ def _of_place(
 
 
 def _others(
-    parent: ast.AST, name: str, node: ast.AST, reals: Collection[str]
+    parent: ast.AST, name: str, node: ast.AST, reals: Mapping[str, float]
 ) -> Iterator[tuple[Operator, ast.expr]]:
     """What may stand in place of an expression."""
     if _is_condition(parent, name) and isinstance(node, ast.expr) and not _has_opposite(node):
@@ -247,8 +266,8 @@ def _others(
                         new = [*operators]
                         new[place] = table[type(one)]()
                         yield "comparison", ast.Compare(left, new, comparators)
-        case ast.BinOp(left, one, right) if type(one) in _ARITHMETIC and not _is_no_number(
-            left, right
+        case ast.BinOp(left, one, right) if type(one) in _ARITHMETIC and not (
+            _is_no_number(left, right) or abs(_value(right, reals) - 1.0) < _ROUNDING
         ):
             yield "arithmetic", ast.BinOp(left, _ARITHMETIC[type(one)](), right)
         case ast.UnaryOp(ast.USub(), operand):

@@ -93,7 +93,7 @@ class Controller:
         arm = ArmControl(core(outputs.switch), state.clock, state.variables)
         frames = FramesInForce(state.variables, machine, arm.core)
         positions = Positions(state, arm.core, frames, tracking)
-        queue = MotionQueue(state, arm, outputs, positions, frames, tracking)
+        queue = MotionQueue(state, arm.core, outputs, positions, frames, tracking)
         connect_computed(state, arm.core, queue)
         tasks = [_task("robot", "$RINT_LIST", state, executor, sink)]
         if submit is not None:

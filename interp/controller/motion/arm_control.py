@@ -13,8 +13,6 @@ class ArmControl:
 
     def __init__(self, core: ControlCore, clock: Clock, variables: Variables) -> None:
         self.core = core
-        #: Whether the arm has come to rest since it was braked last.
-        self.has_stopped = False
         self._clock = clock
         self._variables = variables
         self._is_held = False
@@ -29,11 +27,10 @@ class ArmControl:
     @property
     def is_standing(self) -> bool:
         """Whether the arm is at rest after a brake."""
-        return self.has_stopped or self.core.next_time() is None
+        return self.core.next_time() is None
 
     def brake(self, *, is_hard: bool) -> None:
-        """Stop on the path; `has_stopped` becomes true when the arm is at rest."""
-        self.has_stopped = False
+        """Stop on the path; `is_standing` becomes true when the arm is at rest."""
         self.core.brake(self._clock.now, is_hard=is_hard)
 
     def proceed(self) -> None:
@@ -42,14 +39,12 @@ class ArmControl:
 
     def discard(self) -> None:
         """Forget all motions; the arm comes to rest on its path."""
-        self.has_stopped = False
         self.core.discard(self._clock.now)
 
     # ------------------------------------------------------------------ operator and faults
 
     def halt(self, *, is_hard: bool = False) -> None:
         """Brake, if the arm moves and was not halted before."""
-        self.has_stopped = False
         if self.is_moving and not self._is_halted:
             self._is_halted = True
             self.brake(is_hard=is_hard)

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 from grammar.motion_kinds import WITHOUT_PATH
-from interp.controller.motion.arm_control import ArmControl
 from interp.controller.motion.motions import MotionBuilder, PlannedMotion
 from interp.controller.motion.output_switch import OutputSwitch
 from interp.controller.motion.positions import FramesInForce, Positions
@@ -38,6 +37,7 @@ from interp.robot.api.commands import (
     OutputCommand,
     Transaction,
 )
+from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Motion, Place, Position
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
@@ -116,15 +116,14 @@ class MotionQueue:
     def __init__(
         self,
         state: ControllerState,
-        arm: ArmControl,
+        core: ControlCore,
         outputs: OutputSwitch,
         positions: Positions,
         frames: FramesInForce,
         tracking: Tracking | None,
     ) -> None:
         self._state = state
-        self._arm = arm
-        self._core = arm.core
+        self._core = core
         self._output_switch = outputs
         self._positions = positions
         self._tracking = tracking
@@ -315,8 +314,6 @@ class MotionQueue:
             self._fire(command)
         elif isinstance(command, CallCommand) and event.what == "cancelled":
             self._calls.pop(command, None)
-        elif event.what == "stopped":
-            self._arm.has_stopped = True
 
     def _handle_motion(self, event: CoreEvent, number: int) -> None:
         queued = self._queued.get(number)

@@ -397,7 +397,10 @@ class ControlCore:
             return
         if left == 1:
             self._finish(command, CommandState.CANCELLED, "cancelled")
-            return
+        else:
+            self._cancel_stuck()
+
+    def _cancel_stuck(self) -> None:
         while (stuck := self._stuck()) is not None:
             self._finish(stuck, CommandState.CANCELLED, "cancelled")
 

@@ -107,13 +107,14 @@ class CentralWrist:
         main = self._main_axes(inner[..., :3, 3], _SHOULDER, _ELBOW)
         wrist = self._wrist_of(main, inner)
         sine = np.hypot(wrist[..., 0, 2], wrist[..., 1, 2])
-        is_straight = (sine < _STRAIGHT) & (wrist[..., 2, 2] > 0.0)
+        is_straight = sine < _STRAIGHT
+        sine[is_straight] = 0.0
         ways = []
         for sign in (1.0, -1.0):
             a4 = np.arctan2(sign * wrist[..., 1, 2], sign * wrist[..., 0, 2])
             a5 = sign * np.arctan2(sine, wrist[..., 2, 2])
             a4 = np.where(is_straight, self._zeros[3], a4)
-            ways.append(self._degrees(main, a4, np.where(is_straight, 0.0, a5), wrist))
+            ways.append(self._degrees(main, a4, a5, wrist))
         degrees: Array = np.concatenate(ways, axis=-2)
         degrees -= 360.0 * np.ceil((degrees - 180.0) / 360.0)
         return degrees + 0.0
