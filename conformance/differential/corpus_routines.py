@@ -17,6 +17,7 @@ from conformance.differential import divergence
 from conformance.differential.observation import Observed, difference, observe
 from conformance.differential.random_world import QuietWorld
 from conformance.differential.runs import facts_of
+from grammar.check.project.framework import Findings, check_module
 from grammar.syntax.source import Source
 from interp.bytecode.compiler import Compiled, compile_program
 from interp.bytecode.verifier.verify import VerificationError, Verified, verify
@@ -140,13 +141,15 @@ class _Project:
         except (LinkError, VerificationError, Fault) as error:
             self._reason = str(error)
         for program in self._programs:
+            main = program.main
+            findings = check_module(program.project, main.module, main.source).findings
             for routine in _own(program):
-                yield self._trial(program, routine)
+                yield self._trial(program, routine, findings)
 
-    def _trial(self, program: CheckedProgram, routine: Routine) -> Trial:
+    def _trial(self, program: CheckedProgram, routine: Routine, findings: Findings) -> Trial:
         unit = routine.unit
         path, line = unit.module.path, unit.line(routine.node)
-        stage, reason = self._stage(routine)
+        stage, reason = self._stage(routine, findings)
         if stage in ("errors", "unverified") or self._verified is None:
             return Trial(path, line, routine.name, stage, reason)
         start = self._start(program, routine)
@@ -159,10 +162,10 @@ class _Project:
         why = _why(first)
         return Trial(path, line, routine.name, stage, reason, endings, differences, why)
 
-    def _stage(self, routine: Routine) -> tuple[Stage, str]:
+    def _stage(self, routine: Routine, findings: Findings) -> tuple[Stage, str]:
         unit = routine.unit
         first, last = (unit.source.place(place)[0] for place in routine.node.span)
-        for one in unit.checked.findings.diagnostics:
+        for one in findings.diagnostics:
             if one.severity == "error" and first <= one.region.line <= last:
                 return "errors", f"{one.code}: {one.message}"
         if self._compiled is None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import struct
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -106,6 +106,13 @@ def _places(type_: Structure) -> tuple[int, ...]:
 
 
 @lru_cache(_REMEMBERED)
+def _members(type_: Structure) -> Mapping[str, tuple[int, Type]]:
+    """The offset and the type of each member by its name in upper case, the first of each name."""
+    pairs = zip(type_.members, _places(type_), strict=True)
+    return {one.name.upper(): (place, one.type) for one, place in reversed(tuple(pairs))}
+
+
+@lru_cache(_REMEMBERED)
 def row_of(type_: Array) -> Type:
     """What is left of an array when its first dimension has an index."""
     return Array(type_.element, type_.sizes[1:]) if len(type_.sizes) > 1 else type_.element
@@ -124,10 +131,19 @@ def _step(type_: Structure | Array, offset: int) -> tuple[str | int, Type, int]:
 
 def kind_at(type_: Type, offset: int) -> Plain:
     """The type of a cell; ``offset`` is less than the size."""
-    while isinstance(type_, Structure | Array):
-        _, type_, offset = _step(type_, offset)
+    if isinstance(type_, Array):
+        type_ = type_.element
+        offset %= size(type_)
+    if isinstance(type_, Structure):
+        return _kind_in(type_, offset)
     assert isinstance(type_, Plain), "what has a size is made of scalars"
     return type_
+
+
+@lru_cache(_REMEMBERED)
+def _kind_in(type_: Structure, offset: int) -> Plain:
+    _, part, left = _step(type_, offset)
+    return kind_at(part, left)
 
 
 def path_to(type_: Type, offset: int, wanted: Type | None = None) -> Path | None:
@@ -162,13 +178,9 @@ def offset_of(type_: Type, path: Sequence[str | int]) -> tuple[int, Type] | None
     offset = 0
     for step in path:
         match type_, step:
-            case Structure(), str():
-                names = [member.name.upper() for member in type_.members]
-                if step.upper() not in names:
-                    return None
-                place = names.index(step.upper())
-                offset += _places(type_)[place]
-                type_ = type_.members[place].type
+            case Structure(), str() if step.upper() in _members(type_):
+                place, type_ = _members(type_)[step.upper()]
+                offset += place
             case Array(), int() if 1 <= step <= array_sizes(type_)[0]:
                 type_ = row_of(type_)
                 offset += (step - 1) * size(type_)

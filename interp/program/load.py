@@ -250,14 +250,14 @@ def load(
     stands_in: bool = False,
     unread: list[str] | None = None,
 ) -> CheckedProgram:
-    """Link and check files, of which ``main`` is the path of the one to begin with.
+    """Link and type files, of which ``main`` is the path of the one to begin with.
 
-    Only the project that it belongs to counts. Without ``strict`` errors that the checker finds are
-    no obstacle: what they are about fails when it is reached. With ``stands_in`` the project gets
-    stand-ins for what none of its files has, and a file with syntax errors is run as far as it can
-    be read (`interp.standins.unreadable_lines`). Raises `LinkError` with the first thing that is
-    wrong; where ``unread`` is given, it receives why other files cannot be read, which then are
-    left out.
+    Only the project that it belongs to counts. With ``strict`` it is checked; without, errors that
+    the checker would find are no obstacle: what they are about fails when it is reached. With
+    ``stands_in`` the project gets stand-ins for what none of its files has, and a file with syntax
+    errors is run as far as it can be read (`interp.standins.unreadable_lines`). Raises `LinkError`
+    with the first thing that is wrong; where ``unread`` is given, it receives why other files
+    cannot be read, which then are left out.
     """
     by_path = {source.path: source for source in sources}
     files = []
@@ -285,11 +285,10 @@ def load(
 def load_all(
     sources: Iterable[Source], system: System | None = None, *, stands_in: bool = False
 ) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
-    """Link and check files of any number of projects; gives a program for each file with routines.
+    """Link and type files of any number of projects; gives a program for each file with routines.
 
-    It is checked as without ``strict`` in `load`, each project once; with ``stands_in`` there are
-    no findings. A file that cannot be read is listed with the reason, after the programs; without
-    ``stands_in`` it is left out of its project.
+    It is loaded as without ``strict`` in `load`, each project once. A file that cannot be read is
+    listed with the reason, after the programs; without ``stands_in`` it is left out of its project.
     """
     by_path = {source.path: source for source in sources}
     files, unread = [], []
@@ -322,7 +321,7 @@ def _checked(
         whole = complete(project, sources)
         project, stand_ins = with_returns(whole.project), tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}
-    units = _units(project, sources, typed_module if stands_in and not strict else check_module)
+    units = _units(project, sources, check_module if strict else typed_module)
     files = {unit.module.path: (unit.module.table, unit.source) for unit in units.values()}
     findings = [unit.checked.findings for unit in units.values()]
     for one in check_project(findings, files.__getitem__) if strict else ():
