@@ -4,9 +4,9 @@ A program that waits looks at its condition in every cycle, and so do interrupts
 changed nothing, and has read nothing that time alone changes, the next one will be like it, until
 the arm, a script or a wait with an end does something. Nothing of that is seen in a trace.
 
-A submit program goes round and round meanwhile, and its slices end anywhere in its loop. Where all
-programs are at a tick where they were at an earlier one, and nothing has changed since, so it goes
-on: whole periods pass at once. Their statements count as if they had been begun.
+Loops and submit programs go round and round meanwhile, and their slices end anywhere in them. Where
+all programs are at a tick where they were at an earlier one, and nothing has changed since, so it
+goes on: whole periods pass at once. Their statements count as if they had been begun.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, 
 
 #: Requests that leave no trace but in what they write.
 REPEATABLE: Final = (Read, Write, StopAdvance, Slice, Poll)
+#: So often at most is the place of a mark compared: what never comes back there costs little.
+_LOOKS: Final = 1024
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +71,6 @@ class QuietTime:
             and self._before == self._counts()
             and not state.variables.has_read_changing
             and self.queue.next_time() is None
-            and _waits(tasks[0], Poll, Wait)
         )
         if not is_quiet:
             return now
@@ -87,6 +88,9 @@ class QuietTime:
     def _skipped(self, tasks: Sequence[Task], most: int) -> int:
         """The time in µs that passes at once: whole periods after which all is as it is now."""
         now, cycle = self.state.clock.now, self.state.clock.cycle
+        mark = self._mark
+        if mark is not None and (now - mark.time) % max(self._reach // _LOOKS, cycle):
+            return 0
         found = [self._place(task) for task in tasks]
         executors = [one.executor for one in tasks if isinstance(one.executor, Recurrent)]
         if None in found or len(executors) < len(tasks):
@@ -95,7 +99,6 @@ class QuietTime:
         phase = now % (cycle * self.state.profile.submit_every)
         places = (phase, self.state.actions.next_time(), *found)
         begun = tuple(executor.begun for executor in executors)
-        mark = self._mark
         if mark is None or mark.places != places:  # after Brent: a mark is kept twice as long
             if mark is None:
                 self._reach = cycle

@@ -79,6 +79,17 @@ BUSY = (
     "B=RND()>0.5",
     "I=(I+1)-3*((I+1)/3)",
 )
+#: What the robot's program does beside: also loops that ask for inputs.
+PARTS = (
+    "",
+    "COUNT=COUNT+1\n",
+    "$FLAG[1]=FALSE\n",
+    "SPTP {A1 10}\n",
+    "REPEAT\nUNTIL $IN[5]\n",
+    "WHILE NOT $IN[6]\n$FLAG[1]=$IN[5]\nFOR OTHER=1 TO 80\nENDFOR\nENDWHILE\n",
+    "REPEAT\nCOUNT=(COUNT+1) B_AND 7\nUNTIL $IN[7]\n",
+    "REPEAT\nTRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE\nUNTIL $IN[5]\n",
+)
 HEADS = ("", "I=0\n", "INTERRUPT DECL 5 WHEN $IN[6] DO PASS (TRUE )\nINTERRUPT ON 5\nI=0\n")
 
 
@@ -109,7 +120,7 @@ def drawn(draw: st.DrawFn) -> tuple[CheckedProgram, RunSetup]:
     busy = draw(st.lists(st.sampled_from(BUSY), max_size=1))
     body = "".join(f"{one}\n" for one in draw(st.permutations(idle + busy)))
     calls = draw(st.sampled_from(["", "", "", " OR TURNS ( )"]))
-    parts = st.sampled_from(["", "COUNT=COUNT+1\n", "$FLAG[1]=FALSE\n", "SPTP {A1 10}\n"])
+    parts = st.sampled_from(PARTS)
     main = MAIN.format(draw(parts), draw(parts), calls, SHOW)
     times = st.integers(1, 2_900_000).map(lambda time: f"{time / 1e6:.6f}")
     change = st.builds(

@@ -42,7 +42,8 @@ def _run(text: str, executor: str = "tree", script: str = "", until: int = 90) -
     return run_program(program, setup)
 
 
-#: A condition that calls a function that changes something; a timer, and a script between ticks.
+#: A condition that calls a function that changes something; a timer, and a script between ticks;
+#: triggers until there are too many.
 COUNTS = """DEF main ( )
 DECL INT N
 N=0
@@ -55,11 +56,17 @@ RETURN N>900
 ENDFCT
 """
 TIMES = "DEF main ( )\n$TIMER[1]=-2500\n$TIMER_STOP[1]=FALSE\nWAIT FOR $TIMER_FLAG[1]\nEND\n"
+TRIGGERS = """DEF main ( )
+REPEAT
+TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE
+UNTIL $IN[5]
+END
+"""
 
 
 @pytest.mark.parametrize(
     ("text", "script"),
-    [(WAITS, SCRIPT), (COUNTS, ""), (TIMES, "t=2.0005 IN[9]=FALSE\n")],
+    [(WAITS, SCRIPT), (COUNTS, ""), (TIMES, "t=2.0005 IN[9]=FALSE\n"), (TRIGGERS, "")],
 )
 def test_same_trace(monkeypatch: pytest.MonkeyPatch, text: str, script: str) -> None:
     """Jumps over quiet stretches are not seen in the trace."""
@@ -69,6 +76,13 @@ def test_same_trace(monkeypatch: pytest.MonkeyPatch, text: str, script: str) -> 
     for run in quick:
         assert str(slow.outcome) == str(run.outcome)
         assert [one.line() for one in slow.events] == [one.line() for one in run.events]
+
+
+@pytest.mark.parametrize("loop", ["UNTIL $IN[7]\n", "$FLAG[1]=$IN[7]\nUNTIL FALSE\n"])
+def test_polling_takes_few_looks(looks: list[int], loop: str) -> None:
+    """A minute of a loop that polls, and changes nothing, passes at once."""
+    run = _run(f"DEF main ( )\nREPEAT\n{loop}END\n", "vm", until=60)
+    assert ("time", True) == (run.outcome.ending, len(looks) < 60 * 5)
 
 
 def test_waiting_takes_few_looks(looks: list[int]) -> None:
