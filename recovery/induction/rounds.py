@@ -366,5 +366,7 @@ def _line_gain(
 ) -> tuple[float, frozenset[int]]:
     """What edits do for the lines they were inferred from, in files, and for which."""
     result = trial.result(found.edits, found.lines)
+    if found.is_strict:  # a line that fails further on says little for what reads so much
+        return table.weight(result.mended), result.mended
     gain = table.weight(result.mended) + ADVANCED_WORTH * table.weight(result.advanced)
     return gain, result.mended | result.advanced

@@ -46,6 +46,16 @@ def test_every_program_is_read(growth: Growth, toy_files: tuple[CorpusFile, ...]
     assert [] == [file.path for file in toy_files if not recognizer.accepts(file.text)]
 
 
+@pytest.mark.parametrize(("line", "count"), [("X := HALT\n", 1), ("X := HALT := 2\n", 0)])
+def test_a_word_is_a_name_where_lines_are_read_then(toy: Grammar, line: str, count: int) -> None:
+    """Lines that only fail further on with a reserved word as a name do not make it one."""
+    start = apply(toy, with_names(toy, "NAME").edits)
+    texts = [f"{name} := {name} / 2\n{line}" for name in "ABCD"]
+    files = tuple(CorpusFile(f"{n}.toy", t, frozenset({f"{n}"})) for n, t in enumerate(texts))
+    taken = [construct.title for construct in _grown(start, files).constructs]
+    assert count == taken.count("HALT as a name")
+
+
 @pytest.mark.parametrize(
     ("text", "accepted"),
     [
