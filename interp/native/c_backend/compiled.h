@@ -78,15 +78,15 @@ static inline krl_register krl_register_at(const krl_cell *cell)
 /* Calls in C that are open at once. */
 enum { MOST_NESTED = 200 };
 
-/* How a call ends: the statements left, or 0 where the interpreter goes on within it; and its result. */
+/* How a call ends: the statements left, or 0 where the interpreter goes on within it; and the bits of its result. */
 typedef struct {
     int32_t left;
-    krl_cell result;
+    uint64_t result;
 } krl_ended;
 
-/* `entry` is the step to go on at where the interpreter has come, or CALLED. `left`, `open` and `extent` stand for the
- * fields of the machine, which have their values only while the interpreter runs. */
-#define PARAMETERS struct krl_machine *machine, krl_cell *const fp, int32_t left, int32_t open, int32_t extent
+/* `entry` is the step to go on at where the interpreter has come, or CALLED. `left` and `open` stand for the fields of
+ * the machine, which have their values only while the interpreter runs. */
+#define PARAMETERS struct krl_machine *machine, krl_cell *const fp, int32_t left, int32_t open
 enum { CALLED = -1 };
 
 /* A routine once for calls from compiled code, which hand over its first cells, and once for the interpreter. Where
@@ -112,6 +112,15 @@ enum { CALLED = -1 };
 #define PUT(number, type) fp[number] = krl_cell_of_##type(registers[number]);
 #define TAKE(number, type) registers[number] = krl_register_of_##type(p##number);
 #define TAKE_CELL(number, type) fp[number] = p##number;
+/* The same of parameters that have a value in all calls: they are handed over as what C computes with. */
+#define TAKE_VALUE(number, type) registers[number] = krl_register_of_##type(krl_cell_with_##type(p##number));
+#define TAKE_VALUE_CELL(number, type) fp[number] = krl_cell_with_##type(p##number);
+#define VALUE_INT INT
+#define VALUE_BOOL INT
+#define VALUE_REAL REAL
+#define krl_cell_with_INT krl_of_int
+#define krl_cell_with_BOOL krl_of_bool
+#define krl_cell_with_REAL krl_of_real
 #define BLANK(number, type) registers[number] = (krl_register){0};
 #define BLANK_CELLS(first, end)                                                                    \
     for (int32_t i = first; i < end; i++)                                                          \
@@ -120,10 +129,21 @@ enum { CALLED = -1 };
 #define GET_VALUE(number, type)                                                                    \
     GET(number, type)                                                                              \
     if (UNLIKELY(!HAS_VALUE(registers[number]))) {                                                 \
-        machine->at = at;                                                                          \
-        machine->is_begun = 0;                                                                     \
+        krl_stay(machine, at);                                                                     \
         return (krl_ended){0};                                                                     \
     }
+/* And of a parameter. */
+#define NEED_VALUE(number, type)                                                                   \
+    if (UNLIKELY(fp[number] == KRL_NOTHING)) {                                                     \
+        krl_stay(machine, at);                                                                     \
+        return;                                                                                    \
+    }
+/* The interpreter does itself what begins where it has come. */
+static inline void krl_stay(struct krl_machine *machine, int32_t at)
+{
+    machine->at = at;
+    machine->is_begun = 0;
+}
 
 /* ---------------------------------------------------------------------------- steps */
 
@@ -145,17 +165,15 @@ enum { CALLED = -1 };
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;
-/* A frame of so many cells at `frame`, as `prepare` makes it; `save` puts back what is not read unless
- * the interpreter goes on within the call. */
-#define CALL(number, out, function, size, frame, prepare, save, put, ...)                          \
+/* `prepare` makes the frame of the call; `save` puts back what is not read unless the interpreter goes on within it. */
+#define CALL(number, out, function, frame, prepare, save, put, ...)                                \
     {                                                                                              \
-        const int32_t behind = extent + steps[number].c;                                           \
-        if (UNLIKELY(open >= machine->most_nested || size > KRL_MAX_CELLS - behind))               \
+        if (UNLIKELY(open >= machine->most_nested))                                                \
             goto out_##out;                                                                        \
-        prepare krl_ended ended = function(machine, frame, left, open + 1, behind, ##__VA_ARGS__); \
+        prepare krl_ended ended = function(machine, frame, left, open + 1, ##__VA_ARGS__);         \
         left = ended.left;                                                                         \
         if (UNLIKELY(left == 0)) {                                                                 \
-            machine->calls[open] = krl_call_of(cells, fp, &steps[number], number, CODE, extent,    \
+            machine->calls[open] = krl_call_of(machine->cells, fp, &steps[number], number, CODE, 0, \
                                                statement, serial);                                 \
             save return ended;                                                                     \
         }                                                                                          \
@@ -168,11 +186,11 @@ enum { CALLED = -1 };
 #define RETURN(number)                                                                             \
     if (entry != CALLED)                                                                           \
         goto out_##number;                                                                         \
-    return (krl_ended){left, KRL_NOTHING};
-#define RETURN_VALUE(number, out)                                                                  \
+    return (krl_ended){left, 0};
+#define RETURN_VALUE(number, out, type)                                                            \
     if (UNLIKELY(!HAS_VALUE(registers[steps[number].b])) || entry != CALLED)                       \
         goto out_##out;                                                                            \
-    return (krl_ended){left, CELL_OF(registers[steps[number].b])};
+    return (krl_ended){left, (uint32_t)krl_cell_with_##type(VALUE_##type(registers[steps[number].b]))};
 
 /* ---------------------------------------------------------------------------- leaving */
 
@@ -185,25 +203,37 @@ enum { CALLED = -1 };
 #define LEAVE()                                                                                    \
     machine->at = at >> 2;                                                                         \
     machine->is_begun = at & 2;                                                                    \
-    machine->fp = (int32_t)(fp - cells);                                                           \
+    machine->fp = (int32_t)(fp - machine->cells);                                                  \
     machine->left = left;                                                                          \
     machine->statement = statement;                                                                \
     machine->open = open;                                                                          \
     machine->code = CODE;                                                                          \
-    machine->extent = extent;                                                                      \
     machine->serial = serial;                                                                      \
     return (krl_ended){0}
 
+/* How many calls may be open within a function that is entered: as many as there are cells for, where each has the
+ * `largest` frame of all that are called. */
+static inline int32_t krl_most_nested(const struct krl_machine *machine, int32_t largest)
+{
+    int32_t cells = KRL_MAX_CELLS - machine->extent - machine->routines[machine->code].frame;
+    int32_t room = cells / (largest > 0 ? largest : 1);
+    int32_t most = machine->open + (room < MOST_NESTED ? room : MOST_NESTED);
+    return most < machine->most_calls ? most : machine->most_calls;
+}
+
 /* What the module looks for: a function, and what both have to agree on. */
 typedef void krl_entry_from_interpreter(PARAMETERS, int32_t at);
-#define PROGRAM(...)                                                                               \
+#define PROGRAM(largest, ...)                                                                      \
     void krl_go(struct krl_machine *machine, int32_t at)                                           \
     {                                                                                              \
         static krl_entry_from_interpreter *const codes[] = {__VA_ARGS__};                          \
-        int32_t most = machine->open + MOST_NESTED;                                                \
-        machine->most_nested = most < machine->most_calls ? most : machine->most_calls;            \
-        codes[machine->code](machine, machine->cells + machine->fp, machine->left, machine->open,  \
-                             machine->extent, at);                                                 \
+        int32_t before = machine->open;                                                            \
+        machine->most_nested = krl_most_nested(machine, largest);                                  \
+        codes[machine->code](machine, machine->cells + machine->fp, machine->left, before, at);    \
+        for (int32_t i = before; i < machine->open; i++) {                                         \
+            machine->calls[i].extent = machine->extent;                                            \
+            machine->extent += steps[machine->calls[i].step - 1].c;                                \
+        }                                                                                          \
     }                                                                                              \
     const uint32_t krl_layout = KRL_LAYOUT;
 

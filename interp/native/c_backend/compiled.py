@@ -13,7 +13,7 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import count
 from pathlib import Path
@@ -31,7 +31,10 @@ from support.files.user_cache import user_cache
 
 _NATIVE: Final = Path(__file__).parents[1]
 #: Every product and sum is rounded by itself, as by the machine (docs/adr/0013-numbers.md).
-_FLAGS: Final = tuple("-std=c11 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno -w".split())
+_FLAGS: Final = tuple(
+    "-std=c11 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno -w"
+    " --param=max-inline-insns-auto=200 --param=max-inline-insns-recursive-auto=1000".split()
+)
 _PATIENCE: Final = 600  # seconds that the compiler may take
 _MOST_KEPT: Final = 500
 #: Steps of a routine that is no call in C, if it calls none itself.
@@ -42,6 +45,8 @@ _MOST_TWICE: Final = 150
 _MOST_STEPS: Final = 5_000
 #: What a cell of a type holds; of all others a number.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
+#: And that in C.
+_IN_C: Final = {"INT": "int32_t", "BOOL": "int32_t", "REAL": "float"}
 
 
 def compiler() -> str | None:
@@ -124,10 +129,10 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
         for number, (code, body) in enumerate(zip(program.codes, bodies, strict=True))
         if code.kind is CodeKind.ROUTINE and len(body) <= _MOST_STEPS
     }
-    routines = {
-        number: _Routine(program, number, steps, body, arrays, compiled.keys())
-        for number, body in compiled.items()
-    }
+    routines = dict[int, _Routine]()
+    for number, body in compiled.items():
+        routines[number] = _Routine(program, number, steps, body, arrays, routines)
+    _find_valued(routines)
     deferred = set[int]().union(*(routine.deferred for routine in routines.values()))
     yield '#include "c_backend/compiled.h"'
     yield "static const struct krl_array arrays[] = {"
@@ -146,7 +151,18 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
     entries = sorted(entry for routine in routines.values() for entry in routine.entries)
     yield f"const int32_t krl_entries[] = {{{', '.join(map(str, [*entries, -1]))}}};"
     names = (f"enter_{number}" if number in routines else "NULL" for number in range(len(firsts)))
-    yield f"PROGRAM({', '.join(names)})"
+    largest = max((program.frames[number] for number in routines), default=0)
+    yield f"PROGRAM({largest}, {', '.join(names)})"
+
+
+def _find_valued(routines: Mapping[int, _Routine]) -> None:
+    """Take from ``valued`` of each routine what a call may hand over without a value."""
+    todo = set(routines)
+    while todo:
+        for number, missing in routines[todo.pop()].given_without_value():
+            if not missing.isdisjoint(routines[number].valued):
+                routines[number].valued -= missing
+                todo.add(number)
 
 
 class _Routine:
@@ -164,7 +180,7 @@ class _Routine:
         steps: Sequence[Step],
         body: range,
         arrays: Sequence[Sequence[int]],
-        compiled: Container[int],
+        compiled: Mapping[int, _Routine],
     ) -> None:
         self._program = program
         self._compiled = compiled
@@ -174,6 +190,9 @@ class _Routine:
         self._flow = RegisterFlow(steps, body)
         self._slots = program.slots(program.codes[number])
         self._kinds = dict(self._kinds_of_variables())
+        result = program.codes[number].result
+        #: What it gives holds; ``None`` where it gives nothing.
+        self._result = None if result is None else _KINDS.get(program.types[result], "INT")
         self._used = {one for place in body for one in steps[place].registers()}
         #: What lies in cells only, and the copies of all other cells that steps name.
         self._in_frame = self._addressed(arrays)
@@ -189,6 +208,9 @@ class _Routine:
             one.cells for one in self._slots if isinstance(one.variable, Parameter)
         )
         self._is_copied = any(one.name == "CALL_COPY" and one.b == number for one in steps)
+        #: The cells that calls hand over, and those that have a value in all calls.
+        self._given = range(0 if self._is_copied else self._received)
+        self.valued = frozenset(self._given)
         #: Steps that do not look whether their result is finite.
         self.deferred = self._flow.deferred(self._restarts, self._live)
 
@@ -201,30 +223,60 @@ class _Routine:
         """Where the interpreter may enter it: at its beginning, and where a loop begins."""
         return {self._body[0], *self._flow.loops}
 
+    @property
+    def _parameters(self) -> str:
+        """What calls hand over, as parameters in C."""
+        return "".join(
+            f", {_IN_C[self._kinds[one]] if one in self.valued else 'krl_cell'} p{one}"
+            for one in self._given
+        )
+
+    def _assigned(self) -> Mapping[int, frozenset[int]]:
+        giving = {number for number, one in self._compiled.items() if one._result is not None}
+        return self._flow.assigned(self.valued, self._in_frame, giving)
+
+    def given_without_value(self) -> Iterator[tuple[int, frozenset[int]]]:
+        """For calls: the routine, and which of its cells may have no value then."""
+        assigned = self._assigned()
+        for place, valued in assigned.items():
+            step = self._steps[place]
+            if step.name in CALLS and step.b in self._compiled:
+                end = step.a + self._arguments(step)
+                without = set(range(step.a, end)).difference(valued)
+                yield step.b, frozenset(one - step.a for one in without)
+
+    def _arguments(self, step: Step) -> int:
+        """How many cells a call hands over."""
+        return sum(map(stack_cells, self._program.codes[step.b].parameters))
+
     def declarations(self) -> Iterator[str]:
         """The function, as calls and as the interpreter have it; what is small is no call in C."""
-        number, given = self._number, range(0 if self._is_copied else self._received)
-        parameters = "".join(f", krl_cell p{one}" for one in given)
+        number, parameters = self._number, self._parameters
         is_small = len(self._body) <= _SMALL and not any(
             self._steps[place].name in CALLS for place in self._body
         )
         yield f"BODY({self._kind}, {number}{parameters});"
         kind = "INLINED" if is_small else "static"
         yield f"{kind} krl_ended call_{number}(PARAMETERS{parameters}) {{"
-        handed = "".join(f", p{one}" for one in given)
-        yield f"return body_{number}(machine, fp, left, open, extent, CALLED, CALLED{handed});"
+        handed = "".join(f", p{one}" for one in self._given)
+        yield f"return body_{number}(machine, fp, left, open, CALLED, CALLED{handed});"
         yield "}"
-        handed = "".join(f", fp[{one}]" for one in given)
+        handed = "".join(
+            f", VALUE_{self._kinds[one]}(krl_register_at(&fp[{one}]))"
+            if one in self.valued
+            else f", fp[{one}]"
+            for one in self._given
+        )
         yield f"static void enter_{number}(PARAMETERS, int32_t at) {{"
-        yield f"body_{number}(machine, fp, left, open, extent, at, at{handed});"
+        yield self._each("NEED_VALUE", self.valued)
+        yield f"body_{number}(machine, fp, left, open, at, at{handed});"
         yield "}"
 
     def lines(self) -> Iterator[str]:
         """The function itself."""
         number, frame, received = self._number, self._program.frames[self._number], self._received
         is_owner = any(code.owner == number for code in self._program.codes if code.captures)
-        given = range(0 if self._is_copied else received)
-        yield f"BODY({self._kind}, {number}{''.join(f', krl_cell p{one}' for one in given)}) {{"
+        yield f"BODY({self._kind}, {number}{self._parameters}) {{"
         yield f"ENTER({number}, {max(self._used, default=0) + 1}, {int(is_owner)}) {{"
         yield from self._loop_entries()
         yield "}"
@@ -233,8 +285,9 @@ class _Routine:
         if self._is_copied:
             yield self._each("GET", copied)
         else:
-            yield self._each("TAKE", copied)
-            yield self._each("TAKE_CELL", set(given).difference(copied))
+            for word, cells in (("", set(self._given) - self.valued), ("_VALUE", self.valued)):
+                yield self._each(f"TAKE{word}", cells.intersection(copied))
+                yield self._each(f"TAKE{word}_CELL", cells.difference(copied))
         yield self._each("BLANK", [one for one in self._copies if one >= received])
         yield from _blank_cells(set(range(received, frame)) - self._copies)
         for place in self._body:
@@ -255,7 +308,7 @@ class _Routine:
         yield "}"
 
     def _loop_entries(self) -> Iterator[str]:
-        assigned = self._flow.assigned()
+        assigned = self._assigned()
         for place in self._flow.loops:
             valued = assigned.get(place, frozenset())
             yield f"case {place}:"
@@ -316,41 +369,39 @@ class _Routine:
             written = self._each("PUT", self._in_frame.intersection(step.named(roles[1])))
             jump = f"JUMP_TO(do_{step.d})" if step.is_jump else ""
             if name == "RETURN_VALUE":
-                yield f"RETURN_VALUE({place}, {out})"
+                yield f"RETURN_VALUE({place}, {out}, {self._result})"
             else:
                 yield f"DO({name}, {place}, {out}, {written}, {jump})"
 
     def _call(self, place: int, out: int) -> str:
         """A call, which hands over cells, and is put back if the interpreter goes on within it."""
         step = self._steps[place]
-        program, given = self._program, self._handed(step)
-        callee, cells = program.codes[step.b], range(step.a, step.a + len(given))
-        frame, prepare, handed = step.a, "", "".join(f", {one}" for one in given)
+        cells = range(step.a, step.a + self._arguments(step))
+        frame, prepare = step.a, ""
         if step.name == "CALL_COPY":
             frame, handed = step.d, ""
             prepare = f"{self._each('PUT', self._copies.intersection(cells))}RECEIVE({place})"
+        else:
+            handed = "".join(f", {self._handed(step, one)}" for one in cells)
         below = {one for one in (*self._variables, *self._live[place]) if one < step.a}
         result = ""
-        if callee.result is not None:
-            kind = _KINDS.get(program.types[callee.result], "INT")
+        if (kind := self._compiled[step.b]._result) is not None:
             result = f"RESULT({step.a}, {kind})"
             result += self._each("PUT", self._in_frame.intersection({step.a}))
-        size = program.frames[step.b]
         return (
-            f"CALL({place}, {out}, call_{step.b}, {size}, fp + {frame}, {prepare}, "
+            f"CALL({place}, {out}, call_{step.b}, fp + {frame}, {prepare}, "
             f"{self._each('PUT', below)}, {result}{handed})"
         )
 
-    def _handed(self, step: Step) -> list[str]:
-        """What a call hands over, as cells."""
-        callee = self._program.codes[step.b]
-        end = step.a + sum(map(stack_cells, callee.parameters))
-        return [
-            f"krl_cell_of_{self._kinds.get(one, 'ANY')}(registers[{one}])"
-            if one in self._copies
-            else f"fp[{one}]"
-            for one in range(step.a, end)
-        ]
+    def _handed(self, step: Step, register: int) -> str:
+        """What a call hands over of a register."""
+        callee, is_copy = self._compiled[step.b], register in self._copies
+        if register - step.a in callee.valued:
+            where = f"registers[{register}]" if is_copy else f"krl_register_at(&fp[{register}])"
+            return f"VALUE_{callee._kinds[register - step.a]}({where})"
+        if is_copy:
+            return f"krl_cell_of_{self._kinds.get(register, 'ANY')}(registers[{register}])"
+        return f"fp[{register}]"
 
 
 def _blank_cells(cells: set[int]) -> Iterator[str]:

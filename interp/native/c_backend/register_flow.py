@@ -6,7 +6,7 @@ Classical data-flow analyses, over single steps: each goes on until nothing chan
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Container, Mapping, Sequence
 
 from interp.native.c_backend.register_code import CALLS, ENDS, Step, roles_of
 
@@ -116,21 +116,31 @@ class RegisterFlow:
         roles = roles_of(step.name)
         return roles is None or register in step.named(roles[0])
 
-    def assigned(self) -> dict[int, frozenset[int]]:
-        """Definite assignment: by place, the registers with a value on every way there."""
+    def assigned(
+        self, given: Collection[int] = (), aliased: Container[int] = (), giving: Container[int] = ()
+    ) -> dict[int, frozenset[int]]:
+        """Definite assignment: by place, the registers with a value on every way there.
+
+        ``given`` have one from the beginning; ``giving`` are the routines with a result. What is
+        ``aliased`` may lose its value by its address.
+        """
         start = self._body[0]
-        found: dict[int, frozenset[int]] = {start: frozenset()}
+        found: dict[int, frozenset[int]] = {start: frozenset(given)}
         todo = [start]
         while todo:
             place = todo.pop()
             step, known = self._steps[place], found[place]
             if step.name in CALLS:
                 known = frozenset(one for one in known if one < step.a)
+                known |= {step.a} if step.b in giving else set()
             else:
                 read, written = map(step.named, roles_of(step.name) or ("", ""))
-                can_be_none = step.name == "PASS" or (step.name == "SET_K" and step.tag == 0)
-                known |= read
-                known = known - written if can_be_none else known | written
+                if step.name == "PASS":
+                    has_value = step.b in known and step.b not in aliased
+                else:
+                    has_value = step.name != "SET_K" or step.tag != 0
+                    known |= read
+                known = known | written if has_value else known - written
             for other in self.after(place):
                 met = known & found.get(other, known)
                 if met != found.get(other):

@@ -56,6 +56,52 @@ ENDFCT
 """
 
 
+#: A parameter has a value in all calls, another is left out in one.
+GIVEN = """DEF RUN()
+   DECL INT I
+   FOR I = 1 TO 30
+      $OV_PRO = SUM(I)
+   ENDFOR
+END
+DEFFCT INT SUM(I:IN)
+   DECL INT I
+   RETURN FIRST(I, I + 1, I) + FIRST(I, I)
+ENDFCT
+DEFFCT INT FIRST(N:IN, A:IN, B:IN)
+   DECL INT N, A, B, K
+   FOR K = 1 TO 3
+      A = A + N
+   ENDFOR
+   IF N < 25 THEN
+      RETURN A
+   ENDIF
+   RETURN A + B
+ENDFCT
+"""
+
+
+#: Frames that together have more cells than there are.
+WIDE = """DEF RUN()
+   DECL INT L[9000]
+   L[1] = 90
+   $OV_PRO = DEPTH(L[1])
+   L[1] = 300
+   $OV_PRO = DEPTH(L[1])
+END
+DEFFCT INT DEPTH(N:IN)
+   DECL INT N, L[9000]
+   L[N + 1] = N
+   IF N == 150 THEN
+      $FLAG[1] = TRUE
+   ENDIF
+   IF N == 0 THEN
+      RETURN 0
+   ENDIF
+   RETURN DEPTH(L[N + 1] - 1) + 1
+ENDFCT
+"""
+
+
 FORMATS = 'K = 0\nSWRITE(S[], T, K, "%d", K)\n' * 6 + "K = 1\n" * 4
 
 
@@ -193,11 +239,16 @@ def test_calls_deeper_than_those_in_c() -> None:
         assert expected == _requests(program, "compiled", limits)
 
 
-def test_structures_by_value() -> None:
-    """A structure that is handed over is copied."""
-    program = Prepared(load([Source(COPIES, "run.src")], "run.src"))
-    expected = _requests(program, "native", Limits(per_slice=13))
-    assert expected == _requests(program, "compiled", Limits(per_slice=13))
+@pytest.mark.parametrize(
+    ("text", "ending"), [(COPIES, End), (GIVEN, Fail), (WIDE, Fail)], ids=["copied", "none", "wide"]
+)
+def test_what_calls_hand_over(text: str, ending: type[Request]) -> None:
+    """A structure is copied, what has no value has none, and frames have so many cells at most."""
+    program = Prepared(load([Source(text, "run.src")], "run.src"))
+    for limits in (Limits(depth=300, per_slice=13), Limits(depth=300)):
+        expected = _requests(program, "native", limits)
+        assert isinstance(expected[-1], ending)
+        assert repr(expected) == repr(_requests(program, "compiled", limits))
     assert not program.notes
 
 

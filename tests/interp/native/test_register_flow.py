@@ -42,6 +42,15 @@ def test_a_register_is_assigned_where_it_has_a_value_on_every_way() -> None:
     assert {0: [], 1: [0], 2: [0, 8], 3: [0, 8, 9], 4: [0, 8, 9], 5: [0, 8, 9]} == assigned
 
 
+def test_what_is_handed_on_has_a_value_where_that_had_one() -> None:
+    """Unless it can be reached by its address; and the result of a call has one."""
+    steps = [_step("PASS", a=8, b=0), _step("PASS", a=9, b=1), _step("CALL", a=9, b=3)]
+    flow = RegisterFlow([*steps, _step("RETURN")], range(4))
+    assert {0, 1, 8} == flow.assigned({0, 1}, aliased={1})[2]
+    assert {0, 1, 8, 9} == flow.assigned({0, 1}, aliased={1}, giving={3})[3]
+    assert {0, 8} == flow.assigned({0})[3]
+
+
 def test_statements_between_jumps_and_targets_count_together() -> None:
     """Behind the first of two there is one that was counted and has not begun."""
     counted, later = _FLOW.blocks()
