@@ -88,7 +88,7 @@ def check(
     the number of processes, by default as many as are worth it. Raises `InputError`.
     """
     from grammar.check.project.batch import CheckOptions, check_paths
-    from krl.program_loading import project_paths
+    from krl.running.program_loading import project_paths
     from support.files.discovery import IngestError
 
     roots = [Path(path) for path in paths]
@@ -175,8 +175,8 @@ def run(
     from interp.controller.state.profile import Profile
     from interp.session import RunSetup, available, run_program
     from interp.values.faults import RuntimeFailure
-    from krl.program_loading import load_program
-    from krl.run_notes import run_notes
+    from krl.running.program_loading import load_program
+    from krl.running.run_notes import run_notes
 
     with as_input_errors(RuntimeFailure):
         program, _ = load_program(Path(file), strict=strict, stands_in=not strict, routine=routine)
@@ -294,7 +294,7 @@ def load_backup(path: PathLike) -> Backup:
     """
     from grammar.comparison.content import content_of
     from grammar.comparison.points import POINT_TYPES, numbers_of
-    from krl.program_loading import sources_below
+    from krl.running.program_loading import sources_below
 
     contents = [content_of(source) for _, source in sources_below([Path(path)])]
     contents.sort(key=lambda one: one.path)

@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.output_files import check_files
-from krl.program_loading import compile_project
+from krl.running.program_loading import compile_project
+from krl.terminal.output_files import check_files
 from support.files.atomic_write import write_atomic
 
 _LARGEST = 64 << 20  # bytes; no program that fits into the machine is nearly as large

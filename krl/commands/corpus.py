@@ -60,7 +60,7 @@ def fetch(
 
     The files belong to other people. Exit status 1 if a file could not be fetched.
     """
-    from krl.progress import progress_bar
+    from krl.terminal.progress import progress_bar
     from recovery.corpus import public
 
     sources = _sources()
@@ -107,7 +107,7 @@ def synth(
     The same size and seed give the same files everywhere. They are not evidence for a grammar.
     """
     from grammar.generation.cells.writing import write_cells
-    from krl.progress import progress_bar
+    from krl.terminal.progress import progress_bar
 
     wanted = _bytes(size)
     folder = out or _SYNTHETIC / f"{wanted}-{seed}"

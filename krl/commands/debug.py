@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.run_options import RunOptions, expected_errors, prepared_run, with_run_options
+from krl.running.run_options import RunOptions, expected_errors, prepared_run, with_run_options
 
 if TYPE_CHECKING:
     from interp.debugging.debugger import Debugger
-    from krl.debug_prompt import Prompt
+    from krl.running.debug_prompt import Prompt
 
 
 @with_run_options
@@ -60,9 +60,9 @@ def debug(
 def _at_prompt(file: Path, options: RunOptions) -> int:
     with expected_errors():
         from interp.debugging.debugger import Debugger
-        from krl.debug_prompt import Prompt
-        from krl.debugged_run import debugged_run
-        from krl.run_notes import run_notes
+        from krl.running.debug_prompt import Prompt
+        from krl.running.debugged_run import debugged_run
+        from krl.running.run_notes import run_notes
 
         is_terminal = sys.stdin.isatty() and sys.stdout.isatty()
         program, setup = prepared_run(file, options, is_terminal=is_terminal)

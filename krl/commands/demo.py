@@ -8,7 +8,7 @@ import typer
 
 from krl.commands.run import run
 from krl.errors import InputError, one_line
-from krl.run_options import Robot
+from krl.running.run_options import Robot
 
 _NAME, _SUBMIT = "search_demo", "count_parts"
 #: In an installed package, and in a checkout.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, shown
-from krl.output_files import check_files, write_json
+from krl.terminal.output_files import check_files, write_json
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source

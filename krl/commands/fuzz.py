@@ -7,9 +7,9 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors
-from krl.options import JobsOption, JsonOption, all_cores
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
+from krl.terminal.options import JobsOption, JsonOption, all_cores
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
 
 if TYPE_CHECKING:
     from conformance.differential.campaign import Finding, Findings

@@ -14,10 +14,10 @@ from rich.text import Text
 
 from krl.construct_ledger import expected_errors
 from krl.errors import FINE, InputError, one_line
-from krl.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
-from krl.output_files import check_targets, write_json
-from krl.progress import progress_bar
-from krl.survey_summary import share
+from krl.terminal.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
+from krl.terminal.output_files import check_targets, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.survey_summary import share
 
 if TYPE_CHECKING:
     from recovery.records import GrowthRecord, StepRecord

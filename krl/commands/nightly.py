@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.output_files import check_files, write_json
+from krl.terminal.output_files import check_files, write_json
 
 if TYPE_CHECKING:
     from reports.nightly.nightly_failures import Failure

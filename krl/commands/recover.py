@@ -11,16 +11,16 @@ import typer
 from krl.commands.recover_auto import recover_auto
 from krl.construct_ledger import expected_errors
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import (
+from krl.terminal.options import (
     CorpusArgument,
     JobsOrOneOption,
     JsonTooOption,
     corpus_or_ours,
     negatives_or_ours,
 )
-from krl.output_files import check_targets, write_json
-from krl.progress import progress_bar
-from krl.survey_summary import print_survey
+from krl.terminal.output_files import check_targets, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.survey_summary import print_survey
 
 if TYPE_CHECKING:
     from grammar.notation.model import Grammar

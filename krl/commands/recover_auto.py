@@ -12,7 +12,7 @@ import typer
 
 from krl.construct_ledger import expected_errors
 from krl.errors import FINE, InputError
-from krl.output_files import write_json
+from krl.terminal.output_files import write_json
 
 if TYPE_CHECKING:
     from grammar.notation.edits import Edit

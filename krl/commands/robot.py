@@ -11,7 +11,7 @@ import typer
 
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
-from krl.robot_options import read_machine_file
+from krl.running.robot_options import read_machine_file
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics

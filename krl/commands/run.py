@@ -15,10 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.output_files import check_files
-from krl.progress import progress_bar
-from krl.run_notes import refused, run_notes
-from krl.run_options import (
+from krl.running.run_notes import refused, run_notes
+from krl.running.run_options import (
     FileArgument,
     Robot,
     RunOptions,
@@ -26,6 +24,8 @@ from krl.run_options import (
     prepared_run,
     with_run_options,
 )
+from krl.terminal.output_files import check_files
+from krl.terminal.progress import progress_bar
 from support.files.atomic_write import atomic_path
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def run(
         done = _performed(program, setup, trace)
         _write(done, program, setup, path, html)
         if video is not None or png is not None:
-            from krl.run_pictures import write_run_film, write_run_picture
+            from krl.running.run_pictures import write_run_film, write_run_picture
 
             if video is not None:
                 write_run_film(video, done, program, setup)

@@ -10,7 +10,7 @@ import typer
 
 from krl.errors import InputError
 from krl.extras import ARM, expected_extras
-from krl.run_options import ExecutorOption
+from krl.running.run_options import ExecutorOption
 from support.files.atomic_write import write_atomic
 
 _PLUGIN = "krl.program_tests.pytest_plugin"

@@ -14,7 +14,7 @@ from krl.debug_adapter.connection import Connection, Json
 from krl.debug_adapter.debuggee import Debuggee
 from krl.debug_adapter.inspection import Inspection
 from krl.errors import InputError, one_line
-from krl.run_options import RunOptions
+from krl.running.run_options import RunOptions
 
 _CAPABILITIES: Final[Json] = {
     "supportsConfigurationDoneRequest": True,

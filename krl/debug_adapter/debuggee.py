@@ -22,10 +22,10 @@ from krl.debug_adapter.arguments import Arguments, Refused
 from krl.debug_adapter.connection import Connection, Json
 from krl.debug_adapter.files import ProgramFiles
 from krl.debug_adapter.variables import Variables
-from krl.debugged_run import debugged_run
 from krl.errors import InputError
-from krl.run_notes import run_notes
-from krl.run_options import RunOptions, expected_errors, prepared_run
+from krl.running.debugged_run import debugged_run
+from krl.running.run_notes import run_notes
+from krl.running.run_options import RunOptions, expected_errors, prepared_run
 
 _REASONS: Final = {
     "watch": "data breakpoint",

@@ -12,7 +12,7 @@ import typer
 from krl.debug_adapter.adapter import Adapter
 from krl.debug_adapter.connection import Connection
 from krl.extras import ARM, expected_extras
-from krl.run_options import RunOptions
+from krl.running.run_options import RunOptions
 
 
 def serve(file: Path | None, options: RunOptions, port: int | None) -> None:

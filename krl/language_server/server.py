@@ -27,8 +27,8 @@ from krl.language_server.protocol import location, path_of, range_of
 from krl.language_server.semantic_tokens import MODIFIERS, TYPES, semantic_tokens
 from krl.language_server.symbols import folds, outline, wanted
 from krl.language_server.workspace import Looked, OpenProject
-from krl.program_loading import project_root
 from krl.project_settings import FILE_NAME
+from krl.running.program_loading import project_root
 
 # Seconds without a change after which files without an open view are checked.
 _PAUSE = 0.3

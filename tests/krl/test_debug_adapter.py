@@ -16,7 +16,7 @@ import pytest
 
 from krl.debug_adapter.adapter import Adapter
 from krl.debug_adapter.connection import Connection
-from krl.run_options import RunOptions
+from krl.running.run_options import RunOptions
 
 MAIN = """\
 DEF MAIN()

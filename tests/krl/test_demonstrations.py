@@ -9,7 +9,7 @@ from interp.controller.inputs.input_script import Script
 from interp.controller.state.trace import TraceEvent
 from interp.executors import Prepared, available
 from interp.session import RunResult, RunSetup, run_program
-from krl.program_loading import load_program
+from krl.running.program_loading import load_program
 
 PROGRAMS = Path(__file__).parents[2] / "corpus" / "programs"
 WAYS = [("tree", "none"), ("vm", "kinematic"), (available()[-1], "mujoco")]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from krl.errors import InputError
-from krl.output_files import check_files, write_json
+from krl.terminal.output_files import check_files, write_json
 
 
 def test_names_that_are_no_text(tmp_path: Path) -> None:

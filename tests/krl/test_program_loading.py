@@ -6,7 +6,7 @@ from zipfile import ZipFile
 import pytest
 
 from krl.cli import main
-from krl.program_loading import load_program, project_paths, project_root, read_sources
+from krl.running.program_loading import load_program, project_paths, project_root, read_sources
 
 FILES = {
     "R1/Program/main.src": "DEF main ( )\nhelp ( )\nEND\n",
@@ -148,7 +148,7 @@ def test_only_what_is_named_is_read_of_a_large_project(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of more bytes than are read, what the program names counts, and the controller's own data."""
-    monkeypatch.setattr("krl.program_loading._MOST_BYTES", 100)
+    monkeypatch.setattr("krl.running.program_loading._MOST_BYTES", 100)
     for name, text in {
         "main.src": "DEF main ( )\nPart ( )\nEND\n",
         "part.src": "DEF part ( )\nEND\n",

@@ -2,7 +2,7 @@
 
 import pytest
 
-from krl.progress import Bar, progress_bar
+from krl.terminal.progress import Bar, progress_bar
 
 
 @pytest.mark.parametrize(
@@ -23,7 +23,7 @@ def test_a_line_is_written_at_intervals(
     """Each interval of seconds has one, from the beginning of the command on."""
     moments = {"now": 100.0}
     monkeypatch.setenv("KRL_PROGRESS", interval)
-    monkeypatch.setattr("krl.progress.monotonic", lambda: moments["now"])
+    monkeypatch.setattr("krl.terminal.progress.monotonic", lambda: moments["now"])
     monkeypatch.setattr(Bar, "_written", 100.0)
     with progress_bar("reading") as bar:
         for now in (105.0, 112.0, 117.0, 123.0):

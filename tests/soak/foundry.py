@@ -62,7 +62,7 @@ class Foundry:
         from interp.bytecode.compiler import compile_program
         from interp.bytecode.image.writer import write_image
         from interp.values.faults import LinkError
-        from krl.program_loading import load_program
+        from krl.running.program_loading import load_program
 
         made = []
         for file in sorted((REPOSITORY / "conformance" / "cases" / "control").glob("*.src")):

@@ -8,10 +8,10 @@ from rich.console import Console
 
 from krl.errors import FINE
 from krl.extras import ARM, expected_extras
-from krl.options import JsonOption
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.terminal.options import JsonOption
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 
 
 def arm(

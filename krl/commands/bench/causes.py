@@ -7,10 +7,10 @@ from rich.console import Console
 
 from krl.construct_ledger import expected_errors
 from krl.errors import FINE
-from krl.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures, plain
+from krl.terminal.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures, plain
 
 _FIGURES = ("files", "clusters", "constructs", "clusters_per_construct", "purity")
 

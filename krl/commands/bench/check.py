@@ -8,10 +8,10 @@ from rich.console import Console
 
 from krl.commands.bench.scaling import SizesOption, peak, phases_table, print_growth, sizes_of
 from krl.errors import FINE, as_input_errors
-from krl.options import JsonOption, ProgramsArgument, programs_or_ours
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures, plain
+from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures, plain
 from support.measure.speed import MB
 
 Damage = Literal["mistakes", "names", "tokens", "lines"]

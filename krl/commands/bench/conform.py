@@ -9,11 +9,11 @@ from rich.console import Console
 
 from krl.errors import FINE, InputError, as_input_errors
 from krl.extras import ARM, expected_extras
-from krl.options import JobsOption, JsonOption, all_cores
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.run_options import Executor
-from krl.text_table import figures
+from krl.running.run_options import Executor
+from krl.terminal.options import JobsOption, JsonOption, all_cores
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 
 if TYPE_CHECKING:
     from conformance.suite.case import Case

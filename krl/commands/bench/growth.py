@@ -23,10 +23,10 @@ from rich.markup import escape
 
 from grammar.generation.shapes import SHAPES, Shape
 from krl.errors import BAD_INPUT, FINE, InputError, run
-from krl.options import JobsOption, JsonOption, all_cores
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.terminal.options import JobsOption, JsonOption, all_cores
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 from support.files.untrusted import json_of, read_text
 
 if TYPE_CHECKING:

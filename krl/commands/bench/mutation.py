@@ -7,10 +7,10 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINE, as_input_errors
-from krl.options import JobsOption, JsonOption, all_cores, negatives_or_ours
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures, plain
+from krl.terminal.options import JobsOption, JsonOption, all_cores, negatives_or_ours
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures, plain
 
 _PROGRAMS = Path("corpus", "programs")
 _AIMS = (

@@ -13,11 +13,17 @@ from rich.table import Table
 
 from krl.commands.bench.scaling import damage_kinds
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import JobsOption, JsonOption, ProgramsArgument, all_cores, programs_or_ours
-from krl.output_files import check_files, write_json
-from krl.program_loading import sources_below
-from krl.progress import progress_bar
-from krl.run_options import Executor, Robot
+from krl.running.program_loading import sources_below
+from krl.running.run_options import Executor, Robot
+from krl.terminal.options import (
+    JobsOption,
+    JsonOption,
+    ProgramsArgument,
+    all_cores,
+    programs_or_ours,
+)
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source

@@ -9,11 +9,11 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import JsonOption, ProgramsArgument, programs_or_ours
-from krl.output_files import check_files, write_json
-from krl.program_loading import sources_below
-from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.running.program_loading import sources_below
+from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 
 if TYPE_CHECKING:
     from conformance.differential.corpus_routines import Trial, Unread

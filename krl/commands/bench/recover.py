@@ -17,10 +17,10 @@ from krl.commands.bench.scaling import (
     sizes_of,
 )
 from krl.errors import FINE, as_input_errors
-from krl.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.terminal.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 from support.measure.speed import MB
 
 

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.errors import InputError
-from krl.text_table import figures
+from krl.terminal.text_table import figures
 
 _LARGEST: Final = 2_000
 

@@ -11,10 +11,10 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.errors import FINE, InputError, as_input_errors
-from krl.options import JsonOption
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.terminal.options import JsonOption
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 
 _HEADINGS = {
     "tree": "tree",

@@ -12,10 +12,10 @@ import typer
 from krl.commands.check.output import Format, sum_up, write
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors
 from krl.extras import expected_extras
-from krl.options import JobsOption
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
 from krl.project_settings import Settings, baseline_place, read_baseline, read_settings, settings_of
+from krl.terminal.options import JobsOption
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
 from support.files.user_cache import user_cache
 
 if TYPE_CHECKING:
@@ -214,7 +214,7 @@ class _Check:
 
     def _found(self) -> "tuple[CheckReport, list[Diagnostic]]":
         from grammar.check.project.batch import check_paths
-        from krl.program_loading import project_paths
+        from krl.running.program_loading import project_paths
         from support.files.discovery import IngestError
 
         with as_input_errors(IngestError), progress_bar("checking") as bar:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from krl.errors import one_line
-from krl.output_files import json_text
+from krl.terminal.output_files import json_text
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
 from krl.extras import ARM, expected_extras, need
-from krl.options import JobsOption, JsonOption
-from krl.output_files import check_files, write_json
-from krl.progress import progress_bar
-from krl.text_table import figures
+from krl.terminal.options import JobsOption, JsonOption
+from krl.terminal.output_files import check_files, write_json
+from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import figures
 
 if TYPE_CHECKING:
     from conformance.runner import CaseResult

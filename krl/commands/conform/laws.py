@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import typer
 
 from krl.errors import FINDINGS, FINE, one_line
-from krl.options import all_cores
-from krl.output_files import write_json
-from krl.progress import progress_bar
+from krl.terminal.options import all_cores
+from krl.terminal.output_files import write_json
+from krl.terminal.progress import progress_bar
 
 if TYPE_CHECKING:
     from conformance.suite.case import Case

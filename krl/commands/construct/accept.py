@@ -17,8 +17,8 @@ from krl.construct_ledger import (
     print_refusals,
 )
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.options import JobsOrOneOption, negatives_or_ours
-from krl.progress import progress_bar
+from krl.terminal.options import JobsOrOneOption, negatives_or_ours
+from krl.terminal.progress import progress_bar
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from krl.construct_ledger import (
     print_table,
 )
 from krl.errors import FINE, InputError, one_line
-from krl.output_files import check_files, write_json
+from krl.terminal.output_files import check_files, write_json
 
 _SURVEY = Path("reports", "out", "recover", "survey.json")
 

@@ -10,7 +10,7 @@ import typer
 
 from krl.construct_ledger import LEDGER, checkout_or_packaged, expected_errors, print_table
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
-from krl.progress import progress_bar
+from krl.terminal.progress import progress_bar
 
 if TYPE_CHECKING:
     from recovery.ledger.construct import Construct

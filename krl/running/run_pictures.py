@@ -11,7 +11,7 @@ from interp.robot.simulation.scene import Scene
 from interp.robot.simulation.video import VideoError, frame_times, write_picture, write_video
 from interp.session import RunResult, RunSetup
 from krl.errors import InputError
-from krl.progress import progress_bar
+from krl.terminal.progress import progress_bar
 from support.files.atomic_write import atomic_path
 
 _MOST_SIGNALS = 8

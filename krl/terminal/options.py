@@ -12,7 +12,7 @@ from krl.errors import InputError
 if TYPE_CHECKING:
     from recovery.negatives.negatives import Negative
 
-#: Where a command's record goes; `krl.output_files.check_files` sees to it before the work.
+#: Where a command's record goes; `output_files.check_files` checks it before the work.
 JsonOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the record to FILE.")
 ]

@@ -14,9 +14,9 @@ import typer
 
 from krl.errors import InputError, one_line
 from krl.extras import ARM, expected_extras
-from krl.program_loading import load_program
 from krl.project_settings import settings_of
-from krl.robot_options import robot_options
+from krl.running.program_loading import load_program
+from krl.running.robot_options import robot_options
 
 if TYPE_CHECKING:
     from interp.program.load import CheckedProgram

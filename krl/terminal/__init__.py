@@ -1,0 +1,1 @@
+"""The terminal: options, progress, tables, output files, the summary of a survey."""
