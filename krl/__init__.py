@@ -5,6 +5,8 @@ What is imported from here is loaded when it is first asked for, as the command 
 
 from typing import TYPE_CHECKING, Any
 
+from krl.hidden_packages import hiding_package
+
 if TYPE_CHECKING:
     from krl.library import check, load_backup, recover, run
 
@@ -15,6 +17,8 @@ def __getattr__(name: str) -> Any:
     """A function of `krl.library`."""
     if name not in __all__:
         raise AttributeError(f"module 'krl' has no attribute {name!r}")
+    if hiding := hiding_package():
+        raise ImportError(hiding)
     from krl import library
 
     return getattr(library, name)

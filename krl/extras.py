@@ -24,8 +24,6 @@ _EXTRA_OF = {
     "xdist": "test",
 }
 
-_OURS = ("conformance", "grammar", "interp", "recovery", "reports", "support")
-
 #: Packages that the arm imports when it first needs them, which would be in the midst of work.
 ARM = ("scipy",)
 
@@ -45,20 +43,6 @@ def expected_extras(*names: str) -> Iterator[None]:
         if name not in _EXTRA_OF:
             raise
         raise _refused(name) from error
-
-
-def hiding_package() -> str | None:
-    """What to say where another installed package hides one of ours: the names are common words."""
-    home = Path(__file__).parents[1]
-    for name in _OURS:
-        spec = find_spec(name)
-        found = Path((spec and spec.origin) or "nowhere").parent
-        if found != home / name:
-            return (
-                f"{name} should be {home / name} and is {found}, of another project: install "
-                "krl-workbench into a separate environment, as `uv tool` and pipx do"
-            )
-    return None
 
 
 def need(name: str) -> None:

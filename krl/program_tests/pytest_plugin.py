@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from krl.hidden_packages import hiding_package
+
 if TYPE_CHECKING:
     from krl.program_tests.test_files import ProgramTest
 
@@ -39,6 +41,8 @@ def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> ProgramTes
         ".src",
     ):
         return None
+    if hiding := hiding_package():  # tests are imported from folders with packages of their own
+        raise parent.CollectError(hiding)
     from krl.errors import one_line
     from krl.program_tests.test_files import is_test_file
 

@@ -2,11 +2,10 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib import metadata
-from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -62,18 +61,27 @@ def test_module_runs_as_the_command(tmp_path: Path) -> None:
     assert "krl: no corpus folder here: run this in a checkout of the workbench\n" == done.stderr
 
 
+@pytest.mark.parametrize(
+    ("words", "before", "status"),
+    [
+        (("-m", "krl", "check"), "krl: ", 2),
+        (("-c", "import krl; krl.check"), "ImportError: ", 1),
+        (("-m", "pytest"), "", 2),
+    ],
+)
 def test_a_package_of_the_same_name_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, words: tuple[str, ...], before: str, status: int
 ) -> None:
-    """Where another project's `grammar` is found first, one line says so."""
-    other = ModuleSpec("grammar", None, origin=str(tmp_path / "grammar" / "__init__.py"))
-    monkeypatch.setattr(
-        "krl.extras.find_spec", lambda name: other if name == "grammar" else find_spec(name)
+    """Where another project's `support` is found first, one line says so, whoever asks."""
+    (tmp_path / "support").mkdir()
+    (tmp_path / "support" / "__init__.py").write_text("raise ValueError\n", encoding="utf-8")
+    (tmp_path / "test_a.toml").write_text("[[test]]\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, *words], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-    assert 2 == main([])
-    out, err = capsys.readouterr()
-    assert ("", 1) == (out, len(err.splitlines()))
-    assert f"and is {tmp_path / 'grammar'}, of another project" in err
+    [line] = re.findall(".*should be.*", done.stderr or done.stdout)
+    assert (status, True) == (done.returncode, line.startswith(f"{before}support should be "))
+    assert f"and is {tmp_path / 'support'}, of another project" in line
 
 
 @pytest.mark.parametrize(
