@@ -37,7 +37,7 @@ TIMES = {"analysis_seconds", "generated", "seconds"}
 COMMANDS = {
     "recover": "recover --jobs {jobs} --no-start --out {out} {in}",
     "recover under the start": "recover --jobs {jobs} --out {out} --json {out}/r.json {some}",
-    "recover --auto": "recover --auto --hold-out 0.3 --target grammar/KRL.g4 --out {out} {in}",
+    "recover --auto": "recover --auto --hold-out 0.3 --target grammar/KRL.g4 --out {out} {some}",
     "check": "check --no-cache --jobs {jobs} --format json --out {out}/c.json {in}",
     "check as SARIF": "check --no-cache --jobs {jobs} --format sarif --out {out}/c.sarif {in}",
     "check as JUnit": "check --no-cache --jobs {jobs} --format junit --out {out}/c.xml {in}",
