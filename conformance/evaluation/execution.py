@@ -123,7 +123,8 @@ def _findings(project: Project, module: Module, source: Source) -> list[Diagnost
     done = check_module(project, module, source)
     known = (dict(done.types), dict(done.enumerations), dict(done.values))
     context = Context(project, module, source, done.resolution, System.load(), *known)
-    gaps = of_project(one for one in done.findings.references if not one.finding)
+    open_ = (one for one in done.findings.references if not one.finding)
+    gaps = of_project(open_, context.spelling)
     return in_order([*done.findings.diagnostics, *advance_stops.check(context), *gaps])
 
 

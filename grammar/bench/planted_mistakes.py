@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from grammar.bench.slips import Token, cut, damaged, lines_of_tokens
+from grammar.check.analysis.spelling import Spelling
 from grammar.check.project.dependencies import Contribution, contribution
 from grammar.check.project.framework import Findings, check_module, check_project
 from grammar.check.project.project_check import Reading, read_source
@@ -73,7 +74,7 @@ class _Checked:
         self.findings: dict[str, Findings] = {}
         self.names: dict[str, dict[int, str]] = {}
         self._check(programs)
-        self.found = frozenset(check_project(self.findings.values(), self._file))
+        self.found = frozenset(check_project(self.findings.values(), self._file, self._spelling()))
 
     def _check(self, paths: Iterable[str]) -> None:
         wanted = set(paths)
@@ -86,6 +87,9 @@ class _Checked:
     def _file(self, path: str) -> tuple[ModuleTable | None, Source]:
         program = self.programs[path]
         return program.file.table, program.source
+
+    def _spelling(self) -> Spelling:
+        return Spelling(lambda: [one.given.words for one in self.programs.values()])
 
     def _findings(self, project: Project, module: Module) -> Findings:
         program = self.programs[module.path]
@@ -130,7 +134,7 @@ class _Checked:
                 for other, one in self.programs.items()
                 if other.rpartition(".")[0].casefold() == stem or names & one.given.words
             )
-            found = check_project(self.findings.values(), self._file)
+            found = check_project(self.findings.values(), self._file, self._spelling())
         finally:
             self.programs[path], self.findings = before, findings
         return [one for one in found if one not in self.found and one.severity != "note"]

@@ -14,6 +14,7 @@ from functools import cached_property
 from itertools import chain
 
 from grammar.check.analysis.context import placed
+from grammar.check.analysis.spelling import spelling_of
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
 from grammar.diagnostics.syntax_errors import syntax_findings
 from grammar.semantics.link import File, Project, extended, link
@@ -324,7 +325,8 @@ def _checked(
     units = _units(project, sources, check_module if strict else typed_module)
     files = {unit.module.path: (unit.module.table, unit.source) for unit in units.values()}
     findings = [unit.checked.findings for unit in units.values()]
-    for one in check_project(findings, files.__getitem__) if strict else ():
+    spelling = spelling_of(unit.source for unit in units.values())
+    for one in check_project(findings, files.__getitem__, spelling) if strict else ():
         if one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)

@@ -14,6 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from grammar.check.analysis.spelling import spelling_of
 from grammar.check.project.dependencies import Contribution, Needs, contribution, needs_of
 from grammar.check.project.framework import Checked, Findings, check_module, check_project
 from grammar.check.project.project_check import Reading, read_source
@@ -229,7 +230,8 @@ class OpenProject:
         paths = [module.path for module in project.modules]
         if all(one in self._judged for one in paths):
             files = {one.path: (one.table, self._files[one.path].source) for one in project.modules}
-            return check_project((self._judged[one].findings for one in paths), files.get)
+            spelling = spelling_of(source for _, source in files.values())
+            return check_project((self._judged[one].findings for one in paths), files.get, spelling)
         return self._judged[path].findings.diagnostics
 
     def catch_up(self) -> Iterator[str]:

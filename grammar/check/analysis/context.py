@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from grammar.check.analysis.name_suggestions import NameSuggestions
+from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.diagnostics.codes import Severity, code, of_message
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.semantics.link import Project
@@ -102,6 +103,11 @@ class Context:
     def scope(self) -> Scope:
         """What is known at the first level of the file."""
         return self.project.scope(self.module)
+
+    @cached_property
+    def spelling(self) -> Spelling:
+        """How the names of the file are spelt."""
+        return spelling_of([self.source])
 
     @cached_property
     def routines(self) -> tuple[RoutineBody, ...]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
 from grammar.check.analysis.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.did_you_mean import did_you_mean
+from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.rules import is_confirmed
 from grammar.syntax import ast
 
@@ -20,10 +22,10 @@ _LOOPS = ast.For | ast.While | ast.Repeat | ast.Loop
 def check(context: Context) -> Iterator[Diagnostic]:
     """Findings about the control flow of all routines of a file."""
     labels = [_labels(routine) for routine in context.routines]
-    homes: dict[str, str] = {}
+    homes: dict[str, list[str]] = {}
     for routine, own in zip(context.routines, labels, strict=True):
         for key in own:
-            homes.setdefault(key, routine.node.name.text)
+            homes.setdefault(key, []).append(routine.node.name.text)
     for routine, own in zip(context.routines, labels, strict=True):
         yield from _exits(context, routine)
         yield from _label_twice(context, own)
@@ -94,23 +96,28 @@ def _label_twice(context: Context, own: _Labels) -> Iterator[Diagnostic]:
 
 
 def _gotos(
-    context: Context, routine: RoutineBody, own: _Labels, homes: Mapping[str, str]
+    context: Context, routine: RoutineBody, own: _Labels, homes: Mapping[str, Sequence[str]]
 ) -> Iterator[Diagnostic]:
-    """Jumps that lead nowhere or into a block; ``homes`` has a routine for each label."""
+    """Jumps that lead nowhere or into a block; ``homes`` has the routines of each label."""
     guesses = _MOST_GUESSES
+    slips = {} if context.is_cut(routine) else _slipped(context, routine, own, homes)
+    for wanted, name in slips.items():
+        message = f"no GOTO leads to {name.text}, and there is no label {wanted}"
+        fix = Fix(f"did you mean {wanted}?")
+        yield _finding(context, "unknown-label", name, message, "CTL-07", fix=fix)
     for placed in routine.statements:
         goto = placed.statement
         if not isinstance(goto, ast.Goto):
             continue
         targets = own.get(goto.label.key)
-        if targets is None and context.is_cut(routine):
+        if targets is None and (context.is_cut(routine) or goto.label.key in slips):
             continue
         if targets is None:
             all_ = (one.statement for one in routine.statements)
             labels = (one.name.text for one in all_ if isinstance(one, ast.Label))
             guess = did_you_mean(goto.label.text, labels) if guesses > 0 else None
             guesses -= 1
-            home = homes.get(goto.label.key)
+            home = homes.get(goto.label.key, ("",))[0]
             yield _finding(
                 context,
                 "unknown-label",
@@ -127,6 +134,29 @@ def _gotos(
             kind = _BLOCKS.get(type(block.statement), "a block")
             message = f"GOTO into {kind}, to {goto.label.text} on line {line}"
             yield _finding(context, "goto-into-block", goto, message, "CTL-07")
+
+
+def _slipped(
+    context: Context, routine: RoutineBody, own: _Labels, homes: Mapping[str, Sequence[str]]
+) -> dict[str, ast.Name]:
+    """The labels that no GOTO leads to, by the key of the only missing one that is a slip away.
+
+    None that several routines have is a slip.
+    """
+    if context.module.words:  # what cannot be read may lead there
+        return {}
+    all_ = (one.statement for one in routine.statements)
+    wanted = Counter(one.label.key for one in all_ if isinstance(one, ast.Goto))
+    alone = (key for key in own if key not in wanted and len(homes[key]) == 1)
+    near = Typos(alone, 3, series=Series.NONE)
+    found: dict[str, ast.Name] = {}
+    for key in wanted:
+        meant = near.meant(key) if key not in own else ()
+        if len(meant) == 1 and (wanted[key] > 1 or context.spelling.is_likelier(key, meant[0])):
+            label = own[meant[0]][0].statement
+            assert isinstance(label, ast.Label)
+            found[key] = label.name
+    return found
 
 
 def _holds(block: ast.Node, node: ast.Node) -> bool:

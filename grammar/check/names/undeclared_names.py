@@ -64,21 +64,22 @@ def check(context: Context) -> Iterator[Diagnostic]:
 def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]]:
     """The variables that are declared in the file by a slip, by what they are called in use.
 
-    That is what nothing uses, while a name one slip away is used several times and not declared.
+    That is what nothing uses, while a name one slip away is used and not declared: several times,
+    or once and likelier spelt as it is meant.
     """
     uses: dict[str, list[Use]] = {}
     for use in context.resolution.open_uses:
         if use.space is Space.VALUE and not isinstance(use.answer, Found):
             uses.setdefault(use.name.key, []).append(use)
-    several = {key: some for key, some in uses.items() if len(some) > 1 and key[0] != "$"}
-    if not several or context.module.words:  # what cannot be read may use it
+    uses = {key: some for key, some in uses.items() if key[0] != "$"}
+    if not uses or context.module.words:  # what cannot be read may use it
         return {}
     unused = _unused(context, _own_tables(context))
     typos = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
     found = {}
-    for key, some in several.items():
+    for key, some in uses.items():
         near = typos.meant(key)
-        if len(near) == 1:
+        if len(near) == 1 and (len(some) > 1 or context.spelling.is_likelier(key, near[0])):
             symbol = unused.pop(near[0].upper(), None)
             if symbol is not None:
                 found[key] = symbol, some[0].name.text, len(some)

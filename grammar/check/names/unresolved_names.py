@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
+from grammar.check.analysis.spelling import Spelling
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.typos import Typos
@@ -115,17 +116,20 @@ class UnresolvedName:
 
 
 def slipped_declarations(
-    found: Iterable[UnresolvedName], used: Set[str], file_of: FileOf
+    found: Iterable[UnresolvedName], used: Set[str], file_of: FileOf, spelling: Spelling
 ) -> dict[tuple[_Called, Declared | None], Diagnostic]:
     """The findings at declarations, by the `slip` of the uses that these leave undeclared.
 
-    A declaration has a slip where nothing uses it and a name that is near has several uses.
+    A declaration has a slip where nothing uses it and a name that is near has several uses, or one
+    and is likelier spelt as it is meant.
     ``used`` are declared names that some file uses.
     """
     uses: dict[tuple[_Called, Declared | None], list[UnresolvedName]] = {}
     for reference in found:
         uses.setdefault(reference.slip, []).append(reference)
-    slips = {key: at for key, some in uses.items() if (at := _slipped(some, used, file_of))}
+    slips = {
+        key: at for key, some in uses.items() if (at := _slipped(some, used, file_of, spelling))
+    }
     often = {
         key[0]
         for key in slips
@@ -136,7 +140,7 @@ def slipped_declarations(
     return slips
 
 
-def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
+def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
     An error in each file for what nothing declares though all that could is read; a warning for
@@ -158,7 +162,7 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
         or tuple(
             near
             for near in seen[space].meant(some[0].name)
-            if _is_usual(ranks[space, near.upper()], ranks[space, name], near)
+            if _is_usual(ranks[space, near.upper()], ranks[space, name], near, name, spelling)
         )
         for (space, name), some in uses.items()
     }
@@ -187,18 +191,29 @@ def of_project(found: Iterable[UnresolvedName]) -> Iterator[Diagnostic]:
             yield _from_elsewhere(some, counts[key])
 
 
-def _is_usual(near: tuple[int, int], wrong: tuple[int, int], name: str) -> bool:
-    """Whether a name is the right one of two: it is used more often, or both once and it first."""
+def _is_usual(
+    near: tuple[int, int], wrong: tuple[int, int], name: str, other: str, spelling: Spelling
+) -> bool:
+    """Whether a name is the right one of two: used more often, else likelier spelt, else first."""
     if near[0] == wrong[0]:
-        return near[0] == 1 and len(name) >= _LONG and near > wrong
+        if near[0] > 1 or len(name) < _LONG:
+            return False
+        return spelling.is_likelier(name, other) or (
+            near > wrong and not spelling.is_likelier(other, name)
+        )
     return near > wrong
 
 
-def _slipped(some: Sequence[UnresolvedName], used: Set[str], file_of: FileOf) -> Diagnostic | None:
+def _slipped(
+    some: Sequence[UnresolvedName], used: Set[str], file_of: FileOf, spelling: Spelling
+) -> Diagnostic | None:
     """The finding at a declaration that nothing uses, where what is near it has several uses."""
     first, count = some[0], sum(one.count for one in some)
     at = first.declared
-    if at is None or count < _MOST_SLIPS or at.used in used or REST in used:
+    if at is None or at.used in used or REST in used:
+        return None
+    called = first.name.rpartition("#")[2]
+    if count < _MOST_SLIPS and not spelling.is_likelier(called, first.near[0]):
         return None
     region = at.region(file_of)
     if region is None:
@@ -207,8 +222,7 @@ def _slipped(some: Sequence[UnresolvedName], used: Set[str], file_of: FileOf) ->
     slug, written, name = SLUGS[at.space], first.near[0], first.name
     if first.finding:
         slug, is_certain = "no-such-constant", first.finding.severity == "error"
-        of, _, constant = name.partition("#")
-        written, name = f"#{written} of {of}", f"#{constant}"
+        written, name = f"#{written} of {name.partition('#')[0]}", f"#{called}"
     return slipped_declaration(slug, at.path, region, written, name, count, is_certain=is_certain)
 
 
@@ -221,7 +235,7 @@ def slipped_declaration(
         path,
         region,
         f"{written} is declared and never used, and {name} is not declared",
-        reason=f"{name} is used {count} times",
+        reason=f"{name} is used {_times(count)}",
         severity="error" if is_certain else "warning",
         fix=Fix(f"did you mean {name}?"),
     )
@@ -240,7 +254,7 @@ def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:
 
 def _from_elsewhere(some: Sequence[UnresolvedName], count: int) -> Diagnostic:
     first = min(some, key=lambda reference: (reference.path, reference.region))
-    uses_of_it = "used once" if count == 1 else f"used {count} times"
+    uses_of_it = f"used {_times(count)}"
     if first.is_system:
         slug = "unknown-system-name"
         message = f"{first.name} is in no table of system variables; {uses_of_it}"
@@ -248,3 +262,7 @@ def _from_elsewhere(some: Sequence[UnresolvedName], count: int) -> Diagnostic:
         slug = "unknown-external"
         message = f"the {WORDS[first.space]} {first.name} is in no file at hand; {uses_of_it}"
     return diagnose(slug, first.path, first.region, message, severity="note")
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
+from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.check.flow import control_flow, data_flow, entry_points
 from grammar.check.flow.effects import NO_EFFECTS, Effects, effects
 from grammar.check.flow.effects import of_project as of_effects
@@ -122,19 +123,23 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     )
 
 
-def check_project(findings: Iterable[Findings], file_of: FileOf) -> list[Diagnostic]:
+def check_project(
+    findings: Iterable[Findings], file_of: FileOf, spelling: Spelling
+) -> list[Diagnostic]:
     """All findings of a project, from those of all its files, in order.
 
-    ``file_of`` has the table and the text of a file, for what others find in its declarations.
+    ``file_of`` has the table and the text of a file, for what others find in its declarations;
+    ``spelling`` knows the names of all files.
     """
     kept = list(findings)
     references = [reference for one in kept for reference in one.references]
     used = frozenset[str]().union(*(one.uses for one in kept))
-    slips = slipped_declarations(references, used, file_of)
+    slips = slipped_declarations(references, used, file_of, spelling)
     explained = {one.finding for one in references if one.slip in slips}
     found = [one for file in kept for one in file.diagnostics if one not in explained]
     found += slips.values()
-    found += of_names(one for one in references if not one.finding and one.slip not in slips)
+    rest = (one for one in references if not one.finding and one.slip not in slips)
+    found += of_names(rest, spelling)
     found += of_effects(one.effects for one in kept)
     return in_order(found)
 
@@ -146,5 +151,5 @@ def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[D
         read = [module for module in project.modules if module.syntax is not None]
         files = {module.path: (module.table, source_of(module)) for module in read}
         findings = (check_module(project, one, files[one.path][1]).findings for one in read)
-        found += check_project(findings, files.get)
+        found += check_project(findings, files.get, spelling_of(one for _, one in files.values()))
     return in_order(found)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from grammar.check.analysis.context import Context
+from grammar.check.analysis.spelling import Spelling
 from grammar.check.flow import advance_stops
 from grammar.check.flow.effects import effects_of_unread
 from grammar.check.names.undeclared_names import uses_of_unread
@@ -174,7 +175,9 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
     def file(path: str) -> tuple[ModuleTable | None, Source]:
         return files[indices[path]].read.table, contents[indices[path]].source
 
-    return check_project((one.checked.findings for one in files), file)
+    given = [one.read.contribution for one in files]
+    spelling = Spelling(lambda: [one.words for one in given if one])
+    return check_project((one.checked.findings for one in files), file, spelling)
 
 
 @dataclass(frozen=True, slots=True)

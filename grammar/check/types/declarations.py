@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from grammar.check.analysis.constant_folding import constant
@@ -11,11 +11,14 @@ from grammar.check.analysis.type_checker import TypeChecker
 from grammar.check.types.expressions import type_checker
 from grammar.check.types.signals import check_signal
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.assignability import declarable
-from grammar.semantics.scopes import NotFound
+from grammar.semantics.scopes import Found, NotFound
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import INT, REAL, UNKNOWN
 from grammar.syntax import ast
+from grammar.syntax.ast import Span
+from grammar.syntax.references import Space
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -175,4 +178,30 @@ def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
         verb = "is" if len(undeclared) == 1 else "are"
         message = f"{what} {names} {verb} not declared in the routine"
         fix = Fix("declare each with its type, DECL INT NAME for instance, before any instruction")
-        checker.report("parameter-undeclared", undeclared[0], message, fix=fix)
+        place = _slipped(checker.context, routine, undeclared) or undeclared[0].span
+        checker.report("parameter-undeclared", place, message, fix=fix)
+
+
+def _slipped(
+    context: Context, routine: RoutineBody, undeclared: Sequence[ast.Parameter]
+) -> Span | None:
+    """Where the only undeclared parameter is declared by a slip: nothing uses that declaration."""
+    if len(undeclared) > 1:
+        return None
+    name = undeclared[0].name
+    near = Typos([name.text], 3, series=Series.NONE)
+    used = {
+        found.symbol
+        for name, found in context.resolution.answers.items()
+        if isinstance(found, Found) and name.span != found.symbol.span
+    }
+    is_used = any(symbol.key == name.key for symbol in used)
+    slips = [
+        symbol.span
+        for symbol in routine.table.table.spaces[Space.VALUE].values()
+        if symbol.kind is Kind.VARIABLE
+        and symbol not in used
+        and near.meant(symbol.name)
+        and (is_used or context.spelling.is_likelier(name.text, symbol.name))
+    ]
+    return slips[0] if len(slips) == 1 else None

@@ -85,6 +85,12 @@ def test_a_label_that_is_nearly_there_is_offered(finds: Callable[..., list[Any]]
     assert "did you mean FINISH?" == found.fix.text
 
 
+def test_a_misspelt_label_is_told_in_its_place(finds: Callable[..., list[Any]]) -> None:
+    """A label that no GOTO leads to, one slip from where two go, is the one that is wrong."""
+    found = finds({"NEG.src": routine("GOTO FINISH", "GOTO FINISH", "FINSH:")})
+    assert [4] == [one.region.line for one in found if one.code == "KRL402"]
+
+
 @pytest.mark.parametrize(
     "lines",
     [

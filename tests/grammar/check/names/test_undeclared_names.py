@@ -193,6 +193,29 @@ def test_the_rarer_of_two_spellings_is_the_slip(finds: Callable[..., list[Diagno
     assert [3] == [one.region.line for one in found if one.severity == "warning"]
 
 
+@pytest.mark.parametrize(
+    ("declared", "used", "line"),
+    [("GRIPPER_OPNE", "GRIPPER_OPEN", 3), ("GRIPPER_OPEN", "GRIPPER_OPNE", 4)],
+)
+def test_other_names_show_which_of_two_is_misspelt(
+    finds: Callable[..., list[Diagnostic]], declared: str, used: str, line: int
+) -> None:
+    """Of a declaration that nothing uses and a use that nothing declares one is spelt as others."""
+    text = f"DEF U()\nINT TOOL_OPEN\nINT {declared}\nTOOL_OPEN = {used}\nEND\n"
+    found = finds({"U.src": text}, is_complete=True)
+    assert [line] == [one.region.line for one in found if one.code == "KRL101"]
+
+
+@pytest.mark.parametrize(("used", "line"), [("PART", 2), ("PRAT", 1)])
+def test_a_misspelt_parameter_is_told_where_the_slip_is(
+    finds: Callable[..., list[Diagnostic]], used: str, line: int
+) -> None:
+    """What the body uses is right: the name in the head, or that of the declaration."""
+    text = f"DEF U(PART:IN)\nINT PRAT\n$OUT[{used}] = TRUE\nEND\n"
+    found = finds({"U.src": text}, is_complete=True)
+    assert [line] == [one.region.line for one in found if one.code == "KRL115"]
+
+
 def test_slips_in_lists_of_the_controller(finds: Callable[..., list[Diagnostic]]) -> None:
     """A list of the controller that declares nearly what the tables have declares it wrongly."""
     text = "DEFDAT $MACHINE PUBLIC\nSIGNAL $BRAKS_OK $IN[3]\nINT $NOT_IN_ANY_TABLE=3\nENDDAT\n"
