@@ -34,7 +34,7 @@ from conformance.sensitivity.mutation_operators import Change, Operator, changes
 PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
     # left out: how values are written in traces, equality, which tests alone ask for, which random
     # numbers there are, what is skipped where parts of a program are stood in for, what only the
-    # compiler or the verifier asks, and what runs while modules are loaded
+    # compiler, the verifier or a machine asks, and what runs while modules are loaded
     "values": (
         ("interp.values.*",),
         (
@@ -44,6 +44,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.values.builtins._builtin",
             "interp.values.faults.*.is_of_statement",
             "interp.values.operators.kind_of",
+            "interp.values.operators._code",
+            "interp.values.operators._letter",
             "*.__eq__",
         ),
     ),
@@ -81,6 +83,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.state.trace",
             "interp.controller.state.variables.Variables.part_type",
             "interp.controller.quiet_time",
+            "interp.controller.scheduler.Scheduler._free_slices",
             "interp.controller.state.variables.Variables._is_loose",
         ),
     ),

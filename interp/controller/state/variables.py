@@ -171,11 +171,7 @@ class Variables:
 
     def write(self, path: Path, value: Value) -> None:
         """A program writes a variable; faults `read_only`, `invalid`, `inadmissible`, `index`."""
-        name = str(path[0])
-        entry = self.entry(name)
-        if entry is not None and entry.access == "read" and not entry.access_unconfirmed:
-            raise fault("read_only")
-        if name in self._twins:
+        if path[0] in self._twins:
             raise fault("read_only")
         self.put(path, value)
 

@@ -157,12 +157,12 @@ def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
     return chains
 
 
-def pose_paths_of(chain: Sequence[Segment], *, is_constant: bool = False) -> list[PosePath]:
-    """The paths of the segments of one chain, unbroken; with ``is_constant`` nothing turns."""
+def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
+    """The paths of the segments of one chain, unbroken."""
     if chain[0].chord < _SHORT:
         start, end = chain[0].start, chain[0].end
-        turned = start.rotation if is_constant else end.rotation
-        return [StraightLine(start.position, start.position, turning(start.rotation, turned))]
+        turned = turning(start.rotation, end.rotation)
+        return [StraightLine(start.position, start.position, turned)]
     still = turning(chain[0].start.rotation, chain[0].start.rotation)
     shapes: list[StraightLine | Arc | Free] = []
     place = 0
@@ -181,7 +181,7 @@ def pose_paths_of(chain: Sequence[Segment], *, is_constant: bool = False) -> lis
             Free(ends[number : number + 2], span, still) for number, span in enumerate(spans)
         ]
         place = last
-    swept = _orientations(chain, [shape.length for shape in shapes], is_constant)
+    swept = _orientations(chain, [shape.length for shape in shapes], still)
     return [
         shape.turned(orientation)
         if isinstance(shape, Free)
@@ -243,11 +243,11 @@ def _quintic(ends: Array, span: float) -> Array:
 
 
 def _orientations(
-    chain: Sequence[Segment], lengths: Sequence[float], is_constant: bool
+    chain: Sequence[Segment], lengths: Sequence[float], still: Orientation
 ) -> Sequence[Orientation]:
     rotations = np.array([chain[0].start.rotation, *(segment.end.rotation for segment in chain)])
-    if is_constant or np.allclose(rotations, rotations[0], rtol=0.0, atol=1e-12):
-        return [turning(rotations[0], rotations[0])] * len(chain)
+    if np.allclose(rotations, rotations[0], rtol=0.0, atol=1e-12):
+        return [still] * len(chain)
     knots = np.concatenate(([0.0], np.cumsum(lengths)))
     from scipy.spatial.transform import Rotation, RotationSpline
 

@@ -104,7 +104,7 @@ def _pieces(
     number = 0
     for row in chains_of(segments):
         chain = _kept(row, segments[0].start) if keeps else row
-        pose_paths = pose_paths_of(chain, is_constant=keeps)
+        pose_paths = pose_paths_of(chain)
         travelled = externals[number : number + len(chain) + 1]
         for place, pose_path in enumerate(pose_paths):
             settings = motion.parts[number].settings or motion.settings

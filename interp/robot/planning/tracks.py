@@ -214,7 +214,7 @@ class Tracks:
         percent = settings.axis_velocity
         if settings.is_reduced:
             share = self.machine.t1_reduction
-            percent = tuple(min(p if 0.0 < p <= 100.0 else 100.0, 100.0) * share for p in percent)
+            percent = tuple((p if 0.0 < p <= 100.0 else 100.0) * share for p in percent)
         return self.limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
 
     def paths(
