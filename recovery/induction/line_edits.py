@@ -180,6 +180,27 @@ class LineEdits:
                 added = AddAlternative(host, f"{text}{self.hosts.ending(host)}")
                 edits = (*self.forms.reserving(text), added)
                 yield Inferred(f"{title} … as {host}", edits, tuple(members))
+            for rule, at in self._left_open(members) if WORD.fullmatch(head) else ():
+                edits = (*self.forms.reserving(text), Insert(rule, at, text))
+                yield Inferred(f"{title} … behind {rule}", edits, tuple(members))
+
+    def _left_open(self, members: Sequence[int]) -> list[tuple[str, Address]]:
+        """Ends of alternatives behind the lines in a loop, where these may go on as lines fail.
+
+        Of rules that call one another the innermost: the others would end with that one's closer.
+        """
+        recognizer = self.at.recognizer
+        found: set[tuple[str, Address]] = set()
+        for before in {self.at.lines[number].form.before for number in members}:
+            for site in recognizer.sites(recognizer.restore(before)):
+                rule = self.at.grammar.by_name[recognizer.network.rule[site[0]]]
+                for number, place in (p for p in places_of(recognizer, site) if len(p) == 2):
+                    match rule.alternatives[number - 1].elements[place - 1 :]:
+                        case (Repeat(operator="*" | "+") as last,):
+                            if not self.hosts.is_within_line(last):
+                                found.add((rule.name, (number, place + 1)))
+        reaches = self.at.rules.reaches
+        return sorted(f for f in found if not any(o != f and o[0] in reaches[f[0]] for o in found))
 
     def _grown(
         self, head: str, shapes: dict[tuple[Symbol, ...], list[int]], members: Sequence[int]

@@ -64,12 +64,13 @@ class LineHosts:
                 for begin in starts if ends else ():
                     start = begin
                     stop = next((i for i in ends if i >= start), len(elements))
-                    while start < stop and not self._is_within_line(elements[start]):
+                    while start < stop and not self.is_within_line(elements[start]):
                         start += 1  # the lines of a body come first
                     if start < stop:
                         yield rule.name, (*address, start + 1), elements[start:stop]
 
-    def _is_within_line(self, element: Element) -> bool:
+    def is_within_line(self, element: Element) -> bool:
+        """Whether an element reads nothing with a line end in it."""
         called = {e.name for e in walk(element) if isinstance(e, Reference) and not e.is_token}
         return called <= self.at.rules.within_lines
 

@@ -46,6 +46,19 @@ def test_every_program_is_read(growth: Growth, toy_files: tuple[CorpusFile, ...]
     assert [] == [file.path for file in toy_files if not recognizer.accepts(file.text)]
 
 
+@pytest.mark.parametrize(("closer", "accepted"), [("DONE\n", True), ("", False)])
+def test_a_word_closes_what_the_grammar_leaves_open(
+    toy: Grammar, closer: str, accepted: bool
+) -> None:
+    """A line behind the lines of a rule, in which it goes on, becomes the end of that rule."""
+    routines = "(routine eol)* EOF\n    ;\n\nroutine\n    : HALT NAME eol statement*"
+    start = read(toy.text.replace("NEWLINE* statement* EOF", routines).replace("| halt", ""))
+    routine = "HALT F\n{0} := 1\nDONE\nHALT G\n{0} := 2\nG({0})\nDONE\n"
+    files = tuple(CorpusFile(n, routine.format(n), frozenset({n})) for n in "ABCD")
+    grown = Recognizer(_grown(start, files).grammar)
+    assert grown.accepts(f"HALT H\nX := 3\n{closer}HALT G\nDONE\n") is accepted
+
+
 @pytest.mark.parametrize(("line", "count"), [("X := HALT\n", 1), ("X := HALT := 2\n", 0)])
 def test_a_word_is_a_name_where_lines_are_read_then(toy: Grammar, line: str, count: int) -> None:
     """Lines that only fail further on with a reserved word as a name do not make it one."""
