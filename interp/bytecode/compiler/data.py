@@ -1,20 +1,28 @@
 """The data lists: their cells, and what is in them at first.
 
-Initial values are expressions, so they are compiled as any others. The code is run once, at the
-time of compiling, and what it leaves in the cells is written into the program.
+Nearly all initial values are literals or aggregates of literals, whose cells are known at once.
+Others are compiled as any expressions. That code is run once, at the time of compiling, and what it
+leaves in the cells is written into the program.
 """
 
 from __future__ import annotations
 
-from grammar.semantics.symbols import Access
+from collections.abc import Sequence
+from contextlib import suppress
+from itertools import chain
+
+from grammar.semantics.symbols import Access, Symbol
+from grammar.semantics.types import Array, Enumeration, Type
 from grammar.syntax import ast
+from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cell_layout import word_of
+from interp.bytecode.cell_layout import Raw, cells_of, offset_of, size, word_of
 from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Label, Writer
 from interp.bytecode.compiler.context import Context, Shared
+from interp.bytecode.compiler.designators import literal
 from interp.bytecode.compiler.emitter import Emitter, Ended
-from interp.bytecode.compiler.locations import SystemVariable
+from interp.bytecode.compiler.locations import DataCells, SystemVariable
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.bytecode.program import CodeKind, Program
@@ -22,8 +30,11 @@ from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.executor import Machine
 from interp.port.requests import End, Fail
 from interp.program.load import CheckedProgram
+from interp.program.reads import structure_of
 from interp.program.variables import data_lists, data_variables, first_values
-from interp.values.faults import LinkError, fault
+from interp.values.faults import Fault, LinkError, fault
+from interp.values.operators import apply_unary
+from interp.values.values import constant, integer, letters, single
 
 
 def declare_data(program: CheckedProgram, tables: Tables) -> None:
@@ -60,38 +71,125 @@ class _DataListEmitter(Emitter):
 
 
 class _DataList:
-    """Makes the code that fills one data list."""
+    """Fills one data list: gives cells what is known now, and makes the code for the rest.
 
-    def __init__(self, context: Context) -> None:
+    ``cells`` receives what is in cells before that code is run, by their addresses, and ``later``
+    the variables that it may read or write.
+    """
+
+    def __init__(self, context: Context, cells: dict[int, Raw | None], later: set[Symbol]) -> None:
         self._emitter = _DataListEmitter(context)
         self._context = context
         self._writer = context.writer
         self._expressions = Calls(self._emitter).expressions
+        self._cells = cells
+        self._later = later
 
     def fill(self, content: ast.DataList, places: list[str]) -> None:
-        """All initial values of the list, each a statement: its line is its place in ``places``."""
+        """All initial values of the list; the line of a statement is its place in ``places``."""
         for line, target, value in first_values(self._context.unit, content):
             self._context.line = line
-            end = Label()
+            start, end = self._writer.here, Label()
             if not self._context.program.is_strict:  # what faults has no value
                 self._writer.emit(Op.PROCEED)
             self._writer.emit(Op.LINE, len(places), end)
-            places.append(f"{self._context.unit.module.path}:{line}")
-            self._give(target, value)
+            if self._give(target, value):
+                self._writer.cut(start)
+            else:
+                places.append(f"{self._context.unit.module.path}:{line}")
             self._writer.place(end)
 
-    def _give(self, target: ast.Expression, value: ast.Expression) -> None:
+    def _give(self, target: ast.Expression, value: ast.Expression) -> bool:
+        """Whether the cells have the value now; else there is code that gives it them."""
         start = self._writer.here
         with self._writer.temporaries():
             try:
                 place = self._expressions.designators.place(target)
                 if isinstance(place, SystemVariable):
                     raise self._emitter.unlinked("a value is given to what is declared elsewhere")
+                if isinstance(place, DataCells) and self._put(place, target, value):
+                    return True
+                self._later |= self._named(target, value)
                 self._expressions.assign(place, value)
                 if {Op.ASK, Op.CALL} & self._writer.ops(start):
                     raise self._emitter.unlinked("an initial value needs a running program")
             except Ended:
                 self._writer.cut(start)
+        return False
+
+    def _put(self, place: DataCells, target: ast.Expression, value: ast.Expression) -> bool:
+        """Give cells their value now, where it is plain and no code made so far has to be first."""
+        if self._later and not self._later.isdisjoint(self._named(target)):
+            return False
+        try:
+            found = self._cells_of(value, place.type)
+        except (Fault, LinkError):  # the code for it reports this
+            return False
+        self._cells.update(enumerate(found, place.address))
+        return True
+
+    def _named(self, *nodes: ast.Expression) -> set[Symbol]:
+        """The variables in expressions; all that have cells where a function may name any."""
+        found: set[Symbol] = set()
+        for one in chain.from_iterable(map(walk, nodes)):
+            if isinstance(one, ast.Call):
+                return set(self._context.tables.places)
+            means = self._context.unit.found(one.name) if isinstance(one, ast.Variable) else None
+            if means is not None:
+                with suppress(LinkError):
+                    found.add(self._context.program.declaration(means).symbol)
+        return found
+
+    def _cells_of(self, node: ast.Expression, type_: Type) -> Sequence[Raw | None]:
+        """A literal, or an aggregate of them, in cells of a type.
+
+        Raises `Fault` or `LinkError` for all else, and where code for it would.
+        """
+        tables, unit = self._context.tables, self._context.unit
+        tables.number(type_)
+        match node:
+            case ast.Aggregate():
+                structure = structure_of(unit, node, type_)
+                if structure is None or tables.closed(structure) != type_:
+                    raise fault("inadmissible")
+                cells: list[Raw | None] = [None] * size(type_)
+                for one in node.components:
+                    indices = one.indices or ()
+                    steps = [literal(index) for index in indices if index is not None]
+                    found = offset_of(type_, (one.name.key, *(step or 0 for step in steps)))
+                    if found is None or None in indices[:-1]:
+                        raise fault("inadmissible")
+                    place, part = found
+                    cells[place : place + size(part)] = self._cells_of(one.value, part)
+                return cells
+            case ast.EnumConstant():
+                kind = unit.checked.enumerations.get(node, type_)
+                if not isinstance(kind, Enumeration) or tables.closed(kind) != type_:
+                    raise fault("inadmissible")
+                return [constant(type_, node.name.key).index]
+            case ast.StringLiteral():
+                text = letters(node.text)
+                cells = cells_of(text, type_)
+                if isinstance(type_, Array):
+                    tables.text(text)
+                return cells
+        return cells_of(_number(node), type_)
+
+
+def _number(node: ast.Expression) -> int | float | bool:
+    """The value of a literal with its sign; faults for all else."""
+    match node:
+        case ast.BoolLiteral(value=truth):
+            return truth
+        case ast.IntegerLiteral(value=number):
+            return integer(number)
+        case ast.RealLiteral():
+            return single(node.value)
+        case ast.Unary(operator="-" | "+" as sign):
+            value = apply_unary(sign, _number(node.operand))
+            assert isinstance(value, int | float), "as its operand"
+            return value
+    raise fault("inadmissible")
 
 
 def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
@@ -99,9 +197,15 @@ def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
     tables = shared.tables
     writer = Writer(tables, "DATA", CodeKind.ROUTINE, "", 0)
     places: list[str] = []
+    cells: dict[int, Raw | None] = {}
+    later: set[Symbol] = set()
     for unit, content in data_lists(shared.program):
         scope = shared.program.project.scope(unit.module)
-        _DataList(Context(shared, unit, scope, writer, is_data_list=True)).fill(content, places)
+        context = Context(shared, unit, scope, writer, is_data_list=True)
+        _DataList(context, cells, later).fill(content, places)
+    known = sorted((address, word_of(raw)) for address, raw in cells.items() if raw is not None)
+    if not places:
+        return tuple(known)
     writer.emit(Op.RETURN)
     code = writer.code(shared.sizes)
     program = Program(
@@ -110,7 +214,7 @@ def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
         (),
         tuple(tables.builtins),
         tuple(tables.data),
-        (),
+        tuple(known),
         (code,),
     )
     machine = Machine(Verified(program, ()), "DATA")  # made here, and run here and now

@@ -294,6 +294,13 @@ def test_a_counter_that_is_not_declared_ends_the_loop(step: str) -> None:
     assert None is difference("", tree, machine)
 
 
+def test_the_last_value_of_a_data_list_counts() -> None:
+    """Also where it is a literal, and the one before it is worked out."""
+    given = "DECL INT A='B101'\nA=3\nDECL INT B=3\nB='B101'\n"
+    program = _loaded("DEF main()\nEND\n", main_dat=f"DEFDAT main\n{given}ENDDAT\n")
+    assert ((0, 3), (1, 5)) == compile_program(program).program.initial
+
+
 def test_huge_data_lists() -> None:
     """Data lists that no memory holds are refused at once."""
     program = _loaded(
