@@ -37,6 +37,7 @@ from interp.robot.kinematics.machine_data import (
 )
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.stand_in import (
+    NO_MACHINE,
     arm_or_stand_in,
     machine_data_of,
     reaching,
@@ -164,7 +165,7 @@ def run_program(
     """
     if isinstance(prepared, CheckedProgram):
         prepared = Prepared(prepared, setup.routine, [setup.submit])
-    program, profile, note = prepared.program, setup.profile, ""
+    program, profile, note, is_incomplete = prepared.program, setup.profile, "", False
     program.start(prepared.routine)  # what is wrong with it is said alike for all executors
     values = _system_values(program)
     if setup.robot_file is not None:
@@ -177,18 +178,19 @@ def run_program(
         used = [unit.source for unit in program.reached(*starts) if unit.module.folder != FOLDER]
         machine, note = arm_or_stand_in(sources, _machine_of(profile), used)
         is_other = bool(note) and machine_data_of(sources) is not None
-        is_tolerant = is_other or bool(program.used_stand_ins(*starts))
-        if note and is_tolerant and not is_other:
-            texts = [unit.source.text for unit in program.reached(*starts)]
-            machine = with_assumed_limits(reaching(machine, texts))
-            note = f"no machine data of an arm: {machine.name} is used instead, without axis limits"
-        profile = replace(profile, is_tolerant=is_tolerant, brings_arm=setup.skips_failures)
+        is_incomplete = is_other or bool(program.used_stand_ins(*starts))
+        if note and not is_other:
+            fitting = reaching(machine, (one.source.text for one in program.reached(*starts)))
+            if is_incomplete or (fitting is not machine and setup.skips_failures):
+                machine = with_assumed_limits(fitting)
+                note = f"{NO_MACHINE}: {machine.name} is used instead, without axis limits"
+        profile = replace(profile, is_tolerant=is_incomplete, brings_arm=setup.skips_failures)
     else:
         machine = machine_of_program(program, profile)
     torque_note = ""
     if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
         machine, torque_note = _with_torques(machine, program)
-    start = setup.start or _home(values, machine, _BENT if profile.is_tolerant else _UPRIGHT)
+    start = setup.start or _home(values, machine, _BENT if is_incomplete else _UPRIGHT)
     arm = _arm(machine, start)
     if setup.make_robot is not None:
         robot = setup.make_robot(machine, profile.cycle)
@@ -201,7 +203,7 @@ def run_program(
     sink, submit_sink = _sinks(trace, program, setup)
     limits = replace(
         setup.limits or Limits(per_slice=profile.statements),
-        skips_failures=setup.skips_failures and profile.is_tolerant and debugger is None,
+        skips_failures=setup.skips_failures and is_incomplete and debugger is None,
     )
     executor = prepared.executor(setup.executor, limits, sink)
     if debugger is not None:

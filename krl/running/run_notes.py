@@ -15,12 +15,14 @@ _START_REFUSED = 1443
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
     """Stand-ins, skipped lines, and what a program that never ends waited for."""
+    from interp.robot.models import default_machine
     from interp.standins.completion import summary
 
+    usual = f"{default_machine().name} is used instead"
     used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
     if used:
         yield f"stand-ins: {summary(used)}"
-    if done.machine_note and (used or not done.machine_note.startswith("no machine data")):
+    if done.machine_note and (used or not done.machine_note.endswith(usual)):
         yield f"arm: {done.machine_note}"
     skipped = done.controller.skipped
     for (file, number), error in islice(skipped.items(), _MOST_LISTED):

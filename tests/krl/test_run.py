@@ -135,9 +135,9 @@ def test_strict(run: Run) -> None:
 @pytest.mark.parametrize(
     ("body", "number", "said"),
     [
-        ("PTP {X 2000,Y 0,Z 500,A 0,B 180,C 0,S 2,T 2}\n", None, "reach"),
+        ("PTP {X 2000}\n", None, "reach"),
         ("PTP {A1 171}\n", 1447, "software limit"),
-        ("LIN {X 445,Y 0,Z 2000}\n", 1366, "the path cannot be followed"),
+        ("LIN {Z 2000}\n", 1366, "the path cannot be followed"),
         ("CIRC {X 460,Y 0,Z 780},{X 475,Y 0,Z 750}\n", None, "circle"),
         ("$VEL.CP=0.0\nLIN {Z 700}\n", 1422, "$VEL.CP"),
     ],
@@ -152,6 +152,15 @@ def test_motions_that_cannot_be(run: Run, body: str, number: int | None, said: s
     assert said in out
     assert "(message " in out if number is None else f"(message {number})" in out
     assert 1 == out.count("\n")
+
+
+def test_a_point_out_of_reach(run: Run) -> None:
+    """Without machine data the arm is sized for one whole point, in a line; not with --strict."""
+    point = "PTP {X 1500,Y 0,Z 900,A 0,B 90,C 0,S 2,T 2}\n"
+    status, _, err = run(INI + point)
+    assert (0, True) == (status, err.startswith("arm: no machine data of an arm: KR6R900 SIZED x "))
+    status, out, err = run(INI + point, "--strict")
+    assert (1, "", True) == (status, err, "reach" in out)
 
 
 def test_first_motion_is_a_line(run: Run) -> None:

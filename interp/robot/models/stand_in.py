@@ -45,7 +45,8 @@ _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_
 _WHOLE: Final = re.compile(
     rf"{_POSE.pattern}\s*,\s*A{_NUMBER}\s*,\s*B{_NUMBER}\s*,\s*C{_NUMBER}", re.I
 )
-#: Points fewer than these may be anything: the arm stays what it is.
+NO_MACHINE: Final = "no machine data of an arm"
+#: For points fewer than these the foot of the arm stays where it is: they may be anything.
 _FEWEST: Final = 3
 #: The share of the points that is to be reached: a few may be garbage.
 _SHARE: Final = 0.95
@@ -105,7 +106,7 @@ def arm_or_stand_in(
     source = machine_data_of(sources)
     if source is None:
         machine = fitting_arm(default, (one.text for one in sources), (one.text for one in used))
-        return machine, f"no machine data of an arm: {machine.name} is used instead"
+        return machine, f"{NO_MACHINE}: {machine.name} is used instead"
     try:
         return understood(source), ""
     except (DataListError, MachineDataError) as error:
@@ -227,7 +228,7 @@ def _factor(machine: MachineData, texts: Iterable[str]) -> float:
         for text in texts
         for one in _POSE.finditer(text)
     ]
-    if len(distances) < _FEWEST:
+    if not distances:
         return 1.0
     far = sorted(distances)[math.ceil(_SHARE * len(distances)) - 1]
     reach = _length(machine)
