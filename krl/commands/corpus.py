@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
+from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from recovery.corpus.public import PublicSource
@@ -30,13 +31,13 @@ def show() -> int:
     sources = _sources()
     typer.echo(f"Own programs in {CORPUS / 'programs'}")
     cells = list(_own_cells(CORPUS / "programs"))
-    _print_table([(name, _files(files), _kilobytes(size)) for name, files, size in cells])
+    _print_table([(name, counted(files, "file"), _kilobytes(size)) for name, files, size in cells])
     typer.echo("\nPublic repositories, which belong to their authors")
     rows = []
     for source in sources:
         missing = len(absent(source, CORPUS / "open"))
         here = f"{len(source.files) - missing} here" if missing else "all here"
-        count = _files(len(source.files))
+        count = counted(len(source.files), "file")
         rows.append((*_heading(source), source.generation, count, _kilobytes(source.size), here))
     _print_table(rows)
     return FINE
@@ -79,7 +80,7 @@ def fetch(
         results = [public.fetch(source, out, mirror, advance) for source in sources]
     rows = []
     for result in results:
-        share = f"{result.written + result.kept} of {_files(len(result.source.files))}"
+        share = f"{result.written + result.kept} of {counted(len(result.source.files), 'file')}"
         rows.append((*_heading(result.source), share))
     _print_table(rows)
     problems = [problem for result in results for problem in result.problems]
@@ -115,13 +116,12 @@ def synth(
         raise InputError(f"{folder}: not a folder")
     with progress_bar("writing", wanted) as advance:
         written = write_cells(folder, wanted, seed, advance)
-    cells = "1 cell" if written.cells == 1 else f"{written.cells} cells"
-    typer.echo(
-        one_line(f"{written.bytes:,} bytes in {_files(written.files)} of {cells} in {folder}")
-    )
+    files, cells = counted(written.files, "file"), counted(written.cells, "cell")
+    typer.echo(one_line(f"{written.bytes:,} bytes in {files} of {cells} in {folder}"))
     others = sum(path.is_file() for path in folder.rglob("*")) - written.files
     if others:
-        typer.echo(one_line(f"{folder} has {_files(others)} beside them, from before"), err=True)
+        beside = counted(others, "file")
+        typer.echo(one_line(f"{folder} has {beside} beside them, from before"), err=True)
     return FINE
 
 
@@ -153,10 +153,6 @@ def _own_cells(programs: Path) -> Iterator[tuple[str, int, int]]:
 def _heading(source: "PublicSource") -> tuple[str, str]:
     licence = "no licence stated" if source.licence == "none" else source.licence
     return source.repository, licence
-
-
-def _files(count: int) -> str:
-    return f"{count} file" if count == 1 else f"{count} files"
 
 
 def _kilobytes(size: int) -> str:

@@ -58,7 +58,7 @@ def debug(
 
 
 def _at_prompt(file: Path, options: RunOptions) -> int:
-    with expected_errors():
+    with expected_errors(options.robot):
         from interp.debugging.debugger import Debugger
         from krl.running.debug_prompt import Prompt
         from krl.running.debugged_run import debugged_run

@@ -29,7 +29,7 @@ def explain(
     found = explanation(code)
     if found is None:
         hint = did_you_mean(code, [*by_code(), *by_slug()])
-        raise InputError(f"no finding has the code {code}" + (f"; {hint}" if hint else ""))
+        raise InputError(f"no finding has the code {code}" + f"; {hint or 'krl explain lists all'}")
     typer.echo("\n".join(_lines(found)))
     return FINE
 

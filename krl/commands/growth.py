@@ -18,6 +18,7 @@ from krl.terminal.options import CorpusArgument, JobsOrOneOption, JsonTooOption,
 from krl.terminal.output_files import check_targets, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.survey_summary import share
+from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from recovery.records import GrowthRecord, StepRecord
@@ -79,7 +80,8 @@ def _print(record: "GrowthRecord", page: Path) -> None:
     steps = record["steps"]
     first, last = steps[0], steps[-1]
     console.print(
-        f"{record['files']:,} files, {record['bytes'] / 1e6:.2f} MB; {len(steps) - 1} constructs; "
+        f"{counted(record['files'], 'file')}, {record['bytes'] / 1e6:.2f} MB; "
+        f"{counted(len(steps) - 1, 'construct')}; "
         f"parsed {first['parsed']:,} at the start, {last['parsed']:,} at the end "
         f"({share(last['parsed'], last['files'])} of files, "
         f"{share(last['parsed_bytes'], last['bytes'])} of bytes); {record['seconds']:.1f} s",

@@ -21,6 +21,7 @@ from krl.terminal.options import (
 from krl.terminal.output_files import check_targets, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.survey_summary import print_survey
+from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from grammar.notation.model import Grammar
@@ -251,7 +252,7 @@ class _Surveyor:
         from recovery.analysis import analyse
 
         failing = sum(len(one.places) for one in found.files if one.failures)
-        pending = f"the causes of failures{where}, in {failing:,} files"
+        pending = f"the causes of failures{where}, in {counted(failing, 'file')}"
         with progress_bar(f"finding causes{where}") as bar:
 
             def begin(total: int) -> None:

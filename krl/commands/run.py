@@ -80,7 +80,7 @@ def run(
     Stand-ins replace what the project lacks, such as a routine behind an inline form, and are
     listed; statements that still fail, mostly motions, are skipped and listed.
     """
-    with expected_errors():
+    with expected_errors(options.robot, *["numpy"] * (html is not None)):
         check_files(trace, path, html, video, png, observations)
         _check_targets(path, video, png, options.robot)
         is_watched = trace is not None or html is not None

@@ -95,7 +95,7 @@ class Debuggee:
         """Read the program; what has to be said of it is an output. Raises `InputError`."""
         said = io.StringIO()
         try:
-            with contextlib.redirect_stderr(said), expected_errors():
+            with contextlib.redirect_stderr(said), expected_errors(options.robot):
                 self._program, self._setup = prepared_run(file, options, is_terminal=False)
                 self._program.start(self._setup.routine)
         finally:
@@ -189,7 +189,7 @@ class Debuggee:
 
     def _ran(self, prepare: Callable[[Debugger], None]) -> RunResult | None:
         prepare(self.debugger)
-        with expected_errors():
+        with expected_errors(self._options.robot):
             return debugged_run(
                 self._program,
                 self._setup,

@@ -11,7 +11,6 @@ import typer
 
 from krl.debug_adapter.adapter import Adapter
 from krl.debug_adapter.connection import Connection
-from krl.extras import ARM, expected_extras
 from krl.running.run_options import RunOptions
 
 
@@ -20,16 +19,15 @@ def serve(file: Path | None, options: RunOptions, port: int | None) -> None:
 
     Only this machine reaches the port.
     """
-    with expected_extras(*ARM):
-        if port is None:
-            _serve_standard(file, options)
-            return
-        with socket.create_server(("127.0.0.1", port)) as server:
-            typer.echo(f"listening on 127.0.0.1:{server.getsockname()[1]}", err=True)
-            while True:
-                client, _ = server.accept()
-                with contextlib.suppress(ConnectionError), client, client.makefile("rwb") as stream:
-                    Adapter(_connection(stream), file, options).serve()
+    if port is None:
+        _serve_standard(file, options)
+        return
+    with socket.create_server(("127.0.0.1", port)) as server:
+        typer.echo(f"listening on 127.0.0.1:{server.getsockname()[1]}", err=True)
+        while True:
+            client, _ = server.accept()
+            with contextlib.suppress(ConnectionError), client, client.makefile("rwb") as stream:
+                Adapter(_connection(stream), file, options).serve()
 
 
 def _serve_standard(file: Path | None, options: RunOptions) -> None:

@@ -223,13 +223,17 @@ def prepared_run(
 
 
 @contextmanager
-def expected_errors() -> Iterator[None]:
-    """Raise what packages say about input as `InputError`."""
+def expected_errors(robot: Robot, *needed: str) -> Iterator[None]:
+    """Raise what packages say about input as `InputError`.
+
+    An arm needs its packages, which are imported late; so are ``needed``. Their absence is found
+    at once.
+    """
     from interp.robot.simulation.scene import SceneError
     from interp.values.faults import RuntimeFailure
 
     try:
-        with expected_extras(*ARM):
+        with expected_extras(*(() if robot is Robot.NONE else ARM), *needed):
             yield
     except (RuntimeFailure, SceneError) as error:
         raise InputError(str(error)) from error

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from krl.errors import one_line
+from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from recovery.records import ClusterRecord, StartRecord, SurveyRecord
@@ -25,7 +26,7 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
     console = Console(highlight=False, markup=False, emoji=False)
     files, parsed = record["files"], record["parsed"]
     console.print(
-        f"{files:,} files, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
+        f"{counted(files, 'file')}, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
         f"({share(parsed, files)} of files, {share(record['parsed_bytes'], record['bytes'])} "
         f"of bytes); skipped {len(record['skipped']):,}; {record['seconds']:.1f} s",
         soft_wrap=True,
@@ -38,7 +39,7 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
     if clusters:
         console.print(_table(clusters[:_ROWS], has_examples=console.width >= _WIDE))
         if len(clusters) > _ROWS:
-            console.print(f"… and {len(clusters) - _ROWS} more clusters")
+            console.print(f"… and {counted(len(clusters) - _ROWS, 'more cluster')}")
         console.print(_advice(record))
     elif files:
         console.print("Nothing is missing: every file parses under this grammar.")
@@ -86,7 +87,7 @@ def _advice(record: "SurveyRecord") -> str:
     for number, step in enumerate(record["greedy"], 1):
         if step["parsed"] >= 0.95 * files:
             return (
-                f"Mending {number} of {len(record['clusters'])} clusters lets "
+                f"Mending {number} of {counted(len(record['clusters']), 'cluster')} lets "
                 f"{share(step['parsed'], files)} of the files parse."
             )
     return ""
@@ -98,7 +99,7 @@ def _story(start: "StartRecord") -> str:
     each = f", {len(clusters) / len(constructs):.1f} clusters each" if constructs else ""
     answered = sum(cluster["answered_by"] is not None for cluster in clusters)
     return (
-        f"Under the restrictive start {start['parsed']:,} of {start['files']:,} files parse; "
-        f"of its {len(clusters):,} clusters {answered:,} are answered by constructs "
-        f"({len(constructs):,}{each})."
+        f"Under the restrictive start {start['parsed']:,} of {counted(start['files'], 'file')} "
+        f"parse; of its {counted(len(clusters), 'cluster')} {answered:,} are "
+        f"answered by constructs ({len(constructs):,}{each})."
     )

@@ -22,7 +22,7 @@ def test_recover_prints_a_table_and_writes_the_record(
     assert 0 == main(given)
     said, complained = capsys.readouterr()
     assert "" == complained
-    assert said.startswith("1 files, 0.00 MB; 0 parse; 1 failures; Python 3.")
+    assert said.startswith("1 file, 0.00 MB; 0 parse; 1 failure; Python 3.")
     for row in ("all failures, cold", "ANTLR's Python runtime", "recording", "peak memory"):
         assert row in said
     record = json.loads(target.read_text(encoding="utf-8"))

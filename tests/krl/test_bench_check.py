@@ -23,7 +23,7 @@ def test_figures_are_printed_and_written(
     assert 0 == main(given)
     said, complained = capsys.readouterr()
     assert "" == complained
-    assert said.startswith("1 files of 1 projects, 0.00 MB; 1 warnings; Python 3.")
+    assert said.startswith("1 file of 1 project, 0.00 MB; 1 warning; Python 3.")
     for row in ("first check", "nothing changed", "building", "resolving", "peak memory"):
         assert row in said
     assert "planted mistakes" not in said

@@ -469,7 +469,7 @@ def test_the_page_comes_before_the_causes(
     given = ["recover", str(corpus), "--out", str(tmp_path / "out"), "--jobs", "1"]
     assert 0 == main(given)
     assert [
-        ("the causes of failures, in 1 files", 0, 0),
+        ("the causes of failures, in 1 file", 0, 0),
         ("the causes of failures under the restrictive start, in 4 files", 1, 0),
     ] == shown[:2]
     assert (None, 1) == shown[2][:2]

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 from importlib import resources
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -58,6 +59,19 @@ def events(file: Path) -> list[dict[str, Any]]:
 def test_a_program_that_ends(run: Run) -> None:
     """A program that runs to its end has status 0 and one line, with the time that it took."""
     assert (0, "main.src: end after 0.204 s at main.src:2\n", "") == run("WAIT SEC 0.2\n")
+
+
+def test_without_the_packages_of_the_arm(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only what needs an arm asks for its packages, and before it runs."""
+    absent = ("numpy", "scipy")
+    monkeypatch.setattr(
+        "krl.extras.find_spec", lambda name: None if name in absent else find_spec(name)
+    )
+    assert 0 == run("WAIT SEC 0.2\n")[0]
+    for options in (["--robot", "kinematic"], ["--html", "page.html"]):
+        status, out, err = run("WAIT SEC 0.2\n", *options)
+        assert (2, "") == (status, out)
+        assert "which is not installed: " in err
 
 
 def test_a_program_that_halts(run: Run) -> None:

@@ -12,6 +12,7 @@ from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures, plain
+from reports.rendering.number_format import counted
 from support.measure.speed import MB
 
 Damage = Literal["mistakes", "names", "tokens", "lines"]
@@ -92,10 +93,10 @@ def _print(record: Mapping[str, Any]) -> None:
 def _print_speed(console: Console, record: Mapping[str, Any]) -> None:
     counts = record["findings"]
     told = ", ".join(
-        f"{counts[word]:,} {word}s" for word in ("error", "warning", "note") if word in counts
+        counted(counts[word], word) for word in ("error", "warning", "note") if word in counts
     )
     console.print(
-        f"{record['files']:,} files of {record['projects']:,} projects, "
+        f"{counted(record['files'], 'file')} of {counted(record['projects'], 'project')}, "
         f"{record['bytes'] / MB:.2f} MB; {told or 'no findings'}; Python {record['python']}",
         soft_wrap=True,
     )

@@ -14,6 +14,7 @@ from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
+from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from conformance.differential.corpus_routines import Trial, Unread
@@ -114,8 +115,8 @@ def _record(
 def _print(record: Mapping[str, Any]) -> None:
     console = Console(highlight=False)
     console.print(
-        f"{record['files']:,} files, {len(record['unread']):,} of them not readable; "
-        f"{record['routines']:,} routines",
+        f"{counted(record['files'], 'file')}, {len(record['unread']):,} of them not readable; "
+        f"{counted(record['routines'], 'routine')}",
         soft_wrap=True,
     )
     shares = figures(("of the routines", "", ""))

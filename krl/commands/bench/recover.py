@@ -21,6 +21,7 @@ from krl.terminal.options import JsonOption, ProgramsArgument, negatives_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
+from reports.rendering.number_format import counted
 from support.measure.speed import MB
 
 
@@ -105,8 +106,8 @@ def _damaged(
 def _print(record: Mapping[str, Any]) -> None:
     console = Console(highlight=False)
     console.print(
-        f"{record['files']:,} files, {record['bytes'] / MB:.2f} MB; {record['parsed']:,} parse; "
-        f"{record['failures']:,} failures; Python {record['python']}",
+        f"{counted(record['files'], 'file')}, {record['bytes'] / MB:.2f} MB; {record['parsed']:,} "
+        f"parse; {counted(record['failures'], 'failure')}; Python {record['python']}",
         soft_wrap=True,
     )
     console.print(_speeds(record))

@@ -19,6 +19,7 @@ from krl.construct_ledger import (
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.terminal.options import JobsOrOneOption, negatives_or_ours
 from krl.terminal.progress import progress_bar
+from reports.rendering.number_format import counted
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ def accept(
     for evaluation in found.evaluations:
         print_evaluation(evaluation)
     accepted = sum(c.is_accepted for c in found.constructs)
-    typer.echo(f"wrote {len(written)} files; the grammar has {_count(accepted)}")
+    typer.echo(f"wrote {counted(len(written), 'file')}; the grammar has {_count(accepted)}")
     return FINE
 
 
