@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from itertools import chain
 
-from grammar.semantics.symbols import Access, Symbol
-from grammar.semantics.types import Array, Enumeration, Type
+from grammar.semantics.symbols import Access
+from grammar.semantics.types import INT_MAX, Array, Enumeration, Type
 from grammar.syntax import ast
-from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cell_layout import Raw, cells_of, offset_of, size, word_of
+from interp.bytecode.cell_layout import Raw, cells_of, offset_of, size, value_at, word_of
 from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Label, Writer
 from interp.bytecode.compiler.context import Context, Shared
@@ -73,17 +71,15 @@ class _DataListEmitter(Emitter):
 class _DataList:
     """Fills one data list: gives cells what is known now, and makes the code for the rest.
 
-    ``cells`` receives what is in cells before that code is run, by their addresses, and ``later``
-    the variables that it may read or write.
+    ``cells`` receives what is in cells before that code is run, by their addresses.
     """
 
-    def __init__(self, context: Context, cells: dict[int, Raw | None], later: set[Symbol]) -> None:
+    def __init__(self, context: Context, cells: dict[int, Raw | None]) -> None:
         self._emitter = _DataListEmitter(context)
         self._context = context
         self._writer = context.writer
         self._expressions = Calls(self._emitter).expressions
         self._cells = cells
-        self._later = later
 
     def fill(self, content: ast.DataList, places: list[str]) -> None:
         """All initial values of the list; the line of a statement is its place in ``places``."""
@@ -93,75 +89,55 @@ class _DataList:
             if not self._context.program.is_strict:  # what faults has no value
                 self._writer.emit(Op.PROCEED)
             self._writer.emit(Op.LINE, len(places), end)
-            if self._give(target, value):
-                self._writer.cut(start)
-            else:
+            if self._needs_code(target, value, is_first=not start):
                 places.append(f"{self._context.unit.module.path}:{line}")
+            else:
+                self._writer.cut(start)
             self._writer.place(end)
 
-    def _give(self, target: ast.Expression, value: ast.Expression) -> bool:
-        """Whether the cells have the value now; else there is code that gives it them."""
+    def _needs_code(self, target: ast.Expression, value: ast.Expression, *, is_first: bool) -> bool:
+        """Whether there is code now that gives a value; else it has been given, or there is none.
+
+        Behind the first code there is code for all, as values count in their order.
+        """
         start = self._writer.here
         with self._writer.temporaries():
             try:
                 place = self._expressions.designators.place(target)
                 if isinstance(place, SystemVariable):
                     raise self._emitter.unlinked("a value is given to what is declared elsewhere")
-                if isinstance(place, DataCells) and self._put(place, target, value):
-                    return True
-                self._later |= self._named(target, value)
+                if is_first and isinstance(place, DataCells):
+                    with suppress(Fault, LinkError):  # the code for it reports this
+                        found = self._cells_of(value, place.type)
+                        self._cells.update(enumerate(found, place.address))
+                        return False
                 self._expressions.assign(place, value)
                 if {Op.ASK, Op.CALL} & self._writer.ops(start):
                     raise self._emitter.unlinked("an initial value needs a running program")
             except Ended:
-                self._writer.cut(start)
-        return False
-
-    def _put(self, place: DataCells, target: ast.Expression, value: ast.Expression) -> bool:
-        """Give cells their value now, where it is plain and no code made so far has to be first."""
-        if self._later and not self._later.isdisjoint(self._named(target)):
-            return False
-        try:
-            found = self._cells_of(value, place.type)
-        except (Fault, LinkError):  # the code for it reports this
-            return False
-        self._cells.update(enumerate(found, place.address))
+                return False
         return True
 
-    def _named(self, *nodes: ast.Expression) -> set[Symbol]:
-        """The variables in expressions; all that have cells where a function may name any."""
-        found: set[Symbol] = set()
-        for one in chain.from_iterable(map(walk, nodes)):
-            if isinstance(one, ast.Call):
-                return set(self._context.tables.places)
-            means = self._context.unit.found(one.name) if isinstance(one, ast.Variable) else None
-            if means is not None:
-                with suppress(LinkError):
-                    found.add(self._context.program.declaration(means).symbol)
-        return found
-
     def _cells_of(self, node: ast.Expression, type_: Type) -> Sequence[Raw | None]:
-        """A literal, or an aggregate of them, in cells of a type.
-
-        Raises `Fault` or `LinkError` for all else, and where code for it would.
-        """
+        """A literal, or an aggregate of them, in cells of a type; raises `Fault`, `LinkError`."""
         tables, unit = self._context.tables, self._context.unit
         tables.number(type_)
         match node:
             case ast.Aggregate():
                 structure = structure_of(unit, node, type_)
-                if structure is None or tables.closed(structure) != type_:
+                if structure is None:
                     raise fault("inadmissible")
-                cells: list[Raw | None] = [None] * size(type_)
+                made = tables.closed(structure)
+                cells: list[Raw | None] = [None] * size(made)
                 for one in node.components:
                     indices = one.indices or ()
                     steps = [literal(index) for index in indices if index is not None]
-                    found = offset_of(type_, (one.name.key, *(step or 0 for step in steps)))
+                    found = offset_of(made, (one.name.key, *(step or 0 for step in steps)))
                     if found is None or None in indices[:-1]:
                         raise fault("inadmissible")
                     place, part = found
                     cells[place : place + size(part)] = self._cells_of(one.value, part)
-                return cells
+                return cells if made == type_ else cells_of(value_at(cells, 0, made), type_)
             case ast.EnumConstant():
                 kind = unit.checked.enumerations.get(node, type_)
                 if not isinstance(kind, Enumeration) or tables.closed(kind) != type_:
@@ -183,6 +159,8 @@ def _number(node: ast.Expression) -> int | float | bool:
             return truth
         case ast.IntegerLiteral(value=number):
             return integer(number)
+        case ast.BitLiteral(value=number):  # 32 bits as written [TYP-04]
+            return integer(number - 2**32 if number > INT_MAX else number)
         case ast.RealLiteral():
             return single(node.value)
         case ast.Unary(operator="-" | "+" as sign):
@@ -198,11 +176,10 @@ def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
     writer = Writer(tables, "DATA", CodeKind.ROUTINE, "", 0)
     places: list[str] = []
     cells: dict[int, Raw | None] = {}
-    later: set[Symbol] = set()
     for unit, content in data_lists(shared.program):
         scope = shared.program.project.scope(unit.module)
         context = Context(shared, unit, scope, writer, is_data_list=True)
-        _DataList(context, cells, later).fill(content, places)
+        _DataList(context, cells).fill(content, places)
     known = sorted((address, word_of(raw)) for address, raw in cells.items() if raw is not None)
     if not places:
         return tuple(known)

@@ -295,10 +295,10 @@ def test_a_counter_that_is_not_declared_ends_the_loop(step: str) -> None:
 
 
 def test_the_last_value_of_a_data_list_counts() -> None:
-    """Also where it is a literal, and the one before it is worked out."""
-    given = "DECL INT A='B101'\nA=3\nDECL INT B=3\nB='B101'\n"
+    """Also where it is a literal, and the element that the one before it goes to is worked out."""
+    given = "DECL INT I=2\nDECL INT A[2]\nA[I]=3\nA[2]=5\n"
     program = _loaded("DEF main()\nEND\n", main_dat=f"DEFDAT main\n{given}ENDDAT\n")
-    assert ((0, 3), (1, 5)) == compile_program(program).program.initial
+    assert ((0, 2), (2, 5)) == compile_program(program).program.initial
 
 
 def test_huge_data_lists() -> None:
