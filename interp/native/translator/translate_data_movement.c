@@ -11,6 +11,23 @@ void krl_load_data(struct translator *at, int32_t address)
     krl_push_result(at);
 }
 
+/* Makes of a step that gives the address of an element the one that gives its value, where there is one. */
+static int reaches_element(struct krl_step *step)
+{
+    switch (step->op) {
+    case KRL_STEP_INDEX_TWO_LOCAL:
+    case KRL_STEP_INDEX_TWO_DATA:
+    case KRL_STEP_INDEX_THREE_LOCAL:
+    case KRL_STEP_INDEX_THREE_DATA:
+    case KRL_STEP_INDEX_VIEW:
+    case KRL_STEP_INDEX_VIEW_TWO:
+        step->op += KRL_GET_BEHIND_INDEX;
+        return 1;
+    default:
+        return 0;
+    }
+}
+
 void krl_load(struct translator *at)
 {
     struct virtual_value *item = &at->stack[at->height - 1];
@@ -30,11 +47,7 @@ void krl_load(struct translator *at)
         return;
     }
     default:
-        if (krl_is_fresh(at, at->height - 1) && at->steps[at->result].op == KRL_STEP_INDEX_VIEW)
-            at->steps[at->result].op = KRL_STEP_GET_VIEW;
-        else if (krl_is_fresh(at, at->height - 1) && at->steps[at->result].op == KRL_STEP_INDEX_VIEW_TWO)
-            at->steps[at->result].op = KRL_STEP_GET_VIEW_TWO;
-        else
+        if (!krl_is_fresh(at, at->height - 1) || !reaches_element(&at->steps[at->result]))
             krl_unary(at, KRL_STEP_LOAD);
         return;
     }

@@ -308,18 +308,12 @@ static int put_value(struct output *output, const struct piece *piece, const str
     return is_value && is_number && put_number(output, piece, part->handed.type, value);
 }
 
-int krl_swrite(const struct krl_text_call *call)
+static int write_text(const struct krl_text_call *call, struct krl_letters target, int32_t start)
 {
     const struct krl_entry *entry = call->entry;
-    struct krl_letters target = krl_array_letters(call, TEXT), format = krl_text_argument(call, FORMAT);
-    struct output output = {krl_cells_of(call, target), target.count, krl_int_in(*krl_referred(call, OFFSET))};
-    int32_t start = output.used, hits = 0, left = entry->part_count - VALUES;
-    if (!are_apart(call))
-        return 0;
-    if (start < 0 || start > target.count) {
-        give_state(call, "CMD_ABORT", 0, 0);
-        return 1;
-    }
+    struct krl_letters format = krl_text_argument(call, FORMAT);
+    struct output output = {krl_cells_of(call, target), target.count, start};
+    int32_t hits = 0, left = entry->part_count - VALUES;
     int is_fine = 1;
     while (is_fine && format.count > 0) {
         struct piece piece;
@@ -438,20 +432,13 @@ static int fits(const struct krl_program *program, const struct krl_part *part, 
     return part->handed.type == KRL_TYPE_REAL || (part->handed.type == KRL_TYPE_INT && !is_real);
 }
 
-int krl_sread(const struct krl_text_call *call)
+static int read_text(const struct krl_text_call *call, struct krl_letters text, int32_t start)
 {
     const struct krl_entry *entry = call->entry;
     const struct krl_program *program = &call->machine->program;
-    struct krl_letters text = krl_text_argument(call, TEXT), format = krl_text_argument(call, FORMAT);
+    struct krl_letters format = krl_text_argument(call, FORMAT);
     struct found found[MOST_VALUES];
-    int32_t start = krl_int_in(*krl_referred(call, OFFSET)), end = start;
-    int32_t hits = 0, left = entry->part_count - VALUES;
-    if (!are_apart(call))
-        return 0;
-    if (start < 0 || start > text.count) {
-        give_state(call, "CMD_ABORT", 0, 0);
-        return 1;
-    }
+    int32_t end = start, hits = 0, left = entry->part_count - VALUES;
     int is_fine = 1;
     while (is_fine && format.count > 0) {
         struct piece piece;
@@ -480,5 +467,17 @@ int krl_sread(const struct krl_text_call *call)
         } else
             *krl_referred(call, VALUES + i) = found[i].number;
     }
+    return 1;
+}
+
+int krl_call_format(const struct krl_text_call *call, int is_writing)
+{
+    struct krl_letters text = is_writing ? krl_array_letters(call, TEXT) : krl_text_argument(call, TEXT);
+    int32_t start = krl_int_in(*krl_referred(call, OFFSET));
+    if (!are_apart(call))
+        return 0;
+    if (start >= 0 && start <= text.count)
+        return is_writing ? write_text(call, text, start) : read_text(call, text, start);
+    give_state(call, "CMD_ABORT", 0, 0);
     return 1;
 }

@@ -10,7 +10,6 @@ int krl_can_scan(const struct krl_program *program, const struct krl_part *part)
 int krl_is_state(const struct krl_program *program, const struct krl_part *part);
 
 /* 0 where nothing was done, and Python has to do it. */
-int krl_swrite(const struct krl_text_call *call);
-int krl_sread(const struct krl_text_call *call);
+int krl_call_format(const struct krl_text_call *call, int is_writing);
 
 #endif

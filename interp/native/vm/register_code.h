@@ -95,6 +95,9 @@ enum krl_step_op {
     KRL_STEP_COUNT
 };
 
+/* Of elements with two or three indices, and of views. */
+enum { KRL_GET_BEHIND_INDEX = KRL_STEP_GET_VIEW - KRL_STEP_INDEX_VIEW };
+
 #define KRL_IS_THREE(op) ((op) >= KRL_STEP_INDEX_THREE_LOCAL && (op) <= KRL_STEP_PUT_THREE_DATA)
 #define KRL_IS_JUMP(op) ((op) <= KRL_STEP_TEXT)
 #define KRL_IS_RELATION(op) ((op) >= KRL_STEP_EQ_INT && (op) <= KRL_STEP_GE_REAL_K)

@@ -186,9 +186,8 @@ int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
         inputs[0] = krl_of_bool(krl_put_text(&call, krl_array_letters(&call, 1), 0, krl_text_argument(&call, 0)));
         break;
     case KRL_SWRITE:
-        return krl_swrite(&call);
     case KRL_SREAD:
-        return krl_sread(&call);
+        return krl_call_format(&call, function == KRL_SWRITE);
     case KRL_TEXT_FUNCTIONS:
         break;
     }
