@@ -27,6 +27,22 @@ def assignment(code: Code) -> bool:
     return code.set("$FLAG[1]", "TRUE")
 
 
+def assign_missing(code: Code) -> bool:
+    """A place by an index that is often wrong is assigned what is often missing: one is first."""
+    if not code.risk:
+        return False
+    before, code.risk = code.risk, 100
+    type_ = code.style.assigned(code)
+    drawn = [one for _ in range(8) if (one := target(code, type_)) and "[" in one]
+    value = read(code, type_)
+    code.risk = before
+    if not drawn or value is None:
+        return False
+    code.spend()
+    # A wrong index is the longer one: a sum, whose value the checker does not know.
+    return code.set(max(drawn, key=len), value)
+
+
 def assign_whole(code: Code) -> bool:
     """A structure or a whole array is assigned."""
     choices = code.choices

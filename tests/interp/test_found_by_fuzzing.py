@@ -36,14 +36,15 @@ def _makers(main: str, *, strict: bool = True, **others: str) -> list[Maker]:
     sources += [Source(text, path.replace("_", ".")) for path, text in others.items()]
     program = load(sources, "main.src", strict=strict)
     prepared = Prepared(program)
-    return [partial(prepared.executor, name, Limits()) for name in available()]
+    names = (*available(), *[COMPILED] * is_available(COMPILED))
+    return [partial(prepared.executor, name, Limits()) for name in names]
 
 
 def _run(main: str, *, strict: bool = True, **others: str) -> Observed:
     """What all executors ask and report; they ask the same where they report nothing."""
     makers = _makers(main, strict=strict, **others)
     silent = [lambda _sink, make=make: make(None) for make in makers]
-    for some in (silent, makers):
+    for some in (silent, makers[: len(available())]):
         tree, *machines = [observe(make, QuietWorld(), most=500) for make in some]
         for machine in machines:
             assert None is difference("", tree, machine)

@@ -220,6 +220,7 @@ CLOSED: Final = Style(
         (8, control_flow.backward_jump),
         (4, control_flow.give_back),
         (16, statements.proceed),
+        (6, statements.assign_missing),
         *_SETTINGS,
         (4, line("$CYCFLAG[<1-8>]:=<lasting> <AND|OR|EXOR> $FLAG[4]")),
         (8, line("PULSE(<output>, <BOOL>, <0.1|1|0.5>)")),
@@ -260,6 +261,7 @@ CLOSED: Final = Style(
     moving=Weighted((1, motions.motion)),
     risky=Weighted[StatementRule](
         (60, statements.assignment),
+        (40, statements.assign_missing),
         *_SETTINGS,
         (20, statements.call),
         (20, control_flow.branch),

@@ -79,14 +79,14 @@ def test_difference_is_reduced(
     """A program on which executors diverge is made small, and they still diverge."""
     wrong(Op.MUL_INT, Op.ADD_INT)
     monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
-    found = fuzz(6, 1, ["tree", "vm"])
+    found = fuzz(4, 6, ["tree", "vm"])
     assert found.findings
     small = found.findings[0]
     assert small.statements is not None
     assert small.statements <= 10
     assert small.difference.expected != small.difference.actual
     program = prepared(small.files)
-    worlds = (campaign.world_seed(1, small.number, n) for n in range(campaign._SEEDS))
+    worlds = (campaign.world_seed(6, small.number, n) for n in range(campaign._SEEDS))
     assert any(
         diverged(program, "vm", trace_of(program, EXECUTORS["tree"], world), world)
         for world in worlds
@@ -254,7 +254,7 @@ def test_command_with_differences(
     wrong(Op.MUL_INT, Op.ADD_INT)
     monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
     target = tmp_path / "fuzz.json"
-    arguments = ["fuzz", "--programs", "4", "--jobs", "1", "--json", str(target)]
+    arguments = [*"fuzz --programs 4 --seed 6 --jobs 1 --json".split(), str(target)]
     assert 1 == main([*arguments, "--executor", "tree", "--executor", "vm"])
     first = json.loads(target.read_text(encoding="utf-8"))["differences"][0]
     assert "vm" == first["executor"]
