@@ -112,7 +112,7 @@ class QuietTime:
         count = max(min(rounds), 0)
         for task, executor, size in zip(tasks, executors, sizes, strict=True):
             executor.skip(count * size)
-            if now - task.busy_at < IDLE_AFTER and not _is_timed(task):
+            if not _is_timed(task):
                 task.busy_at += count * period
         self._mark = _Mark(now + count * period, places, tuple(one.begun for one in executors))
         return count * period

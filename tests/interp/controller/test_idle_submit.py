@@ -156,6 +156,15 @@ def test_nothing_is_seen(one: tuple[CheckedProgram, RunSetup]) -> None:
     assert slow == quick
 
 
+def test_busy_before_is_busy_behind() -> None:
+    """A program that writes, and reads much, keeps its requests in a slice behind a stretch."""
+    body = "$FLAG[1]=TRUE\nFOR I=1 TO 40\nB=$IN[1]\nENDFOR\n$OUT[1]=B\n"
+    script = Script.read("t=2.5 IN[1]=TRUE\nt=4.503 IN[1]=FALSE\n")
+    setup = RunSetup(executor=MACHINES[-1], script=script, until=5_000_001)
+    quick, slow = _both(_program(SPS.format("", body), "DEF main ( )\nWAIT SEC 9\nEND\n"), setup)
+    assert slow == quick
+
+
 @pytest.mark.parametrize("executor", MACHINES)
 @pytest.mark.parametrize("body", ["$OUT[1]=$IN[1]\n", "PASS ($IN[2])\n", "", "B=$IN[1]\n"])
 def test_idle_takes_few_looks(looks: list[int], executor: str, body: str) -> None:

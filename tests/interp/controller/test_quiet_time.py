@@ -42,8 +42,7 @@ def _run(text: str, executor: str = "tree", script: str = "", until: int = 90) -
     return run_program(program, setup)
 
 
-#: A condition that calls a function that changes something; a timer, and a script between ticks;
-#: triggers until there are too many.
+#: A condition that calls a function that changes something; a timer, and a script between ticks.
 COUNTS = """DEF main ( )
 DECL INT N
 N=0
@@ -55,13 +54,17 @@ N=N+1
 RETURN N>900
 ENDFCT
 """
-TIMES = "DEF main ( )\n$TIMER[1]=-2500\n$TIMER_STOP[1]=FALSE\nWAIT FOR $TIMER_FLAG[1]\nEND\n"
-TRIGGERS = """DEF main ( )
-REPEAT
+#: Triggers until there are too many, one in each cycle, which ends elsewhere.
+ASKS = "FOR I=1 TO {}\nB=$IN[5]\nENDFOR\n"
+TRIGGERS = f"""DEF main ( )
+INT I
+BOOL B
+{ASKS.format(9)}REPEAT
 TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE
-UNTIL $IN[5]
+{ASKS.format(398)}UNTIL $IN[5]
 END
 """
+TIMES = "DEF main ( )\n$TIMER[1]=-2500\n$TIMER_STOP[1]=FALSE\nWAIT FOR $TIMER_FLAG[1]\nEND\n"
 
 
 @pytest.mark.parametrize(
