@@ -181,7 +181,7 @@ def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
             for other, known in _between(way, rows, ends, times):
                 if took > known * _STRAIGHT and _is_straight((*row, other)):
                     law = "points on a straight way cost no time"
-                    yield one.broken(law, f"{took} us, not {known} us", "BLD-12")
+                    yield one.broken(law, f"{took} us, not {known} us")
     for row, took in zip(rows, times, strict=True):
         stops = _exact(rows, row) if len(row) > 1 else None
         if stops is not None and took > stops * _SLOWER:
