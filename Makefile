@@ -25,7 +25,7 @@ help:
 	@echo 'make killed       kill surveys and acceptances at random moments'
 	@echo 'make hostile      hostile input at every entry point'
 	@echo 'make editors      Neovim with language server and debugger, driven (brings Neovim)'
-	@echo 'make determinism  run each command twenty times in different ways and compare its records'
+	@echo 'make determinism  run each command ten times in different ways and compare its records'
 	@echo 'make blends       the laws of blends on thousands of programs, other ones each time'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
