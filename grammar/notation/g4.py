@@ -221,7 +221,9 @@ def _ranges(body: str) -> tuple[CharRange, ...]:
         if i + 2 < len(items) and items[i + 1] == ("-", False):
             high = ord(items[i + 2][0])
             if low > high:
-                raise GrammarError(f"[{body}] has a range that runs backwards")
+                raise GrammarError(
+                    f"{items[i][0]!r}-{items[i + 2][0]!r} is a range that runs backwards"
+                )
             found.append((low, high))
             i += 3
         else:

@@ -264,7 +264,7 @@ def test_exchanging_a_rule() -> None:
         ("s : A ;\nC : ~('x' | 'yz') ;", 3, "rule C: only a set of characters can be negated"),
         ("s : A ;\nC : 'ab'..'c' ;", 3, "rule C: 'ab'..'c' is no range of characters"),
         ("s : A ;\nC : 'z'..'a' ;", 3, "rule C: 'z'..'a' is no range of characters"),
-        ("s : A ;\nC : [z-a] ;", 3, "rule C: [z-a] has a range that runs backwards"),
+        ("s : A ;\nC : [z-a] ;", 3, "rule C: 'z'-'a' is a range that runs backwards"),
         (
             "s : A ;\nC : 'x' -> pushMode(M) ;",
             3,
