@@ -89,7 +89,8 @@ class _Checked:
         return program.file.table, program.source
 
     def _spelling(self) -> Spelling:
-        return Spelling(lambda: [one.given.words for one in self.programs.values()])
+        programs = self.programs
+        return Spelling(lambda: [(path, one.given.words) for path, one in programs.items()])
 
     def _findings(self, project: Project, module: Module) -> Findings:
         program = self.programs[module.path]

@@ -1,14 +1,14 @@
 """How likely a name is spelt as it is meant, judged by the other names of a project.
 
 Of two names one slip apart, the one whose letters around the slip stand in other names is right. A
-word that stands in one name alone, one slip from a word of several others, is that word.
+name that one file writes, one slip from what several files write or from a series, means these.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from functools import cached_property
 
 from grammar.diagnostics.typos import Typos
@@ -20,45 +20,55 @@ from grammar.syntax.source import Source
 _WIDTHS = ((4, 4), (3, 3), (2, 2), (3, 0), (0, 3), (2, 0), (0, 2), (1, 1))
 # Of a letter too many or too few these: less of the shorter name stands everywhere.
 _WIDE = _WIDTHS[:3]
-# Shorter words are near too many others.
+# Shorter names are near too many others.
 _SHORTEST = 5
-# A word that so many files write, or so many names of one have, is spelt as it is meant.
+# What so many files write, or one with so many numbers, is spelt as it is meant.
 _USUAL = 2
-_WORD = re.compile(r"[A-Z]+")
+# The controller makes each data list from a template that declares it.
+_OF_EACH_LIST = "SUCCESS"
+_NUMBER = re.compile(r"\d+")
 
 
 class Spelling:
     """The names of some files.
 
-    ``names_of_files`` gives those of each, in upper case; it is called once, when first needed.
+    ``names_of_files`` gives the path of each and its names, in upper case; it is called once, when
+    first needed.
     """
 
-    def __init__(self, names_of_files: Callable[[], Iterable[Set[str]]]) -> None:
+    def __init__(self, names_of_files: Callable[[], Iterable[tuple[str, Set[str]]]]) -> None:
         self._names_of_files = names_of_files
+
+    @cached_property
+    def files(self) -> Mapping[str, Set[str]]:
+        """The names of each file."""
+        return dict(self._names_of_files())
 
     @cached_property
     def _names(self) -> Counter[str]:
         """How many files have each name; the controller counts as one."""
         system = System.load()
-        files = (*self._names_of_files(), {*system.variables, *system.functions})
-        return Counter(name for names in files for name in names)
+        files = (*self.files.values(), {*system.variables, *system.functions})
+        counts = Counter(name for names in files for name in names)
+        counts[_OF_EACH_LIST] += _USUAL
+        return counts
 
     @cached_property
     def _text(self) -> str:
         return "\n".join(["", *sorted(self._names), ""])
 
     @cached_property
-    def _words(self) -> Counter[str]:
-        words: Counter[str] = Counter()
+    def _series(self) -> Counter[str]:
+        """How often names are written that differ in their numbers only."""
+        series: Counter[str] = Counter()
         for name, count in self._names.items():
-            for word in set(_WORD.findall(name)):
-                if len(word) >= _SHORTEST:
-                    words[word] += count
-        return words
+            series[_NUMBER.sub("0", name)] += count
+        return series
 
     @cached_property
     def _usual(self) -> Typos:
-        usual = (word for word, count in self._words.items() if count >= _USUAL)
+        known = System.load().functions
+        usual = (one for one, n in self._series.items() if n >= _USUAL and one not in known)
         return Typos(usual, _SHORTEST)
 
     def is_likelier(self, one: str, other: str) -> bool:
@@ -78,19 +88,24 @@ class Spelling:
         return self._text.count(part) - own
 
     def meant(self, name: str) -> str | None:
-        """The name with its one misspelt word as other names have it; ``None`` if none is."""
-        key = name.upper()
-        for found in _WORD.finditer(key):
-            if self._words[found[0]] <= self._names[key] and len(found[0]) >= _SHORTEST - 1:
-                near = self._usual.meant(found[0])
-                if len(near) == 1:
-                    return key[: found.start()] + near[0] + key[found.end() :]
-        return None
+        """The only name that others write and ``name`` is a slip of; numbers make no difference.
+
+        ``None`` where there is none, or where others write it too, with whatever numbers.
+        """
+        if name[0] == "$" or self._series[_NUMBER.sub("0", name.upper())] > 1:
+            return None
+        near = self._usual.meant(_NUMBER.sub("0", name))
+        numbers = _NUMBER.findall(name)
+        if len(near) != 1 or near[0].count("0") != len(numbers):
+            return None
+        if near[0].replace("_", "") == _NUMBER.sub("0", name.upper()).replace("_", ""):
+            return None
+        return _NUMBER.sub(lambda _: numbers.pop(0), near[0])
 
 
 def spelling_of(sources: Iterable[Source]) -> Spelling:
     """The spelling of the names in some texts, which are read when it is asked for."""
-    return Spelling(lambda: [words_of(source.text) for source in sources])
+    return Spelling(lambda: [(source.path, words_of(source.text)) for source in sources])
 
 
 def _common(one: str, other: str) -> int:

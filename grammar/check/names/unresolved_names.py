@@ -140,6 +140,30 @@ def slipped_declarations(
     return slips
 
 
+def misspelt_declarations(
+    spelling: Spelling, used: Set[str], file_of: FileOf
+) -> Iterator[Diagnostic]:
+    """What nothing uses and is a slip of what other files write, or of a series of names."""
+    for path in spelling.files if REST not in used else ():
+        table, source = file_of(path) or (None, None)
+        if table is None or source is None:
+            continue
+        for space, symbol in table.table.symbols():
+            if space not in (Space.VALUE, Space.TYPE) or symbol.key in used:
+                continue
+            meant = spelling.meant(symbol.name)
+            if meant:
+                yield diagnose(
+                    "unused",
+                    path,
+                    Region.of(source, symbol.span),
+                    f"{symbol.name} is declared and never used",
+                    reason=f"{meant} is written elsewhere",
+                    severity="warning",
+                    fix=Fix(f"did you mean {meant}?"),
+                )
+
+
 def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[Diagnostic]:
     """What is to be said of the names that the files of a project take from elsewhere.
 
@@ -172,6 +196,8 @@ def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[
     for key, some in uses.items():
         near = tuple(name for name in meant[key] if series[name] < _SERIES)
         is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
+        if not near and counts[key] == 1 and (word := spelling.meant(some[0].name)):
+            near = (word,)
         if near and (is_rare or any(one.is_swapped for one in some)):
             slips[key] = near
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:

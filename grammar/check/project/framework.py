@@ -16,7 +16,12 @@ from grammar.check.flow.effects import NO_EFFECTS, Effects, effects
 from grammar.check.flow.effects import of_project as of_effects
 from grammar.check.limits import name_limits, value_limits
 from grammar.check.names import duplicate_names, undeclared_names
-from grammar.check.names.unresolved_names import FileOf, UnresolvedName, slipped_declarations
+from grammar.check.names.unresolved_names import (
+    FileOf,
+    UnresolvedName,
+    misspelt_declarations,
+    slipped_declarations,
+)
 from grammar.check.names.unresolved_names import of_project as of_names
 from grammar.check.structure import folds, misplaced_statements, splines
 from grammar.check.types import declarations, initial_values, statements
@@ -137,7 +142,10 @@ def check_project(
     slips = slipped_declarations(references, used, file_of, spelling)
     explained = {one.finding for one in references if one.slip in slips}
     found = [one for file in kept for one in file.diagnostics if one not in explained]
-    found += slips.values()
+    at_slips = {(one.path, one.region): one for one in slips.values()}
+    found += at_slips.values()
+    unused = misspelt_declarations(spelling, used, file_of)
+    found += (one for one in unused if (one.path, one.region) not in at_slips)
     rest = (one for one in references if not one.finding and one.slip not in slips)
     found += of_names(rest, spelling)
     found += of_effects(one.effects for one in kept)

@@ -175,8 +175,8 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
     def file(path: str) -> tuple[ModuleTable | None, Source]:
         return files[indices[path]].read.table, contents[indices[path]].source
 
-    given = [one.read.contribution for one in files]
-    spelling = Spelling(lambda: [one.words for one in given if one])
+    given = {path: files[index].read.contribution for path, index in indices.items()}
+    spelling = Spelling(lambda: [(path, one.words) for path, one in given.items() if one])
     return check_project((one.checked.findings for one in files), file, spelling)
 
 

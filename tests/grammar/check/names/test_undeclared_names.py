@@ -206,6 +206,20 @@ def test_other_names_show_which_of_two_is_misspelt(
     assert [line] == [one.region.line for one in found if one.code == "KRL101"]
 
 
+@pytest.mark.parametrize(
+    ("name", "is_told"),
+    [("SUCCES", True), ("SUCCESSES", False), ("GRIPPER_OPNE3", True), ("GRIPPER_OPEN3", False)],
+)
+def test_what_nothing_uses_and_others_write_otherwise_is_misspelt(
+    finds: Callable[..., list[Diagnostic]], name: str, is_told: bool
+) -> None:
+    """A declaration that nothing uses is a slip of what each list has, or of a series of names."""
+    series = "DEFDAT V\nDECL INT GRIPPER_OPEN1\nDECL INT GRIPPER_OPEN2\nENDDAT\n"
+    files = {"U.dat": f"DEFDAT U\nDECL INT {name}\nENDDAT\n", "V.dat": series}
+    found = [one.code for one in finds(files, is_complete=None) if one.severity == "warning"]
+    assert ["KRL117"] * is_told == found
+
+
 @pytest.mark.parametrize(("used", "line"), [("PART", 2), ("PRAT", 1)])
 def test_a_misspelt_parameter_is_told_where_the_slip_is(
     finds: Callable[..., list[Diagnostic]], used: str, line: int
