@@ -43,12 +43,12 @@ class Growth:
     @property
     def time_slope(self) -> float | None:
         """The exponent of CPU time over size, from the first size to the last; 0 for hardly any."""
-        first, last = (
-            max(cost.seconds - self.base.seconds, 1e-3) for cost in (self.costs[0], self.costs[-1])
-        )
-        if last < _NOTICEABLE_S:
+        base, first, last = (one.seconds for one in (self.base, self.costs[0], self.costs[-1]))
+        if last - base < _NOTICEABLE_S:
             return 0.0
-        return self._slope(last / first)
+        if first < 2 * base:  # the difference would be noise
+            base = 0.0
+        return self._slope((last - base) / (first - base))
 
     @property
     def memory_slope(self) -> float | None:
@@ -68,8 +68,9 @@ def measure_growth(
 ) -> Growth:
     """The growth of ``call``, in this process, with what ``prepare`` makes for a size.
 
-    The first size is found by doubling ``smallest`` until its cost can be measured; the last is
-    never above ``largest``. Costs that seem to grow too fast are measured once more.
+    The first size is found by doubling ``smallest`` until its cost can be measured beside that of
+    next to nothing; the last is never above ``largest``. Costs that seem to grow too fast are
+    measured once more.
     """
 
     def cost(size: int) -> Cost:
@@ -81,7 +82,8 @@ def measure_growth(
     cost(1)  # imports, and tables that are made once
     base = cost(1)
     costs = [cost(smallest)]
-    while costs[0].seconds - base.seconds < _NOTICEABLE_S and costs[0].size * 8 <= largest:
+    noticeable = base.seconds + max(_NOTICEABLE_S, base.seconds)
+    while costs[0].seconds < noticeable and costs[0].size * 8 <= largest:
         costs = [cost(costs[0].size * 2)]
     while len(costs) < 3 and costs[-1].seconds < _LONGEST_S:
         costs.append(cost(costs[-1].size * 2))

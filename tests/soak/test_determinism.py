@@ -32,7 +32,7 @@ pytestmark = pytest.mark.soak
 RUNS = int(os.environ.get("KRL_DETERMINISM_RUNS", "10"))
 SEED = int(os.environ.get("KRL_DETERMINISM_SEED", "1"))
 #: Fields of records that say when, or for how long.
-TIMES = {"analysis_seconds", "generated", "seconds"}
+TIMES = {"analysis_seconds", "generated", "seconds", "wall"}
 #: What each command line writes, the words of a command with ``{in}``, ``{out}`` and ``{jobs}``.
 COMMANDS = {
     "recover": "recover --jobs {jobs} --no-start --out {out} {in}",

@@ -15,7 +15,13 @@ def _growth(*seconds: float, peaks: tuple[int, ...] = (1, 1, 1)) -> Growth:
 
 @pytest.mark.parametrize(
     ("seconds", "slope"),
-    [((1, 2, 4), 1.0), ((1, 4, 16), 2.0), ((1, 1, 1), 0.0), ((0.001, 0.02, 0.15), 0.0)],
+    [
+        ((1, 2, 4), 1.0),
+        ((1, 4, 16), 2.0),
+        ((1, 1, 1), 0.0),
+        ((0.001, 0.02, 0.15), 0.0),
+        ((-0.25, 0, 0.5), 1.0),
+    ],
 )
 def test_slope_is_the_exponent(seconds: tuple[float, ...], slope: float) -> None:
     """What a call costs without input does not count, nor what no clock can tell."""
