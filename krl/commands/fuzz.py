@@ -32,7 +32,10 @@ def fuzz(
     jobs: JobsOption = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the programs."),
+        typer.Option(
+            metavar="ADDRESS",
+            help="A trusted Dask cluster (it can run code here) whose workers run the programs.",
+        ),
     ] = None,
 ) -> int:
     """Generate random programs, run each on all executors, and compare every request and event.

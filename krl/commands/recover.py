@@ -47,7 +47,10 @@ def recover(
     jobs: JobsOrOneOption = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers read the files."),
+        typer.Option(
+            metavar="ADDRESS",
+            help="A trusted Dask cluster (it can run code here) whose workers read the files.",
+        ),
     ] = None,
     negatives: Annotated[
         Path | None,

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import threading
@@ -43,7 +44,9 @@ class _Cluster:
     many deaths over a task Dask bears before it tells.
     """
 
-    def __init__(self, folder: Path, workers: int, failures: int = 3) -> None:
+    def __init__(
+        self, folder: Path, workers: int, failures: int = 3, protocol: str = "tcp"
+    ) -> None:
         self.folder = folder
         # workers unpickle functions of this very file
         paths = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])
@@ -54,7 +57,8 @@ class _Cluster:
         }
         self._processes: list[subprocess.Popen[str]] = []
         self.scheduler = self._start(
-            "scheduler", "--port", "0", "--no-dashboard", "--host", "127.0.0.1"
+            *("scheduler", "--port", "0", "--no-dashboard", "--host", "127.0.0.1"),
+            *("--protocol", protocol),
         )
         self.address = self._address()
         self.workers: list[subprocess.Popen[str]] = []
@@ -102,7 +106,7 @@ class _Cluster:
     def _address(self) -> str:
         assert self.scheduler.stderr is not None
         for line in self.scheduler.stderr:
-            found = re.search(r"tcp://[\d.]+:\d+", line)
+            found = re.search(r"t(cp|ls)://[\d.]+:\d+", line)
             if found:
                 threading.Thread(target=self.scheduler.communicate, daemon=True).start()
                 return found.group()
@@ -260,6 +264,32 @@ def test_workers_that_all_go_are_one_clear_line(
     of_one.kill_a_worker()
     with pytest.raises(WorkersError, match=r"has no workers left|again and again"):
         list(results)
+
+
+def test_a_cluster_asks_for_a_certificate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With TLS whoever has the certificate is served; whoever has none gets one clear line."""
+    from dask import config
+
+    openssl = shutil.which("openssl") or pytest.skip("no openssl makes a certificate")
+    key, certificate = (str(tmp_path / name) for name in ("key.pem", "certificate.pem"))
+    made = [openssl, "req", "-x509", "-nodes", "-newkey", "rsa:2048", "-subj", "/CN=krl"]
+    subprocess.run([*made, "-keyout", key, "-out", certificate], check=True, capture_output=True)
+    settings = {"ca-file": certificate}
+    for whose in ("client", "scheduler", "worker"):
+        settings |= {f"{whose}.cert": certificate, f"{whose}.key": key}
+    settings = {f"distributed.comm.tls.{name}": value for name, value in settings.items()}
+    for name, value in settings.items():
+        variable = name.replace(".", "__").replace("-", "_").upper()
+        monkeypatch.setenv(f"DASK_{variable}", value)
+    secured = _Cluster(tmp_path, workers=1, protocol="tls")
+    try:
+        with pytest.raises(WorkersError, match="no Dask scheduler answers at tls://"):
+            check_scheduler(secured.address)
+        with config.set(settings):
+            secured.wait()
+            assert [14] == list(ordered_map(_deadly, [(7,)], scheduler=secured.address))
+    finally:
+        secured.stop()
 
 
 def test_workers_of_another_release_are_refused(

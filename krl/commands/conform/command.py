@@ -84,7 +84,10 @@ def conform(
     jobs: JobsOption = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="A Dask cluster whose workers run the cases."),
+        typer.Option(
+            metavar="ADDRESS",
+            help="A trusted Dask cluster (it can run code here) whose workers run the cases.",
+        ),
     ] = None,
 ) -> int:
     """Run conformance cases, and compare results with expectations and between executors.
