@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
+from grammar.diagnostics.typos import Series, Typos
 from grammar.parser.tree import Tree
 from grammar.syntax import ast
 from grammar.syntax.build import SyntaxFailure, builder
@@ -28,6 +29,8 @@ _ROUTINES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 _HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
 #: Heads and ends in whose place a block is gone through once, with the counter of a loop.
 _ONCE = {"CASE": "CASE 0", "IF": "IF TRUE THEN", "FOR": "FOR {}=1 TO 1", "UNTIL": "UNTIL TRUE"}
+_STRUCTURE = frozenset({*BLOCKS, *BRANCHES, *CLOSERS})
+_SLIPS_OF_STRUCTURE = Typos(_STRUCTURE, 3, series=Series.NONE)
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
 #: A type that loses its last members is still one, and known to have others.
 _TYPE = re.compile(r"[ \t]*(?:(?:DECL|GLOBAL)[ \t]+)*(?:ENUM|STRUC)\b", re.IGNORECASE)
@@ -108,8 +111,10 @@ class _Recovery:
             block = open_blocks(source, [tree.line])[tree.line]
             cause = _unclosed(source.line(tree.line), tree.text, block)
             is_orphan = self._is_orphan(tree.line, tree.text)
-            is_structural = cause is not None or block is None or is_orphan
-            follows = bool(self._failures) and is_structural
+            if cause is not None:
+                follows = self._is_explained(cause)
+            else:
+                follows = bool(self._failures) and (block is None or is_orphan)
             is_case = "CASE" in context.expected and cause is None
             if tree.line in self._readings:
                 if self._read_otherwise(tree.line):
@@ -156,6 +161,14 @@ class _Recovery:
         """Whether a line that fails at a token closes or continues a block with it."""
         word = lead(self._written.line(line))
         return word == token.upper() and (word in CLOSERS or word in BRANCHES)
+
+    def _is_explained(self, cause: OpenBlock) -> bool:
+        """Whether a line of its routine that failed before may be what should close a block."""
+        routine = cause
+        while routine.outer is not None:
+            routine = routine.outer
+        failed = (one.line for one in self._failures if one.line >= routine.line)
+        return any(_is_like_structure(self._written.line(line)) for line in failed)
 
     def _readings_of(self, line: int, column: int, block: OpenBlock | None) -> Iterator[str]:
         """As what a line that opens or divides a block, or declares a type, can be read.
@@ -245,6 +258,15 @@ class _Recovery:
             self._text[:start] + text.ljust(len(written)) + self._text[start + len(written) :]
         )
         return True
+
+
+def _is_like_structure(line: str) -> bool:
+    """Whether a line has a word of a block, or one a slip away, or is a single word."""
+    code = line.partition(";")[0].strip()
+    names = _NAME.findall(code)
+    return names in ([], [code]) or any(
+        name.upper() in _STRUCTURE or _SLIPS_OF_STRUCTURE.meant(name) for name in names
+    )
 
 
 def _unclosed(line: str, token: str, block: OpenBlock | None) -> OpenBlock | None:

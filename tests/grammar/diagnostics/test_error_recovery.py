@@ -71,6 +71,17 @@ def test_one_mistake_is_one_failure_and_keeps_all_routines(
     assert ["CELL", "WORK"] == routines(found.syntax)
 
 
+@pytest.mark.parametrize(
+    ("line", "lines"),
+    [("COUNT[1=3", [5, 7]), ("ENDFI", [5]), ("HALT ENDIF", [5]), ("  N=2 +", [5, 7])],
+)
+def test_a_block_is_missed_behind_another_mistake(line: str, lines: list[int]) -> None:
+    """An open block is reported unless a line that failed before may be what closes it."""
+    text = f"DEF NEG()\nINT N\nIF N==1 THEN\nN=2\n{line}\n\nEND\n"
+    found = recover(text)
+    assert lines == [failure.line for failure in found.failures if not failure.follows]
+
+
 def test_what_follows_from_a_routine_that_is_not_closed() -> None:
     """Where its end has no room in the text, the whole cannot be read; it is one failure still."""
     text = CELL.replace("  ; counting\n", "").replace("END\n\nDEF", "\n\nDEFFCT BOOL", 1)
