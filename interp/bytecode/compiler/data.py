@@ -106,7 +106,7 @@ class _DataList:
                 place = self._expressions.designators.place(target)
                 if isinstance(place, SystemVariable):
                     raise self._emitter.unlinked("a value is given to what is declared elsewhere")
-                if is_first and isinstance(place, DataCells):
+                if is_first and self._writer.here == start and isinstance(place, DataCells):
                     with suppress(Fault, LinkError):  # the code for it reports this
                         found = self._cells_of(value, place.type)
                         self._cells.update(enumerate(found, place.address))

@@ -301,6 +301,14 @@ def test_the_last_value_of_a_data_list_counts() -> None:
     assert ((0, 2), (2, 5)) == compile_program(program).program.initial
 
 
+def test_a_data_list_gives_nothing_to_what_it_imports() -> None:
+    """On either executor, whichever list comes first."""
+    given = "DEFDAT main\nIMPORT INT I IS /R1/A..I\nI=7\nENDDAT\n"
+    source = "DEF main()\nDECL INT J\nJ=I\nEND\n"
+    fault = _last(source, A_dat="DEFDAT A PUBLIC\nDECL INT I\nENDDAT\n", main_dat=given)
+    assert "a value is used that was never set" == str(fault)
+
+
 def test_huge_data_lists() -> None:
     """Data lists that no memory holds are refused at once."""
     program = _loaded(
