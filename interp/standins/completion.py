@@ -28,7 +28,7 @@ from grammar.syntax.walk import walk
 from interp.robot.models.stand_in import Places
 from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
-from interp.standins.unreadable_lines import UNREADABLE
+from interp.standins.unreadable_lines import COUNT, UNREADABLE
 from interp.standins.unset_data import unset_data, with_values
 from interp.standins.uses import FOLDER, DataUse, Uses
 from support.lazy_dataclass import dataclass
@@ -203,7 +203,7 @@ def _listed(wanted: _Wanted, sources: Mapping[str, Source]) -> tuple[StandIn, ..
             origin: Origin = "library" if key in known else "signature"
             if origin == "signature" and kind == "routine" and key in load_packages().routines:
                 origin = "package"
-            if key == UNREADABLE:
+            if key in (COUNT, UNREADABLE):
                 origin = "unreadable"
             found.append(_stand_in(name, kind, origin, module, sources))
     for module, name in wanted.defaults.values():

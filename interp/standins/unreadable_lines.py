@@ -3,8 +3,8 @@
 A controller selects no such program. Offline most of it can be run all the same: a statement that
 cannot be read becomes a call of `UNREADABLE`, a routine that no file has and for which one stands
 in that does nothing, so that the trace shows when the line was passed; so does a condition, which
-counts as TRUE. A loop that counts is gone through once. A declaration that cannot be read is left
-out: stand-ins take its place.
+counts as TRUE. A loop that counts is gone through once, and its head calls `COUNT`. A declaration
+that cannot be read is left out: stand-ins take its place.
 """
 
 from __future__ import annotations
@@ -22,11 +22,14 @@ from grammar.syntax.source import Source
 
 #: What is called in place of a statement that cannot be read: a name that no program uses.
 UNREADABLE: Final = "UNREADABLE__LINE"
+#: What is called in the head of a loop that cannot be read; it gives 0.
+COUNT: Final = "UNREADABLE__COUNT"
 _DECLARES: Final = frozenset(
     "DECL GLOBAL CONST INT REAL BOOL CHAR STRUC ENUM SIGNAL CHANNEL EXT EXTP EXTFCT EXTFCTP IMPORT "
     "FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
 )
 _TRUE: Final = re.compile(r"^\s*((?:IF|UNTIL) )TRUE\b")
+_ONCE: Final = re.compile(r"^\s*(FOR \S+=1 TO 1)\s*$")
 _WORD: Final = re.compile(r"\s*(\w*)")
 #: So many are tried one by one where not all can stand together.
 _MOST: Final = 20
@@ -54,8 +57,9 @@ def readable(source: Source) -> Readable | None:
         blank = {number for number, line in enumerate(lines, start=1) if not line.strip()}
         _put_calls(lines, sorted(found.left_out & blank), source)
         for number, line in enumerate(lines, start=1):
-            if number in found.left_out:  # a condition in place of one that cannot be read
-                lines[number - 1] = _TRUE.sub(rf"\1{UNREADABLE}()", line)
+            if number in found.left_out:  # a head in place of one that cannot be read
+                text = _TRUE.sub(rf"\1{UNREADABLE}()", line)
+                lines[number - 1] = _ONCE.sub(rf"\1+{COUNT}()", text)
     text = "\n".join(lines)
     syntax = read_module(text, source.path)
     assert isinstance(syntax, ast.Module), "what was recovered can be read"

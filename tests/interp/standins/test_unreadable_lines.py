@@ -5,7 +5,7 @@ import pytest
 from grammar.syntax.source import Source
 from interp.program.load import CheckedProgram, load
 from interp.session import EXECUTORS, RunResult, RunSetup, run_program
-from interp.standins.unreadable_lines import UNREADABLE
+from interp.standins.unreadable_lines import COUNT, UNREADABLE
 from interp.values.faults import LinkError
 
 TEXT = """DEF main ( )
@@ -31,7 +31,7 @@ def _run(text: str, executor: str) -> tuple[CheckedProgram, RunResult]:
 def _passed(run: RunResult) -> list[str | None]:
     """The lines that the trace tells of."""
     calls = (event for event in run.events if event.kind == "call")
-    return [event.place for event in calls if event.fields["name"] == UNREADABLE]
+    return [event.place for event in calls if event.fields["name"] in (COUNT, UNREADABLE)]
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
@@ -41,8 +41,8 @@ def test_goes_on_behind_what_cannot_be_read(executor: str) -> None:
     ends = [event for event in run.events if event.kind == "motion_end"]
     used = program.used_stand_ins(program.start())
     assert (3, "end") == (len(ends), run.outcome.ending)
-    assert [] == _passed(run)
-    assert [("unreadable", 6)] == [(one.origin, one.line) for one in used]
+    assert ["main.src:9"] == _passed(run)
+    assert [("unreadable", 6), ("unreadable", 9)] == [(one.origin, one.line) for one in used]
 
 
 HEADS = """DEF main ( )
@@ -68,11 +68,11 @@ END
 
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_blocks_whose_heads_cannot_be_read(executor: str) -> None:
-    """Such a block is gone through once, in its first branch, and the trace tells of conditions."""
+    """Such a block is gone through once, in its first branch, and the trace shows their heads."""
     _, run = _run(HEADS, executor)
     outputs = [event.fields["number"] for event in run.events if event.kind == "out"]
     assert ("end", [1, 11, 3, 4]) == (run.outcome.ending, outputs)
-    assert [f"main.src:{line}" for line in (3, 5, 14, 15, 17)] == _passed(run)
+    assert [f"main.src:{line}" for line in (3, 5, 9, 14, 15, 17)] == _passed(run)
 
 
 def test_every_broken_line_is_told() -> None:
