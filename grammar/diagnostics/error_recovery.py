@@ -167,7 +167,9 @@ class _Recovery:
         routine = cause
         while routine.outer is not None:
             routine = routine.outer
-        failed = (one.line for one in self._failures if one.line >= routine.line)
+        failed = [one.line for one in self._failures if one.line >= routine.line]
+        if self._is_open_ended and len(self._written.lines) - 1 in failed:
+            return True  # the file breaks off there
         return any(_is_like_structure(self._written.line(line)) for line in failed)
 
     def _readings_of(self, line: int, column: int, block: OpenBlock | None) -> Iterator[str]:

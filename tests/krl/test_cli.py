@@ -5,12 +5,14 @@ import os
 import re
 import subprocess
 import sys
+import sysconfig
 from importlib import metadata
 from pathlib import Path
 from unittest.mock import Mock
 
 import pytest
 
+import krl
 from krl.cli import main
 from krl.errors import InputError
 from krl.extras import need
@@ -76,8 +78,14 @@ def test_a_package_of_the_same_name_is_named(
     (tmp_path / "support").mkdir()
     (tmp_path / "support" / "__init__.py").write_text("raise ValueError\n", encoding="utf-8")
     (tmp_path / "test_a.toml").write_text("[[test]]\n", encoding="utf-8")
+    folders = [tmp_path, Path(krl.__file__).parents[1], sysconfig.get_path("purelib")]
     done = subprocess.run(
-        [sys.executable, *words], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-S", *words],  # an editable install of the workbench is found first
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, folders))},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     [line] = re.findall(".*should be.*", done.stderr or done.stdout)
     assert (status, True) == (done.returncode, line.startswith(f"{before}support should be "))
