@@ -110,7 +110,7 @@ lock:
 		--python-version 3.11 --extra dev --output-file requirements-dev.txt pyproject.toml
 
 audit: $(DEV)
-	@uvx pip-audit@2.10.1 --disable-pip --require-hashes --requirement requirements-dev.txt
+	@uvx pip-audit@2.10.1 --strict --disable-pip --require-hashes --requirement requirements-dev.txt
 	@uvx pip-licenses@5.5.5 --python $(BIN)/python --from=mixed --partial-match --summary \
 		--allow-only='MIT;BSD;Apache;ISC;MPL;Mozilla;PSF' --ignore-packages krl-workbench
 
