@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 
-from grammar.semantics.types import Enumeration, Structure, Type
+from grammar.semantics.types import Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.walk import left_chain
 from interp.port.executor import Reader
 from interp.port.inspection import RELATIONS, Guard, Seen
 from interp.port.requests import Path
+from interp.program.literals import LITERALS, known_enumeration
 from interp.values.faults import LinkError, RuntimeFailure
 from interp.values.operators import apply, apply_unary
 from interp.values.values import (
@@ -26,11 +27,8 @@ from interp.values.values import (
     converted,
     empty,
     index,
-    integer,
     known,
-    letters,
     position_type,
-    single,
 )
 
 _Look = Callable[[str], Seen | None]
@@ -115,25 +113,10 @@ class _Evaluation:
                 return self._binary(node)
             case ast.Variable() | ast.Subscript() | ast.Member():
                 return self._variable(node)
-        return self._constant(node, wanted)
-
-    @staticmethod
-    def _constant(node: ast.Expression, wanted: object) -> Value:
-        match node:
-            case ast.IntegerLiteral():
-                return integer(node.value)
-            case ast.BitLiteral():
-                return integer(node.value - 2**32 if node.value >= 2**31 else node.value)
-            case ast.RealLiteral():
-                return single(node.value)
-            case ast.BoolLiteral(value=truth):
-                return truth
-            case ast.StringLiteral():
-                return letters(node.text)
             case ast.EnumConstant():
-                if not isinstance(wanted, Enumeration):
-                    raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
-                return constant(wanted, node.name.key)
+                return constant(known_enumeration(node, wanted), node.name.key)
+        if (rule := LITERALS.get(type(node))) is not None:
+            return rule(node)
         raise LinkError("only variables, constants and operators can be looked at")
 
     def _aggregate(self, node: ast.Aggregate, wanted: object) -> Value:

@@ -15,11 +15,11 @@ from grammar.semantics.types import (
     INT,
     REAL,
     UNKNOWN,
-    Enumeration,
     Type,
 )
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain
+from interp.program.literals import LITERALS, enumeration_constant
 from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.tree.designators import Designators
 from interp.tree.places import LocalPlace, member
@@ -29,13 +29,9 @@ from interp.values.operators import apply, apply_unary
 from interp.values.values import (
     EnumValue,
     Value,
-    constant,
     converted,
     empty,
-    integer,
     known,
-    letters,
-    single,
 )
 
 
@@ -72,14 +68,11 @@ class Expressions(Designators):
         return found
 
     def _literal(self, node: Any, _wanted: Type) -> Steps[Value]:
-        return _LITERALS[type(node)](node)
+        return LITERALS[type(node)](node)
         yield  # a generator as all are
 
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Steps[Value]:
-        type_ = self.frame.unit.checked.enumerations.get(node, wanted)
-        if not isinstance(type_, Enumeration):
-            raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
-        return constant(type_, node.name.key)
+        return enumeration_constant(self.frame.unit, node, wanted)
         yield
 
     def _parenthesised(self, node: ast.Parenthesised, wanted: Type) -> Steps[Value]:
@@ -115,22 +108,9 @@ class Expressions(Designators):
         """The value of a function."""
 
 
-def _bits(node: ast.BitLiteral) -> int:
-    """32 bits as a number with sign [TYP-04]."""
-    return integer(node.value - 2**32 if node.value >= 2**31 else node.value)
-
-
-_LITERALS: Mapping[type[Any], Callable[[Any], Value]] = {
-    ast.IntegerLiteral: lambda node: integer(node.value),
-    ast.RealLiteral: lambda node: single(node.value),
-    ast.BoolLiteral: lambda node: node.value,
-    ast.BitLiteral: _bits,
-    ast.StringLiteral: lambda node: letters(node.text),
-    ast.ChannelName: lambda node: letters(node.name.key),
-}
 _Rule = Callable[[Expressions, Any, Type], Steps[Value]]
 _VALUES: Mapping[type[Any], _Rule] = {
-    **dict.fromkeys(_LITERALS, Expressions._literal),
+    **dict.fromkeys(LITERALS, Expressions._literal),
     ast.EnumConstant: Expressions._constant,
     ast.Parenthesised: Expressions._parenthesised,
     ast.Unary: Expressions._unary,

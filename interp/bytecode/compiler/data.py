@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from grammar.semantics.symbols import Access
-from grammar.semantics.types import INT_MAX, Array, Enumeration, Type
+from grammar.semantics.types import Array, Type
 from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw, cells_of, offset_of, size, value_at, word_of
@@ -27,12 +27,11 @@ from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.executor import Machine
 from interp.port.requests import End, Fail
+from interp.program.literals import literal_value
 from interp.program.load import CheckedProgram
 from interp.program.reads import structure_of
 from interp.program.variables import data_lists, data_variables, first_values
 from interp.values.faults import Fault, LinkError, fault
-from interp.values.operators import apply_unary
-from interp.values.values import constant, integer, letters, single
 
 
 def declare_data(program: CheckedProgram, tables: Tables) -> None:
@@ -122,52 +121,26 @@ class _DataList:
         """A literal, or an aggregate of them, in cells of a type; raises `Fault`, `LinkError`."""
         tables, unit = self._context.tables, self._context.unit
         tables.number(type_)
-        match node:
-            case ast.Aggregate():
-                structure = structure_of(unit, node, type_)
-                if structure is None:
+        if isinstance(node, ast.Aggregate):
+            structure = structure_of(unit, node, type_)
+            if structure is None:
+                raise fault("inadmissible")
+            made = tables.closed(structure)
+            cells: list[Raw | None] = [None] * size(made)
+            for one in node.components:
+                indices = one.indices or ()
+                steps = [literal(index) for index in indices if index is not None]
+                found = offset_of(made, (one.name.key, *(step or 0 for step in steps)))
+                if found is None or None in indices[:-1]:
                     raise fault("inadmissible")
-                made = tables.closed(structure)
-                cells: list[Raw | None] = [None] * size(made)
-                for one in node.components:
-                    indices = one.indices or ()
-                    steps = [literal(index) for index in indices if index is not None]
-                    found = offset_of(made, (one.name.key, *(step or 0 for step in steps)))
-                    if found is None or None in indices[:-1]:
-                        raise fault("inadmissible")
-                    place, part = found
-                    cells[place : place + size(part)] = self._cells_of(one.value, part)
-                return cells if made == type_ else cells_of(value_at(cells, 0, made), type_)
-            case ast.EnumConstant():
-                kind = unit.checked.enumerations.get(node, type_)
-                if not isinstance(kind, Enumeration) or tables.closed(kind) != type_:
-                    raise fault("inadmissible")
-                return [constant(type_, node.name.key).index]
-            case ast.StringLiteral():
-                text = letters(node.text)
-                cells = cells_of(text, type_)
-                if isinstance(type_, Array):
-                    tables.text(text)
-                return cells
-        return cells_of(_number(node), type_)
-
-
-def _number(node: ast.Expression) -> int | float | bool:
-    """The value of a literal with its sign; faults for all else."""
-    match node:
-        case ast.BoolLiteral(value=truth):
-            return truth
-        case ast.IntegerLiteral(value=number):
-            return integer(number)
-        case ast.BitLiteral(value=number):  # 32 bits as written [TYP-04]
-            return integer(number - 2**32 if number > INT_MAX else number)
-        case ast.RealLiteral():
-            return single(node.value)
-        case ast.Unary(operator="-" | "+" as sign):
-            value = apply_unary(sign, _number(node.operand))
-            assert isinstance(value, int | float), "as its operand"
-            return value
-    raise fault("inadmissible")
+                place, part = found
+                cells[place : place + size(part)] = self._cells_of(one.value, part)
+            return cells if made == type_ else cells_of(value_at(cells, 0, made), type_)
+        value = literal_value(unit, node, type_)
+        cells = cells_of(value, type_)
+        if isinstance(value, str) and isinstance(type_, Array):
+            tables.text(value)
+        return cells
 
 
 def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:

@@ -14,7 +14,6 @@ from grammar.semantics.types import (
     BOOL,
     CHAR,
     INT,
-    INT_MAX,
     INT_MIN,
     REAL,
     UNKNOWN,
@@ -39,10 +38,10 @@ from interp.bytecode.compiler.locations import (
     ViewParameter,
 )
 from interp.bytecode.compiler.memory import Memory
+from interp.program.literals import LITERALS, enumeration_constant
 from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
-from interp.values.values import constant, letters, single
 
 #: Calls a function and gives its value.
 Call = Callable[[ast.Call], Value]
@@ -106,14 +105,22 @@ class Expressions:
         """A number as REAL."""
         self.number(node, REAL)
 
-    def _integer(self, node: ast.IntegerLiteral | ast.BitLiteral, _wanted: Type) -> Value:
-        number = node.value
-        if isinstance(node, ast.BitLiteral) and number > INT_MAX:  # 32 bits as written [TYP-04]
-            number -= 2**32
-        if not INT_MIN <= number <= INT_MAX:
-            raise self._emitter.fail("overflow")
-        self._emit(Op.PUSH_INT, number)
-        return Scalar(INT)
+    def _literal(self, node: Any, _wanted: Type) -> Value:
+        try:
+            value = LITERALS[type(node)](node)
+        except Fault as error:
+            raise self._emitter.fail(error.slug) from None
+        match value:
+            case str():
+                return Text(value)
+            case bool():
+                self._emit(Op.PUSH_BOOL, int(value))
+                return Scalar(BOOL)
+            case int():
+                self._emit(Op.PUSH_INT, value)
+                return Scalar(INT)
+        self._emit(Op.PUSH_REAL, bits_of(value))
+        return Scalar(REAL)
 
     def literal_integer(self, node: ast.Expression) -> int | None:
         """The value of a literal INT, with its sign."""
@@ -125,34 +132,13 @@ class Expressions:
                 return -number if number is not None and sign == "-" else number
         return literal(node)
 
-    def _real(self, node: ast.RealLiteral, _wanted: Type) -> Value:
-        try:
-            number = single(node.value)
-        except Fault as error:
-            raise self._emitter.fail(error.slug) from None
-        self._emit(Op.PUSH_REAL, bits_of(number))
-        return Scalar(REAL)
-
-    def _bool(self, node: ast.BoolLiteral, _wanted: Type) -> Value:
-        self._emit(Op.PUSH_BOOL, int(node.value))
-        return Scalar(BOOL)
-
-    def _text(self, node: ast.StringLiteral, _wanted: Type) -> Value:
-        return Text(letters(node.text))
-
-    def _channel(self, node: ast.ChannelName, _wanted: Type) -> Value:
-        return Text(letters(node.name.key))
-
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Value:
-        type_ = self._context.unit.checked.enumerations.get(node, wanted)
-        if not isinstance(type_, Enumeration):
-            raise self._emitter.unlinked(f"nothing tells which enumeration #{node.name.text} is of")
         try:
-            place = constant(type_, node.name.key).index
+            value = enumeration_constant(self._context.unit, node, wanted)
         except LinkError as error:
             raise self._emitter.unlinked(str(error)) from None
-        self._emit(Op.PUSH_ENUM, self._emitter.number(type_), place)
-        return Scalar(self._emitter.closed(type_))
+        self._emit(Op.PUSH_ENUM, self._emitter.number(value.type), value.index)
+        return Scalar(self._emitter.closed(value.type))
 
     def _parenthesised(self, node: ast.Parenthesised, wanted: Type) -> Value:
         return self.value(node.inner, wanted)
@@ -306,12 +292,7 @@ class CodeMaker:
 
 
 _VALUES: Mapping[type[Any], _Rule] = {
-    ast.IntegerLiteral: Expressions._integer,
-    ast.BitLiteral: Expressions._integer,
-    ast.RealLiteral: Expressions._real,
-    ast.BoolLiteral: Expressions._bool,
-    ast.StringLiteral: Expressions._text,
-    ast.ChannelName: Expressions._channel,
+    **dict.fromkeys(LITERALS, Expressions._literal),
     ast.EnumConstant: Expressions._constant,
     ast.Parenthesised: Expressions._parenthesised,
     ast.Unary: Expressions._unary,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from grammar.semantics.types import INT, REAL, UNKNOWN, Array, Enumeration, Type
+from grammar.semantics.types import INT, REAL, UNKNOWN, Array, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
@@ -32,10 +32,10 @@ from interp.bytecode.program import (
     Mode,
     Record,
 )
+from interp.program.literals import literal_value
 from interp.program.reads import is_constant_output, signal_name
 from interp.values.faults import Fault, LinkError
-from interp.values.operators import apply_unary
-from interp.values.values import EnumValue, constant, converted, integer, letters, single
+from interp.values.values import EnumValue, converted
 from interp.values.values import Value as Known
 
 #: What stands in a spline block.
@@ -244,36 +244,13 @@ class Motions(CodeMaker):
     def _known(self, node: ast.Expression, type_: Type) -> Known:
         """The value of a literal as a system variable receives it."""
         try:
-            value = self._literal(node, type_)
+            value = literal_value(self._context.unit, node, type_)
             is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
             return value if is_open else converted(value, type_)
         except Fault as error:
             raise self._emitter.fail(error.slug) from None
         except LinkError as error:
             raise self._emitter.unlinked(str(error)) from None
-
-    def _literal(self, node: ast.Expression, type_: Type) -> Known:
-        match node:
-            case ast.Parenthesised():
-                return self._literal(node.inner, type_)
-            case ast.Unary():
-                return apply_unary(node.operator, self._literal(node.operand, UNKNOWN))
-            case ast.IntegerLiteral():
-                return integer(node.value)
-            case ast.BitLiteral():
-                return integer(node.value - 2**32 if node.value >= 2**31 else node.value)
-            case ast.RealLiteral():
-                return single(node.value)
-            case ast.StringLiteral():
-                return letters(node.text)
-            case ast.BoolLiteral():
-                return node.value
-            case ast.EnumConstant():
-                enumeration = self._context.unit.checked.enumerations.get(node, type_)
-                if isinstance(enumeration, Enumeration):
-                    return constant(enumeration, node.name.key)
-                raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
-        raise LinkError("no literal")
 
     def _as_part(self, value: Known) -> Argument:
         if isinstance(value, EnumValue):

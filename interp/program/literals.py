@@ -1,0 +1,56 @@
+"""The values of literals, one table for all that evaluate or translate expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from grammar.semantics.types import INT_MAX, UNKNOWN, Enumeration, Type
+from grammar.syntax import ast
+from interp.program.load import Unit
+from interp.values.faults import LinkError
+from interp.values.operators import apply_unary
+from interp.values.values import EnumValue, Value, constant, integer, letters, single
+
+
+def _bits(node: ast.BitLiteral) -> int:
+    """32 bits as a number with sign [TYP-04]."""
+    return integer(node.value - 2**32 if node.value > INT_MAX else node.value)
+
+
+#: By their nodes; a number that is too large faults ``overflow`` [ARI-12].
+LITERALS: Final[Mapping[type[Any], Callable[[Any], int | float | bool | str]]] = {
+    ast.IntegerLiteral: lambda node: integer(node.value),
+    ast.RealLiteral: lambda node: single(node.value),
+    ast.BoolLiteral: lambda node: node.value,
+    ast.BitLiteral: _bits,
+    ast.StringLiteral: lambda node: letters(node.text),
+    ast.ChannelName: lambda node: letters(node.name.key),
+}
+
+
+def enumeration_constant(unit: Unit, node: ast.EnumConstant, wanted: Type) -> EnumValue:
+    """``#NAME`` for a place of this type; raises `LinkError` where it is unknown [TYP-16]."""
+    kind = unit.checked.enumerations.get(node, wanted)
+    return constant(known_enumeration(node, kind), node.name.key)
+
+
+def known_enumeration(node: ast.EnumConstant, found: object) -> Enumeration:
+    """What was found as the enumeration of a constant; raises `LinkError` where it is none."""
+    if not isinstance(found, Enumeration):
+        raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
+    return found
+
+
+def literal_value(unit: Unit, node: ast.Expression, wanted: Type) -> Value:
+    """A literal or constant with its operators; raises `LinkError` for all else, and `Fault`."""
+    match node:
+        case ast.Parenthesised():
+            return literal_value(unit, node.inner, wanted)
+        case ast.Unary():
+            return apply_unary(node.operator, literal_value(unit, node.operand, UNKNOWN))
+        case ast.EnumConstant():
+            return enumeration_constant(unit, node, wanted)
+    if (rule := LITERALS.get(type(node))) is None:
+        raise LinkError("no literal")
+    return rule(node)
