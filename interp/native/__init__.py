@@ -3,6 +3,7 @@
 =============== ====================================================================================
 `machine`       the executor: what the machine in Python does around instructions
 ``module.c``    the machine as a Python type, ``_core``; ``fuzz.c`` runs it on damaged images
+``load.c``      from an image to a machine, by the folders below
 `c_backend`     register code as native code, by way of C and the compiler at hand
 ``translator/`` from instructions on a stack to register code
 ``vm/``         register code: its steps (``register_code.h``) and what they do (``steps.h``), the

@@ -7,7 +7,8 @@
  *
  * With KRL_LIBFUZZER this is a target of libFuzzer, else a program: krl_fuzz SECONDS SEED IMAGE...
  */
-#include "vm/machine.h"
+#include "image/reader.h"
+#include "load.h"
 #include "vm/register_code.h"
 
 #include <stdio.h>

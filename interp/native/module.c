@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <structmember.h>
 
-#include "vm/machine.h"
+#include "load.h"
 #include "vm/register_code.h"
 
 #if defined(__unix__) || defined(__APPLE__)

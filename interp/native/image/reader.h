@@ -81,4 +81,13 @@ void krl_read_initial(struct reader *reader);
 
 void krl_read_codes(struct reader *reader);
 
+/* ---------------------------------------------------------------------------- image.c */
+
+/* Reads an image. It copies what it needs. 0 where the image is refused; then nothing is left. */
+int krl_read_image(struct krl_program *program, const uint8_t *image, size_t length,
+                   struct krl_refusal *why);
+
+/* The CRC-32 that an image has of what follows its header. */
+uint32_t krl_checksum(const uint8_t *bytes, size_t length);
+
 #endif

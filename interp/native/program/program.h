@@ -155,15 +155,6 @@ void krl_free_program(struct krl_program *program);
 /* Notes the reason and gives 0. */
 int krl_refuse(struct krl_refusal *why, const char *reason);
 
-/* ---------------------------------------------------------------------------- image.c */
-
-/* Reads an image. It copies what it needs. 0 where the image is refused; then nothing is left. */
-int krl_read_image(struct krl_program *program, const uint8_t *image, size_t length,
-                   struct krl_refusal *why);
-
-/* The CRC-32 that an image has of what follows its header. */
-uint32_t krl_checksum(const uint8_t *bytes, size_t length);
-
 /* ---------------------------------------------------------------------------- types.c */
 
 /* The type that a cell of a type has: a scalar or an enumeration. */
@@ -183,10 +174,5 @@ const struct krl_variable *krl_data_at(const struct krl_program *program, int32_
 
 /* The parameter or local that has a cell of the frame, or NULL. */
 const struct krl_slot *krl_slot_at(const struct krl_code *code, int32_t offset);
-
-/* ---------------------------------------------------------------------------- verify.c */
-
-/* Checks what the machine relies on, and finds depths and targets. 0 where the program is refused. */
-int krl_verify(struct krl_program *program, struct krl_refusal *why);
 
 #endif

@@ -152,4 +152,9 @@ void krl_leave(struct translator *at, int32_t place);
 void krl_ask(struct translator *at, const struct krl_entry *entry, int32_t place);
 void krl_call_builtin(struct translator *at, int32_t place);
 
+/* ---------------------------------------------------------------------------- translate.c */
+
+/* Translates all code objects. */
+int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
+
 #endif

@@ -97,4 +97,9 @@ void krl_check_poses(struct flow *flow, int32_t left, int32_t right);
 void krl_check_for_local(struct flow *flow, int32_t counter, int32_t limit, int32_t step);
 void krl_check_for_data(struct flow *flow, int32_t counter, int32_t limit, int32_t step);
 
+/* ---------------------------------------------------------------------------- verify.c */
+
+/* Checks what the machine relies on, and finds depths and targets. 0 where the program is refused. */
+int krl_verify(struct krl_program *program, struct krl_refusal *why);
+
 #endif

@@ -417,7 +417,7 @@ static int32_t scan(struct krl_letters text, int32_t place, const struct piece *
 }
 
 /* What a variable gets of what was read; 0 where the assignment is for Python. */
-static int fits(const struct krl_program *program, const struct krl_part *part, struct found *found)
+static int converts(const struct krl_program *program, const struct krl_part *part, struct found *found)
 {
     int is_real = krl_tag_of(found->number) == KRL_TAG_REAL;
     if (found->number == KRL_NOTHING) {
@@ -451,7 +451,7 @@ static int read_text(const struct krl_text_call *call, struct krl_letters text, 
         is_fine = next >= 0;
         end = is_fine ? next : end;
         if (is_fine && piece.letter != 0) {
-            if (!fits(program, &entry->parts[VALUES + hits], &found[hits]))
+            if (!converts(program, &entry->parts[VALUES + hits], &found[hits]))
                 return 0;
             hits++;
         }

@@ -157,9 +157,6 @@ enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
 
 /* ---------------------------------------------------------------------------- machine.c */
 
-/* Loads an image. 0 where it is refused. */
-int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int traced,
-                   struct krl_refusal *why);
 void krl_unload(struct krl_machine *machine);
 
 /* Gives a machine its memory, so much that nothing is allotted later: its own, with the data lists as
@@ -192,11 +189,6 @@ struct krl_stopped krl_run(struct krl_machine *machine, int32_t step, int is_beg
  * KRL_STOP_BREAK. */
 void krl_thread(struct krl_step *steps, int32_t count);
 void krl_stop_at(struct krl_step *step, enum krl_stop why);
-
-/* ---------------------------------------------------------------------------- translate.c */
-
-/* Translates all code objects. */
-int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
 
 /* ---------------------------------------------------------------------------- numeric_functions.c */
 

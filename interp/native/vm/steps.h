@@ -78,14 +78,14 @@ typedef krl_cell krl_register;
 #define subtracts(a, b, result) __builtin_sub_overflow(a, b, result)
 #define multiplies(a, b, result) __builtin_mul_overflow(a, b, result)
 #else
-static inline int fits(int64_t wide, int32_t *result)
+static inline int overflows(int64_t wide, int32_t *result)
 {
     *result = (int32_t)wide;
     return wide != *result;
 }
-#define adds(a, b, result) fits((int64_t)(a) + (b), result)
-#define subtracts(a, b, result) fits((int64_t)(a) - (b), result)
-#define multiplies(a, b, result) fits((int64_t)(a) * (b), result)
+#define adds(a, b, result) overflows((int64_t)(a) + (b), result)
+#define subtracts(a, b, result) overflows((int64_t)(a) - (b), result)
+#define multiplies(a, b, result) overflows((int64_t)(a) * (b), result)
 #endif
 
 /* The nearest INT, halves away from zero; not 0 where there is none. The sum with a half is that of

@@ -40,7 +40,7 @@ static int is_changed(const struct krl_part *part, int32_t type)
            part->handed.type == type;
 }
 
-static int fits(const struct krl_program *program, const struct krl_part *part, char parameter)
+static int accepts(const struct krl_program *program, const struct krl_part *part, char parameter)
 {
     switch (parameter) {
     case 'T':
@@ -81,7 +81,7 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program,
         if (entry->result != one->result)
             break;
         for (int32_t i = 0; i < entry->part_count; i++) {
-            if (*parameter == 0 || !fits(program, &entry->parts[i], *parameter))
+            if (*parameter == 0 || !accepts(program, &entry->parts[i], *parameter))
                 return KRL_TEXT_FUNCTIONS;
             parameter += *parameter != '+' && *parameter != '*';
         }
