@@ -44,12 +44,14 @@ class Region:
 class Fix:
     """What would mend it, in words; and as an edit where one is plain.
 
-    The edit writes ``replacement`` in place of ``region``, in the file of the finding.
+    The edit writes ``replacement`` in place of ``region``, in the file of the finding. ``names``
+    are what may be meant in place of the finding, the likeliest first: for a person to choose.
     """
 
     text: str
     region: Region | None = None
     replacement: str | None = None
+    names: tuple[str, ...] = ()
 
     @property
     def is_edit(self) -> bool:
@@ -73,6 +75,16 @@ class Diagnostic:
     reason: str = ""
     rules: tuple[str, ...] = ()
     fix: Fix | None = None
+
+    @property
+    def edits(self) -> tuple[tuple[str, Region, str], ...]:
+        """The edits a person can choose from, the likeliest first: in words, where, what there."""
+        fix = self.fix
+        if fix is None:
+            return ()
+        if fix.region is not None and fix.replacement is not None:
+            return ((fix.text, fix.region, fix.replacement),)
+        return tuple((f"write {name}", self.region, name) for name in fix.names)
 
 
 def diagnose(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import islice
 
+from grammar.diagnostics.diagnostic import Fix
+
 # Cost is bounded: so many names are looked at, and none that is longer.
 _MOST_NAMES = 20_000
 _LONGEST_NAME = 64
@@ -38,19 +40,20 @@ def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
     return sorted(found)
 
 
-def did_you_mean(name: str, names: Iterable[str], mark: str = "") -> str | None:
+def did_you_mean(name: str, names: Iterable[str], mark: str = "") -> Fix | None:
     """``did you mean X?``; where several of ``names`` are equally near, up to three of them."""
     ranked = _ranked(name, names)
-    return question((near for slips, _, near in ranked if slips == ranked[0][0]), mark)
+    return one_of((near for slips, _, near in ranked if slips == ranked[0][0]), mark)
 
 
-def question(names: Iterable[str], mark: str = "") -> str | None:
+def one_of(names: Iterable[str], mark: str = "") -> Fix | None:
     """``did you mean X or Y?`` for the first names, each once with a ``mark`` in front, if any."""
     shown = [f"{mark}{one}" for one in {one.upper(): one for one in names}.values()][:_MOST_SHOWN]
     if not shown:
         return None
     *first, last = shown
-    return f"did you mean {', '.join(first)} or {last}?" if first else f"did you mean {last}?"
+    asked = f"{', '.join(first)} or {last}" if first else last
+    return Fix(f"did you mean {asked}?", names=tuple(shown))
 
 
 def _common_start(one: str, other: str) -> int:

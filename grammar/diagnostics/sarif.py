@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from grammar.diagnostics.codes import DiagnosticCode, by_code
-from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, in_order
+from grammar.diagnostics.diagnostic import Diagnostic, Region, in_order
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
@@ -60,19 +60,15 @@ def _result(diagnostic: Diagnostic, index: int) -> dict[str, Any]:
         ],
         "properties": {"rules": list(diagnostic.rules)},
     }
-    if fix and fix.is_edit:
-        result["fixes"] = [_fix(fix, diagnostic.path)]
+    if diagnostic.edits:
+        result["fixes"] = [_fix(*edit, diagnostic.path) for edit in diagnostic.edits]
     return result
 
 
-def _fix(fix: Fix, path: str) -> dict[str, Any]:
-    assert fix.region is not None
-    replacement = {
-        "deletedRegion": _region(fix.region),
-        "insertedContent": {"text": fix.replacement},
-    }
-    change = {"artifactLocation": _artifact(path), "replacements": [replacement]}
-    return {"description": {"text": fix.text}, "artifactChanges": [change]}
+def _fix(text: str, region: Region, replacement: str, path: str) -> dict[str, Any]:
+    edit = {"deletedRegion": _region(region), "insertedContent": {"text": replacement}}
+    change = {"artifactLocation": _artifact(path), "replacements": [edit]}
+    return {"description": {"text": text}, "artifactChanges": [change]}
 
 
 def _region(region: Region) -> dict[str, int]:

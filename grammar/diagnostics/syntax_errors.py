@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
-from grammar.diagnostics.did_you_mean import nearest
+from grammar.diagnostics.did_you_mean import nearest, one_of
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
 from grammar.diagnostics.line_edits import BRACKETS, LineEdit, bracket, doubled, keyword, left_out
@@ -157,7 +157,7 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
     elif site.expects("(", "="):
         return _Mistake(f"= is missing before {shown}", reason=reason)
     if near := nearest(site.failure.text, filter(str.isalpha, site.failure.expected[:_FEW]), 1):
-        return _Mistake(f"{shown} is not a word of KRL", Fix(f"did you mean {near[0]}?"), reason)
+        return _Mistake(f"{shown} is not a word of KRL", one_of(near), reason)
     if before and site.expects("NEWLINE"):
         return _Mistake(f"{shown} is too much on this line", reason=reason)
     if words and len(site.failure.expected) <= _FEW:

@@ -28,8 +28,9 @@ def explain(
         return FINE
     found = explanation(code)
     if found is None:
-        hint = did_you_mean(code, [*by_code(), *by_slug()])
-        raise InputError(f"no finding has the code {code}" + f"; {hint or 'krl explain lists all'}")
+        near = did_you_mean(code, [*by_code(), *by_slug()])
+        hint = near.text if near else "krl explain lists all"
+        raise InputError(f"no finding has the code {code}; {hint}")
     typer.echo("\n".join(_lines(found)))
     return FINE
 

@@ -370,10 +370,10 @@ class _Handlers:
             if not lines[0] <= one.region.line - 1 <= lines[1]:
                 continue
             shown = protocol.diagnostic(source, one)
-            fix = one.fix
-            if fix is not None and fix.region is not None and fix.replacement is not None:
-                edit = lsp.TextEdit(range=range_of(source, fix.region), new_text=fix.replacement)
-                found.append(protocol.action(fix.text, uri, edit, shown, is_preferred=True))
+            is_safe = one.fix is not None and one.fix.is_edit
+            for text, region, written in one.edits:
+                edit = lsp.TextEdit(range=range_of(source, region), new_text=written)
+                found.append(protocol.action(text, uri, edit, shown, is_preferred=is_safe))
             if source.comment(one.region.line) is None:
                 end = len(source.line(one.region.line)) + 1
                 place = Region(one.region.line, end, one.region.line, end)

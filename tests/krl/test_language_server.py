@@ -320,7 +320,7 @@ def message(**fields: object) -> bytes:
 def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
     """Code actions and completion are answered; it ends quietly when it is told to."""
     uri = (tmp_path / "A.src").as_uri()
-    text = "DEF A()\n  INT N\n  IF N = 1 THEN\n  ENDIF\nEND\n"
+    text = "DEF A()\n  INT N\n  IF N = 1 THEN\n  ENDIF\n  $VEL.CB = 1\nEND\n"
     place = {"line": 2, "character": 2}
     document = {"uri": uri}
     said = b"".join(
@@ -338,7 +338,7 @@ def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
                 method="textDocument/codeAction",
                 params={
                     "textDocument": document,
-                    "range": {"start": place, "end": place},
+                    "range": {"start": place, "end": {"line": 4, "character": 0}},
                     "context": {"diagnostics": []},
                 },
             ),
@@ -356,4 +356,5 @@ def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
     assert (0, b"") == (done.returncode, done.stderr)
     assert b'"newText":"=="' in done.stdout.replace(b": ", b":")
     assert b"ignore KRL001 here" in done.stdout
+    assert b"write CP" in done.stdout
     assert b'"label":"$OUT"' in done.stdout.replace(b": ", b":")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from grammar.diagnostics.diagnostic import Fix
-from grammar.diagnostics.did_you_mean import did_you_mean, question
+from grammar.diagnostics.did_you_mean import did_you_mean, one_of
 
 # A word of fewer letters is the beginning of too much.
 _SHORTEST = 3
@@ -25,8 +25,8 @@ class NameSuggestions:
             return None
         self._left -= 1
         known = list(names)
-        asked = did_you_mean(name, known, mark)
-        if asked is None and len(name) >= _SHORTEST:
+        fix = did_you_mean(name, known, mark)
+        if fix is None and len(name) >= _SHORTEST:
             key = name.upper()
-            asked = question((one for one in known if one.upper().startswith(key)), mark)
-        return Fix(asked) if asked else None
+            fix = one_of((one for one in known if one.upper().startswith(key)), mark)
+        return fix

@@ -9,7 +9,7 @@ from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
 from grammar.check.analysis.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
-from grammar.diagnostics.did_you_mean import did_you_mean
+from grammar.diagnostics.did_you_mean import did_you_mean, one_of
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.rules import is_confirmed
 from grammar.syntax import ast
@@ -103,8 +103,7 @@ def _gotos(
     slips = {} if context.is_cut(routine) else _slipped(context, routine, own, homes)
     for wanted, name in slips.items():
         message = f"no GOTO leads to {name.text}, and there is no label {wanted}"
-        fix = Fix(f"did you mean {wanted}?")
-        yield _finding(context, "unknown-label", name, message, "CTL-07", fix=fix)
+        yield _finding(context, "unknown-label", name, message, "CTL-07", fix=one_of([wanted]))
     for placed in routine.statements:
         goto = placed.statement
         if not isinstance(goto, ast.Goto):
@@ -125,7 +124,7 @@ def _gotos(
                 f"{routine.node.name.text} has no label {goto.label.text}",
                 "CTL-07",
                 reason=f"it is in {home}, another routine" if home else "",
-                fix=Fix(guess) if guess else None,
+                fix=guess,
             )
             continue
         block = targets[0].inside

@@ -20,7 +20,8 @@ from grammar.check.names.unresolved_names import (
     UnresolvedName,
     slipped_declaration,
 )
-from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
+from grammar.diagnostics.diagnostic import Diagnostic, Region
+from grammar.diagnostics.did_you_mean import one_of
 from grammar.diagnostics.typos import Series, Typos, small_prefix
 from grammar.semantics.link import SHARED, Project
 from grammar.semantics.predefined import System
@@ -136,7 +137,7 @@ def _near_system_names(context: Context) -> Iterator[Diagnostic]:
             ]
             if near:
                 message = f"no system variable is called {symbol.name}"
-                fix = Fix(f"did you mean {' or '.join(near)}?")
+                fix = one_of(near)
                 yield context.finding(
                     "unknown-system-name", symbol.span, message, severity="warning", fix=fix
                 )
@@ -187,7 +188,7 @@ def _unknown(context: Context, use: Use) -> Diagnostic:
         return context.finding(slug, name, message, reason=_why_hidden(hidden))
     fix = context.suggestions.suggest(name.text, _visible(context, space, name.span))
     if name in context.constants:
-        fix = Fix(f"did you mean {context.constants[name]}?")
+        fix = one_of([context.constants[name]])
     return context.finding(SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from grammar.check.analysis.spelling import Spelling
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.diagnostics.did_you_mean import one_of
 from grammar.diagnostics.typos import Typos
 from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import ModuleTable, TypeSymbol
@@ -160,7 +161,7 @@ def misspelt_declarations(
                     f"{symbol.name} is declared and never used",
                     reason=f"{meant} is written elsewhere",
                     severity="warning",
-                    fix=Fix(f"did you mean {meant}?"),
+                    fix=one_of([meant]),
                 )
 
 
@@ -263,7 +264,7 @@ def slipped_declaration(
         f"{written} is declared and never used, and {name} is not declared",
         reason=f"{name} is used {_times(count)}",
         severity="error" if is_certain else "warning",
-        fix=Fix(f"did you mean {name}?"),
+        fix=Fix(f"did you mean {name}?", names=(name.removeprefix("#"),)),
     )
 
 
@@ -274,8 +275,9 @@ def _undeclared(reference: UnresolvedName, near: Sequence[str]) -> Diagnostic:
     message = f"no {WORDS[reference.space]} is called {reference.name}"
     if reference.is_system:
         slug, message = "unknown-system-name", f"no system variable is called {reference.name}"
-    fix = Fix(f"did you mean {' or '.join(near)}?") if near else None
-    return diagnose(slug, reference.path, reference.region, message, severity=severity, fix=fix)
+    return diagnose(
+        slug, reference.path, reference.region, message, severity=severity, fix=one_of(near)
+    )
 
 
 def _from_elsewhere(some: Sequence[UnresolvedName], count: int) -> Diagnostic:

@@ -125,7 +125,7 @@ def _written(diagnostic: Diagnostic) -> list[object]:
         diagnostic.message,
         diagnostic.reason,
         list(diagnostic.rules),
-        fix and [fix.text, fix.region and list(astuple(fix.region)), fix.replacement],
+        fix and list(astuple(fix)),
     ]
 
 
@@ -133,6 +133,6 @@ def _read(values: Sequence[Any]) -> Diagnostic:
     path, region, severity, code, message, reason, rules, fix = values
     mended = None
     if fix is not None:
-        text, place, replacement = fix
-        mended = Fix(text, None if place is None else Region(*place), replacement)
+        text, place, replacement, names = fix
+        mended = Fix(text, None if place is None else Region(*place), replacement, tuple(names))
     return Diagnostic(path, Region(*region), severity, code, message, reason, tuple(rules), mended)

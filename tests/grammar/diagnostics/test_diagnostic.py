@@ -325,9 +325,11 @@ def test_short_names_are_not_turned_into_one_another() -> None:
 def test_did_you_mean() -> None:
     """A question with up to three names that are equally near, as they are declared, each once."""
     names = ["SPEED1", "SPEED2", "SPEED3", "SPEED4"]
-    assert "did you mean SPEED1, SPEED2 or SPEED3?" == did_you_mean("SPEED", names)
-    assert "did you mean Speed1?" == did_you_mean("SPEDE1", ["SPEED12", "Speed1"])
-    assert "did you mean SPEED1?" == did_you_mean("SPEDE1", ["SPEED1", "SPEED1"])
+    fix = Fix("did you mean SPEED1, SPEED2 or SPEED3?", names=("SPEED1", "SPEED2", "SPEED3"))
+    assert fix == did_you_mean("SPEED", names)
+    one = Fix("did you mean Speed1?", names=("Speed1",))
+    assert one == did_you_mean("SPEDE1", ["SPEED12", "Speed1"])
+    assert one == did_you_mean("SPEDE1", ["Speed1", "Speed1"])
     assert did_you_mean("QUITE_ELSE", names) is None
 
 

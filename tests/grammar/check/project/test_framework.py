@@ -120,7 +120,7 @@ def test_bodies_of_other_files_do_not_matter(checked: Check) -> None:
 
 
 def test_hints(finds: Find) -> None:
-    """Names that are near, or begin alike, are offered."""
+    """Names that are near, or begin alike, are offered, and nothing is wrong with them."""
     text = """DEF NEG()
   DECL INT COUNT
   COUNTT = 1
@@ -131,3 +131,8 @@ END
     found = finds({"NEG.src": text})
     hints = {one.region.line: one.fix.text for one in found if one.fix}
     assert {3: "did you mean COUNT?", 4: "did you mean #CONSTANT?", 5: "did you mean CP?"} == hints
+    lines = text.splitlines(keepends=True)
+    for _, at, name in (one.edits[0] for one in found if one.fix):
+        line = lines[at.line - 1]
+        lines[at.line - 1] = line[: at.column - 1] + name + line[at.end_column - 1 :]
+    assert not any(one.fix for one in finds({"NEG.src": "".join(lines)}))
