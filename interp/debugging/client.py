@@ -109,10 +109,13 @@ class Back:
 class Select:
     """Block selection: go on at a line of the present routine, and stop there.
 
-    No statement between here and there is executed [ADV-14].
+    No statement between here and there is executed [ADV-14]. Refused where the line is one of
+    another file than ``file``, or another program than ``task`` has stopped.
     """
 
     line: int
+    file: str = ""
+    task: TaskName | None = None
 
 
 @dataclass(frozen=True, slots=True)

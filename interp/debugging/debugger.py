@@ -515,12 +515,12 @@ class Debugger:
                     raise _Again
                 case Quit():
                     raise _Left
-                case Select(line=line):
-                    text = self._against(line, executor, stop)
+                case Select() as selected:
+                    text = self._against(selected, executor, stop)
                     if not text:
-                        self._history.change(Selected(line))
+                        self._history.change(Selected(selected.line))
                         self._is_selected = True
-                        return line
+                        return selected.line
             stop = Stop("refused", stop.task, stop.at, text=text)
 
     def _told_by_client(self, stop: Stop) -> Command:
@@ -547,17 +547,21 @@ class Debugger:
 
         return fits
 
-    def _against(self, line: int, executor: DebuggedExecutor, stop: Stop) -> str:
+    def _against(self, selected: Select, executor: DebuggedExecutor, stop: Stop) -> str:
         """Why a line cannot be selected; empty where it can."""
         if self._is_ended or stop.reason == "fault":
             return "the program has ended"
+        if selected.task not in (None, executor.task):
+            return f"the {executor.task} has stopped here: a line can be selected in it alone"
         frame = executor.inside.frames()[0]
         routine = routine_at(self._program, executor.at.file, frame.name)
         if frame.is_action:
             return "an action is no routine"
         if routine is None:
             return f"{frame.name} is not known"
-        return reason_against(routine, executor.at.line, line)
+        if selected.file and not _is_of(selected.file, executor.at.file):
+            return f"{selected.file}:{selected.line} is not in {frame.name}"
+        return reason_against(routine, executor.at.line, selected.line)
 
 
 def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame:

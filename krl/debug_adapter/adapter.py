@@ -52,6 +52,7 @@ class Adapter:
         self._options = options
         self._program = Debuggee(connection)
         self._breakpoints = Breakpoints(self._program)
+        self._targets: list[tuple[int, str]] = []
         self._handlers: Mapping[str, Handler] = {
             "initialize": self._initialize,
             "launch": self._launch,
@@ -158,8 +159,13 @@ class Adapter:
         if line not in self._program.debugger.lines(file):
             return {"targets": []}
         shown = self._program.line_for(line)
-        return {"targets": [{"id": line, "label": f"line {shown}", "line": shown}]}
+        self._targets.append((line, file))
+        return {"targets": [{"id": len(self._targets), "label": f"line {shown}", "line": shown}]}
 
     def _goto(self, arguments: Arguments) -> Json:
         """Go on at a line of the routine, without executing what lies between."""
-        return self._program.go(Select(arguments.get("targetId", int, 0)))
+        number = arguments.get("targetId", int, 0)
+        if not 0 < number <= len(self._targets):
+            raise Refused("there is no such target")
+        line, file = self._targets[number - 1]
+        return self._program.go(Select(line, file, self._program.task(arguments)))

@@ -59,6 +59,7 @@ class Client:
         self._target = target
         self._sent = 0
         self.events: list[dict[str, Any]] = []
+        self.said: list[str] = []
 
     def ask(self, command: str, **arguments: Any) -> dict[str, Any]:
         """The response, whether it is a success or not."""
@@ -114,6 +115,8 @@ class Client:
         length = int(self._source.readline().partition(b":")[2])
         assert self._source.readline() == b"\r\n"
         found: dict[str, Any] = json.loads(self._source.read(length))
+        if found.get("event") == "output":
+            self.said.append(found["body"]["output"])
         return found
 
 
@@ -218,11 +221,16 @@ def test_data_breakpoints_and_faults(client: Client, project: Path) -> None:
     """A change stops with both values, a fault with its text, from where one goes back."""
     begun(client, project, stopOnEntry=True)
     assert "entry" == client.wait("stopped")["reason"]
-    reference = client.variables("Data list")["TOTAL"]["of"]
-    info = client.do("dataBreakpointInfo", name="TOTAL", variablesReference=reference)
-    found = client.do("setDataBreakpoints", breakpoints=[{"dataId": info["dataId"]}])
-    assert [True] == [one["verified"] for one in found["breakpoints"]]
+    of = {name: client.variables(name) for name in ("Data list", "Signals")}
+    wanted = [
+        client.do("dataBreakpointInfo", name=name, variablesReference=of[scope][name]["of"])
+        for scope, name in (("Data list", "TOTAL"), ("Signals", "DOOR"))
+    ]
+    found = client.do("setDataBreakpoints", breakpoints=wanted)
+    assert [True, True] == [one["verified"] for one in found["breakpoints"]]
     client.do("evaluate", expression="DOOR=TRUE", context="repl")
+    client.do("continue", threadId=1)
+    assert "DOOR: FALSE -> TRUE" == client.wait("stopped")["description"]
     client.do("continue", threadId=1)
     stop = client.wait("stopped")
     if stop["reason"] == "data breakpoint":
@@ -250,6 +258,12 @@ def test_programs_and_the_arm_are_threads(client: Client, project: Path) -> None
     assert ("step", 3) == client.stopped("next", threadId=2)
     assert ("step", 4) == client.stopped("next", threadId=2)
     assert ("step", 3) == client.stopped("stepBack", threadId=2)
+    (main,) = client.do("gotoTargets", source={"path": str(project)}, line=5)["targets"]
+    assert ("step", 3) == client.stopped("goto", threadId=1, targetId=main["id"])
+    assert "the submit has stopped here: a line can be selected in it alone\n" == client.said[-1]
+    assert ("step", 3) == client.stopped("goto", threadId=2, targetId=main["id"])
+    assert "main.src:5 is not in SPS\n" == client.said[-1]
+    assert not client.ask("goto", threadId=2, targetId=9)["success"]
     assert "step" == client.stopped("stepMotion", threadId=2)[0]
     assert [] == client.do("stackTrace", threadId=3)["stackFrames"]
     assert "step" == client.stopped("stepMotionBack", threadId=2)[0]
@@ -287,6 +301,7 @@ def test_breakpoints_that_report_count_or_are_wrong(client: Client, project: Pat
     assert [True, True, False, False] == [one["verified"] for one in where]
     client.wait("stopped")
     assert "3" == client.do("evaluate", expression="I")["result"]
+    assert ["I=1\n", "I=2\n", "I=3\n"] == client.said[-3:]
     client.do("disconnect")
 
 
