@@ -179,20 +179,23 @@ class CheckedProgram:
         )
 
     def reached(self, *routines: Routine) -> tuple[Unit, ...]:
-        """The files that some routines lie in, and all that these use, with their data lists."""
-        reached: dict[Module, Unit] = {}
+        """The files that some routines lie in, and all that these use, with their data lists.
+
+        They come in the order of the project's.
+        """
+        reached: set[Module] = set()
         todo = [routine.unit for routine in routines]
         while todo:
             unit = todo.pop()
             if unit.module in reached:
                 continue
-            reached[unit.module] = unit
+            reached.add(unit.module)
             answers = unit.checked.resolution.answers.values()
             others = {one.module for one in answers if isinstance(one, Found)}
             data = self.project.data_of(unit.module)
             others.add(data)
             todo += [self.units[other] for other in others if other is not None]
-        return tuple(reached.values())
+        return tuple(unit for module, unit in self.units.items() if module in reached)
 
     def can_begin(self, routine: Routine) -> bool:
         """Whether a program can begin with a routine: no caller has to give or take values."""

@@ -346,6 +346,18 @@ def test_used_stand_ins() -> None:
     assert ["OPT_A"] == [one.name for one in program.used_stand_ins(program.start())]
 
 
+def test_files_reached_are_in_the_order_of_the_project() -> None:
+    """Whatever order files use one another in, and whatever hashes they have."""
+    files = {
+        f"p{n}.src": f"DEF p{n} ( )\np{(n + 7) % 30} ( )\np{(n + 11) % 30} ( )\nEND\n"
+        for n in range(30)
+    }
+    program = _program(files)
+    reached = program.reached(program.start())
+    assert len(reached) > 20
+    assert [one for one in program.units.values() if one in reached] == list(reached)
+
+
 def test_arm_of_unknown_kinematics() -> None:
     """Machine data of an arm that is not understood is replaced, with a note that says why."""
     machine = "DEFDAT $MACHINE PUBLIC\nDECL REAL $LENGTH_A=300.0\nINT $TRAFO_AXIS=4\nENDDAT\n"
