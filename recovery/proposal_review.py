@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from functools import cached_property
 
 from grammar.notation.edits import AddToken, apply, describe, to_data
 from grammar.parser.ambiguity import is_ambiguous
@@ -14,22 +15,9 @@ from recovery.clustering.cluster import Cluster, Clusters
 from recovery.clustering.edit_trial import edited
 from recovery.records import ProposalRecord
 from recovery.survey.survey import Survey, SurveyedFile
-from recovery.survey.unreserved_keywords import UnreservedKeyword, unreserved_keywords
-from support.files.decode import decode
-from support.files.discovery import Skipped, read
 
 # Mended lines looked at for second readings; the first of them are the shortest.
 _LINES_READ = 60
-
-
-class _Program:
-    """A program that parses: in how many files it is, the origin of the first, its text."""
-
-    def __init__(self, places: int, origin: str, text: str) -> None:
-        self.places = places
-        self.origin = origin
-        self.text = text
-        self.folded = text.upper()
 
 
 class Reviewer:
@@ -40,7 +28,6 @@ class Reviewer:
         self.clusters = clusters
         self.recognizer = Recognizer(found.grammar)
         self._paths = Paths(self.recognizer.network)
-        self._parsed: list[_Program] | None = None
 
     def records(self, cluster: Cluster) -> list[ProposalRecord]:
         """The proposals of a cluster as plain data, the best first."""
@@ -105,32 +92,32 @@ class Reviewer:
 
     def _breaks(self, proposal: Proposal) -> int:
         """Files that parse now and would not: only a newly reserved word can do that."""
-        words = [edit.name for edit in proposal.edits if isinstance(edit, AddToken)]
+        words = _reserved(proposal)
         if not words:
             return 0
         wider = self.wider(proposal)
         assert wider is not None
+        files = {file.digest: file for word in words for file in self._readers_of[word]}
         return sum(
-            program.places
-            for program in self._programs()
-            if any(word in program.folded for word in words) and not wider.accepts(program.text)
+            len(file.places)
+            for file in files.values()
+            if not wider.accepts("\n".join(file.lines()))
         )
 
-    def unreserved_keywords(self) -> list[UnreservedKeyword]:
-        """Words of the programs that parse which may be keywords the grammar lacks."""
-        programs = ((p.origin, p.text) for p in self._programs())
-        return unreserved_keywords(programs, self.recognizer.lexer)
+    @cached_property
+    def _readers_of(self) -> dict[str, list[SurveyedFile]]:
+        """Where the words that a proposal reserves stand in files that parse."""
+        proposals = [proposal for one in self.clusters.ranked for proposal in one.proposals]
+        words = sorted({word for proposal in proposals for word in _reserved(proposal)})
+        found: dict[str, list[SurveyedFile]] = {word: [] for word in words}
+        for file in self.found.files if words else ():
+            if not file.failures:
+                folded = "\n".join(file.lines()).upper()
+                for word in words:
+                    if word in folded:
+                        found[word].append(file)
+        return found
 
-    def _programs(self) -> Sequence[_Program]:
-        """The programs that parse."""
-        if self._parsed is None:
-            self._parsed = []
-            for file in self.found.files:
-                if not file.failures:
-                    data = read(file.found)
-                    source = None if isinstance(data, Skipped) else decode(data)
-                    if source is not None and not isinstance(source, str):
-                        self._parsed.append(
-                            _Program(len(file.places), file.places[0][1], source.text)
-                        )
-        return self._parsed
+
+def _reserved(proposal: Proposal) -> list[str]:
+    return [edit.name for edit in proposal.edits if isinstance(edit, AddToken)]

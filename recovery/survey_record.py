@@ -43,10 +43,6 @@ def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> Survey
     return {
         **record_without_causes(found, grammar_name),
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
-        "swallowed": [
-            {"word": one.word, "files": one.files, "origins": one.origins}
-            for one in reviewer.unreserved_keywords()
-        ],
         "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
         "failures": _failures(found, clusters, recognizer),
     }
@@ -71,7 +67,10 @@ def record_without_causes(found: Survey, grammar_name: str) -> SurveyRecord:
         "origins": _origins(files),
         "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
         "greedy": [],
-        "swallowed": [],
+        "swallowed": [
+            {"word": one.word, "files": one.files, "origins": one.origins}
+            for one in found.unreserved
+        ],
         "clusters": [],
         "failures": [],
     }

@@ -22,7 +22,6 @@ from grammar.notation.edits import (
     Widen,
 )
 from grammar.notation.model import Grammar, Reference, walk
-from grammar.parser.lexer import lexer_of
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.bench.mutation import Mutant
@@ -35,7 +34,6 @@ from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.result_cache import key_of
 from recovery.survey.survey import survey_texts
-from recovery.survey.unreserved_keywords import unreserved_keywords
 from support.files.result_store import ResultStore
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
@@ -103,8 +101,7 @@ def assess(
     found = survey_texts(shown, mutant.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
-        words = unreserved_keywords((("", text) for _, text in shown), lexer_of(mutant.grammar))
-        noticed = any(s.word in mutant.keywords for s in words)
+        noticed = any(one.word in mutant.keywords for one in found.unreserved)
         seconds = time.process_time() - began
         return Assessment(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
     texts_of = dict(shown)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import astuple
 from typing import Any
@@ -9,11 +10,12 @@ from typing import Any
 from grammar.notation.model import Grammar
 from grammar.parser.failures import Form
 from recovery.survey.failing_line import FailingLine
+from recovery.survey.unreserved_keywords import NameUse
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 
-#: What is kept of a content: its failures with their forms, or why it is no KRL.
-Kept = tuple[tuple[FailingLine, ...], tuple[Form, ...]] | str
+#: What is kept of a content: its failures, their forms and the names it uses, or why it is no KRL.
+Kept = tuple[tuple[FailingLine, ...], tuple[Form, ...], NameUse] | str
 
 
 def key_of(grammar: Grammar) -> str:
@@ -38,15 +40,22 @@ def keep(store: ResultStore, results: Iterable[tuple[str, Kept]]) -> None:
 def _written(kept: Kept) -> object:
     if isinstance(kept, str):
         return kept
-    failures, forms = kept
-    return [[astuple(f) for f in failures], [astuple(form) for form in forms]]
+    failures, forms, names = kept
+    return [[astuple(f) for f in failures], [astuple(form) for form in forms], names]
 
 
 def _read(data: Any) -> Kept:
     if isinstance(data, str):
         return data
-    failures, forms = data
-    return tuple(_failed(f) for f in failures), tuple(_forms(forms))
+    failures, forms, (read, bound) = data
+    names = NameUse(tuple(_words(read)), tuple(_words(bound)))
+    return tuple(_failed(f) for f in failures), tuple(_forms(forms)), names
+
+
+def _words(words: list[object]) -> Iterator[str]:
+    for word in words:
+        assert isinstance(word, str)
+        yield sys.intern(word)
 
 
 def _failed(values: list[Any]) -> FailingLine:

@@ -21,6 +21,12 @@ from grammar.parser.failures import FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
 from recovery.survey.failing_line import FailingLine, failures_of, source_lines
 from recovery.survey.result_cache import Kept, keep, key_of, recall
+from recovery.survey.unreserved_keywords import (
+    NameUse,
+    UnreservedKeyword,
+    UnreservedKeywords,
+    names_used,
+)
 from support.files.decode import decode, digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
@@ -63,12 +69,17 @@ class SurveyedFile:
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What reading a corpus under a grammar found. ``seconds`` is wall-clock time."""
+    """What reading a corpus under a grammar found.
+
+    ``unreserved`` are words of the files that parse which may be keywords that the grammar lacks;
+    ``seconds`` is wall-clock time.
+    """
 
     grammar: Grammar
     files: tuple[SurveyedFile, ...]
     skipped: tuple[Skipped, ...]
     forms: tuple[Form, ...]
+    unreserved: tuple[UnreservedKeyword, ...]
     seconds: float
 
 
@@ -120,11 +131,15 @@ def survey_texts(programs: Sequence[tuple[str, str]], grammar: Grammar) -> Surve
     finder = FailureFinder(Recognizer(grammar))
     forms: dict[Form, int] = {}
     files = []
+    unreserved = UnreservedKeywords()
     for path, text in programs:
         found = Found(path, "given", len(text), Path(path), None)
         failed = failures_of(finder, text, forms)
         files.append(SurveyedFile(found, ((path, "given"),), path, len(text), failed))
-    return Survey(grammar, tuple(files), (), tuple(forms), time.perf_counter() - began)
+        if not failed:
+            unreserved.add("given", names_used(text, finder.recognizer.lexer))
+    seconds = time.perf_counter() - began
+    return Survey(grammar, tuple(files), (), tuple(forms), unreserved.found(), seconds)
 
 
 # ------------------------------------------------------------------------------ in a process
@@ -145,7 +160,9 @@ def _perform(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
         else:
             forms: dict[Form, int] = {}
             failures = failures_of(finder, source.text, forms)
-            results.append((failures, tuple(forms)))
+            lexer = finder.recognizer.lexer
+            names = NameUse() if failures else names_used(source.text, lexer)
+            results.append((failures, tuple(forms), names))
     return results
 
 
@@ -168,6 +185,7 @@ class _Gathered:
         self.contents: dict[str, _Content] = {}
         self.skipped: list[Skipped] = []
         self.forms: dict[Form, int] = {}
+        self.unreserved = UnreservedKeywords()
         self.submitted: deque[str] = deque()
         self.read_now = 0
 
@@ -196,12 +214,15 @@ class _Gathered:
         self.read_now += len(done)
 
     def _take(self, key: str, kept: Kept) -> None:
+        content = self.contents[key]
         if isinstance(kept, str):
-            self.contents[key].result = kept
+            content.result = kept
             return
-        failures, forms = kept
+        failures, forms, names = kept
         numbers = [self.forms.setdefault(form, len(self.forms)) for form in forms]
-        self.contents[key].result = tuple([f.with_form(numbers[f.form]) for f in failures])
+        content.result = tuple([f.with_form(numbers[f.form]) for f in failures])
+        if not failures:
+            self.unreserved.add(content.found.origin, names)
 
     def survey(self, grammar: Grammar, seconds: float) -> Survey:
         files: list[SurveyedFile] = []
@@ -213,7 +234,8 @@ class _Gathered:
             else:
                 files.append(SurveyedFile(content.found, places, key, content.size, content.result))
         skipped.sort(key=lambda s: s.path)
-        return Survey(grammar, tuple(files), tuple(skipped), tuple(self.forms), seconds)
+        forms, unreserved = tuple(self.forms), self.unreserved.found()
+        return Survey(grammar, tuple(files), tuple(skipped), forms, unreserved, seconds)
 
 
 def _tasks(

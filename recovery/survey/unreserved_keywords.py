@@ -7,9 +7,9 @@ assigns it, calls it or indexes it. Real variables are bound somewhere.
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable
+from collections import Counter
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from grammar.parser.lexer import Lexer
 from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
@@ -24,43 +24,56 @@ class UnreservedKeyword:
     origins: int
 
 
-def unreserved_keywords(
-    programs: Iterable[tuple[str, str]], lexer: Lexer
-) -> list[UnreservedKeyword]:
-    """Suspected keywords in programs given as (origin, text), the most read first."""
+class NameUse(NamedTuple):
+    """The names of a program that parses, in upper case: only read there, and bound there."""
+
+    read: tuple[str, ...] = ()
+    bound: tuple[str, ...] = ()
+
+
+def names_used(text: str, lexer: Lexer) -> NameUse:
+    """How a program that parses uses its names."""
     name = lexer.name_kind
-    files: dict[str, int] = defaultdict(int)
-    origins: dict[str, set[str]] = defaultdict(set)
+    lexemes = [lexeme for lexeme in lexer.lexemes(text) if lexeme]
+    kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
+    read: set[str] = set()
     bound: set[str] = set()
-    every: set[str] = set()
-    for origin, text in programs:
-        every.add(origin)
-        lexemes = [lexeme for lexeme in lexer.lexemes(text) if lexeme]
-        kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
-        read = set()
-        for place, kind in enumerate(kinds):
-            if kind != name:
-                continue
-            word = lexemes[place].upper()
+    for place, kind in enumerate(kinds):
+        if kind == name:
             before = lexemes[place - 1] if place else "\n"
             after = lexemes[place + 1] if place + 1 < len(lexemes) else "\n"
-            if _is_read(before, after, place == 0 or kinds[place - 1] == name):
-                read.add(word)
-            else:
-                bound.add(word)
-        for word in read:
-            files[word] += 1
-            origins[word].add(origin)
-    needed = UNRESERVED_ORIGINS if len(every) > 1 else 1
-    found = [
-        UnreservedKeyword(word, count, len(origins[word]))
-        for word, count in files.items()
-        if count >= UNRESERVED_FILES
-        and len(origins[word]) >= needed
-        and word not in bound
-        and not word.startswith("$")
-    ]
-    return sorted(found, key=lambda s: (-s.origins, -s.files, s.word))
+            is_read = _is_read(before, after, place == 0 or kinds[place - 1] == name)
+            (read if is_read else bound).add(lexemes[place].upper())
+    return NameUse(tuple(sorted(read - bound)), tuple(sorted(bound)))
+
+
+class UnreservedKeywords:
+    """Counts how programs use names, and suspects those that are read and bound nowhere."""
+
+    def __init__(self) -> None:
+        self._readers: dict[str, Counter[str]] = {}
+        self._bound: set[str] = set()
+        self._origins: set[str] = set()
+
+    def add(self, origin: str, used: NameUse) -> None:
+        """Count one program more."""
+        self._origins.add(origin)
+        for word in used.bound:
+            self._bound.add(word)
+            self._readers.pop(word, None)
+        for word in used.read:
+            if word not in self._bound and not word.startswith("$"):
+                self._readers.setdefault(word, Counter())[origin] += 1
+
+    def found(self) -> tuple[UnreservedKeyword, ...]:
+        """Suspected keywords, the most read first."""
+        needed = UNRESERVED_ORIGINS if len(self._origins) > 1 else 1
+        found = [
+            UnreservedKeyword(word, readers.total(), len(readers))
+            for word, readers in self._readers.items()
+            if readers.total() >= UNRESERVED_FILES and len(readers) >= needed
+        ]
+        return tuple(sorted(found, key=lambda s: (-s.origins, -s.files, s.word)))
 
 
 def _is_read(before: str, after: str, behind_name: bool) -> bool:

@@ -97,7 +97,7 @@ class Reviewed:
         """What the reviewer says of edits of our own, proposed for a cluster."""
         ours = replace(found.proposals[0], edits=edits)
         alone = replace(found, proposals=(ours,), restores=found.restores[:1])
-        (record,) = self.reviewer.records(alone)
+        (record,) = Reviewer(self.found, replace(self.clusters, ranked=(alone,))).records(alone)
         return record
 
     def named(self, title: str) -> Cluster:
