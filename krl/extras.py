@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
@@ -10,6 +10,9 @@ from pathlib import Path
 from krl.errors import InputError
 
 _EXTRA_OF = {
+    "PIL": "video",
+    "distributed": "cluster",
+    "imageio_ffmpeg": "video",
     "junitparser": "records",
     "lsprotocol": "lsp",
     "mujoco": "arm",
@@ -35,28 +38,31 @@ def expected_extras(*names: str) -> Iterator[None]:
     ``names`` are packages that are imported later: their absence is found at once.
     """
     try:
-        for name in names:
-            need(name)
+        need(*names)
         yield
     except ModuleNotFoundError as error:
         name = (error.name or "").partition(".")[0]
         if name not in _EXTRA_OF:
             raise
-        raise _refused(name) from error
+        raise _refused([name]) from error
 
 
-def need(name: str) -> None:
-    """Raise `InputError` where the package is not installed, before any work."""
-    if find_spec(name) is None:
-        raise _refused(name)
+def need(*names: str) -> None:
+    """Raise `InputError` where some of the packages are not installed, before any work."""
+    if missing := [name for name in names if find_spec(name) is None]:
+        raise _refused(missing)
 
 
-def _refused(name: str) -> InputError:
-    return InputError(f"this needs {name}, which is not installed: {_cure(_EXTRA_OF[name])}")
+def _refused(missing: Sequence[str]) -> InputError:
+    *first, last = missing
+    said = f"{', '.join(first)} and {last}, which are" if first else f"{last}, which is"
+    return InputError(
+        f"this needs {said} not installed: {_cure({_EXTRA_OF[name] for name in missing})}"
+    )
 
 
-def _cure(extra: str) -> str:
-    """The command that installs an extra, by the tool and from the file that installed us.
+def _cure(extras: set[str]) -> str:
+    """The command that installs extras, by the tool and from the file that installed us.
 
     The environments of `uv tool` and pipx have no pip, and are made anew: what is there is named.
     """
@@ -68,9 +74,8 @@ def _cure(extra: str) -> str:
         tool = "uv tool install"
     elif (prefix / "pipx_metadata.json").is_file():
         tool = "pipx install --force"
-    extras = {extra}
     if tool != "pip install":
-        extras.update(extra for package, extra in _EXTRA_OF.items() if find_spec(package))
+        extras |= {extra for package, extra in _EXTRA_OF.items() if find_spec(package)}
     named = f"[{','.join(sorted(extras))}]"
     try:
         origin = metadata.distribution("krl-workbench").read_text("direct_url.json")

@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors
+from krl.extras import need
 from krl.terminal.options import JobsOption, JsonOption, all_cores
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
@@ -52,6 +53,8 @@ def fuzz(
     from support.parallel.workers import WorkersError
 
     check_files(json_file)
+    if scheduler is not None:
+        need("distributed")
     names = _chosen(executor or [])
     with as_input_errors(CaseError):
         rules = needs(find_cases())

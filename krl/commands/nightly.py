@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.extras import ARM, need
 from krl.terminal.output_files import check_files, write_json
 
 if TYPE_CHECKING:
@@ -81,6 +82,8 @@ def nightly(
     if not name.replace("-", "").replace(".", "").isalnum():
         raise InputError(f"--date: {name!r} cannot be the name of a folder")
     check_files(history)
+    if not only:
+        need(*ARM)
     folder = out / name
     folder.mkdir(parents=True, exist_ok=True)
     steps = [one for one in _steps(paths or [Path("corpus")], folder, minutes) if _is_in(one, only)]

@@ -11,6 +11,7 @@ import typer
 from krl.commands.recover_auto import recover_auto
 from krl.construct_ledger import expected_errors
 from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.extras import need
 from krl.terminal.options import (
     CorpusArgument,
     JobsOrOneOption,
@@ -164,6 +165,8 @@ def recover(
             "--hold-out, --without, --target, --suffix, --resume and --strike belong to --auto"
         )
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
+    if scheduler is not None:
+        need("distributed")
     with expected_errors():
         chosen = read_file(grammar) if grammar else krl_grammar()
         restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))

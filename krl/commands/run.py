@@ -80,7 +80,9 @@ def run(
     Stand-ins replace what the project lacks, such as a routine behind an inline form, and are
     listed; statements that still fail, mostly motions, are skipped and listed.
     """
-    with expected_errors(options.robot, *["numpy"] * (html is not None)):
+    needed = ["numpy"] * (html is not None) + ["PIL"] * (video is not None or png is not None)
+    needed += ["imageio_ffmpeg"] * (video is not None and video.suffix.lower() == ".mp4")
+    with expected_errors(options.robot, *needed):
         check_files(trace, path, html, video, png, observations)
         _check_targets(path, video, png, options.robot)
         is_watched = trace is not None or html is not None

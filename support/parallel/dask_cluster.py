@@ -26,11 +26,8 @@ _GREETING: Final = 10.0
 @contextmanager
 def connected(address: str) -> Iterator[Workers]:
     """The workers of the scheduler at an address; raises `WorkersError` where there are none."""
-    try:
-        from distributed import Client
-    except ModuleNotFoundError as error:
-        text = f"a scheduler needs {error.name}: pip install 'krl-workbench[cluster]'"
-        raise WorkersError(text) from error
+    from distributed import Client
+
     try:
         _greet(address)
         connect: Callable[..., Any] = Client

@@ -118,6 +118,8 @@ def test_a_missing_extra_is_installed_by_the_tool_that_installed_us(
     with pytest.raises(InputError) as error:
         need("mujoco")
     assert f"this needs mujoco, which is not installed: {cure}" == str(error.value)
+    with pytest.raises(InputError, match=r"needs scipy and PIL, which are .*\[arm,.*video\]"):
+        need("pygls", "scipy", "PIL")
 
 
 def test_start_is_quick() -> None:

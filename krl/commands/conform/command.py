@@ -103,6 +103,8 @@ def conform(
     check_files(json_file, junit)
     if junit is not None:
         need("junitparser")
+    if scheduler is not None:
+        need("distributed")
     with _expected_errors():
         if lint:
             return _lint(words)
