@@ -468,7 +468,8 @@ static PyMethodDef core_methods[] = {
 static PyMemberDef core_members[] = {
     MEMBER(code, READONLY),   MEMBER(fp, READONLY), MEMBER(serial, READONLY), MEMBER(open, READONLY),
     MEMBER(statement, 0),     MEMBER(left, 0),      MEMBER(last, 0),          MEMBER(top, 0),
-    MEMBER(most_calls, 0),    MEMBER(quota, 0),     MEMBER(whole, 0),     MEMBER(stops, 0),
+    MEMBER(most_calls, 0),    MEMBER(quota, 0),     MEMBER(whole, 0),         MEMBER(stops, 0),
+    MEMBER(traced, READONLY),
     {NULL, 0, 0, 0, NULL},
 };
 

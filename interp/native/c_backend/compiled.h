@@ -71,6 +71,9 @@ static inline krl_register krl_register_at(const krl_cell *cell)
     return (krl_register){(enum krl_tag)tag, (int32_t)bits, krl_real_of_bits(bits)};
 }
 
+/* REMEMBER_LOCAL and REMEMBER_DATA are there only where assignments are traced. */
+#define REMEMBER(address) (void)((KRL_TRACED & KRL_TRACED_ASSIGN) && (machine->last = (address)))
+
 #include "vm/steps.h"
 
 /* ---------------------------------------------------------------------------- routines */
@@ -132,6 +135,8 @@ enum { CALLED = -1 };
         krl_stay(machine, at);                                                                     \
         return (krl_ended){0};                                                                     \
     }
+/* The same where ways meet, for the C compiler, which need not look what it was on each of them. */
+#define KNOWN(number, type) registers[number].tag = KRL_TAG_##type;
 /* And of a parameter. */
 #define NEED_VALUE(number, type)                                                                   \
     if (UNLIKELY(fp[number] == KRL_NOTHING)) {                                                     \

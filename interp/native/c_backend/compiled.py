@@ -134,6 +134,7 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
         routines[number] = _Routine(program, number, steps, body, arrays, routines)
     _find_valued(routines)
     deferred = set[int]().union(*(routine.deferred for routine in routines.values()))
+    yield f"#define KRL_TRACED {core.traced}"
     yield '#include "c_backend/compiled.h"'
     yield "static const struct krl_array arrays[] = {"
     for base, width, dimensions, *sizes, third in arrays or [(0, 0, 0, 1, 1, 1, 0)]:
@@ -278,7 +279,8 @@ class _Routine:
         is_owner = any(code.owner == number for code in self._program.codes if code.captures)
         yield f"BODY({self._kind}, {number}{self._parameters}) {{"
         yield f"ENTER({number}, {max(self._used, default=0) + 1}, {int(is_owner)}) {{"
-        yield from self._loop_entries()
+        assigned = self._assigned()
+        yield from self._loop_entries(assigned)
         yield "}"
         yield "start:"
         copied = [one for one in self._copies if one < received]
@@ -292,6 +294,9 @@ class _Routine:
         yield from _blank_cells(set(range(received, frame)) - self._copies)
         for place in self._body:
             yield f"do_{place}:;"
+            if place in self._flow.targets:
+                known = assigned.get(place, frozenset()).intersection(self._copies)
+                yield self._each("KNOWN", known.intersection(self._kinds))
             if place in self._counted:
                 yield f"BEGIN({place}, {self._counted[place]})"
             if self._steps[place].line >= 0:
@@ -307,8 +312,7 @@ class _Routine:
         yield "LEAVE();"
         yield "}"
 
-    def _loop_entries(self) -> Iterator[str]:
-        assigned = self._assigned()
+    def _loop_entries(self, assigned: Mapping[int, frozenset[int]]) -> Iterator[str]:
         for place in self._flow.loops:
             valued = assigned.get(place, frozenset())
             yield f"case {place}:"

@@ -31,7 +31,8 @@ class RegisterFlow:
         self._steps = steps
         self._body = body
         jumps = [(place, steps[place].d) for place in body if steps[place].is_jump]
-        self._targets = {target for _, target in jumps}
+        #: Where ways meet.
+        self.targets = {target for _, target in jumps}
         #: Where loops begin.
         self.loops = sorted({target for place, target in jumps if target <= place})
 
@@ -77,7 +78,7 @@ class RegisterFlow:
         only_operands = False
         for place in self._body:
             step = self._steps[place]
-            starts = place in self._targets or step.line >= 0 or not only_operands
+            starts = place in self.targets or step.line >= 0 or not only_operands
             found.append(place if starts else found[-1])
             written = step.named((roles_of(step.name) or ("", ""))[1])
             is_pure = written.issubset(stack) and written.isdisjoint(live[found[-1]])
@@ -159,7 +160,7 @@ class RegisterFlow:
         leader = -1
         for place in self._body:
             step = self._steps[place]
-            if place in self._targets:
+            if place in self.targets:
                 leader = -1
             if step.line >= 0:
                 leader = place if leader < 0 else leader

@@ -39,6 +39,11 @@ typedef krl_cell krl_register;
 #define OF_REAL krl_of_real
 #endif
 
+/* What was written last through a reference, for the trace. */
+#ifndef REMEMBER
+#define REMEMBER(address) machine->last = (address)
+#endif
+
 #ifndef KRL_ARRAY
 #define KRL_ARRAY(number) (&machine->arrays[number])
 #endif
@@ -189,7 +194,7 @@ static inline int rounds(float number, int32_t *result)
     STEP(INDEX_##suffix)                                                                           \
     {                                                                                              \
         find;                                                                                      \
-        A = OF_INT((int32_t)((base) + place - cells));                                             \
+        A = OF_INT((int32_t)((base) - cells) + (int32_t)place);                                    \
         NEXT();                                                                                    \
     }
 #define ELEMENT_STEPS(get, put, base, find)                                                        \
@@ -377,7 +382,7 @@ STEP(STORE)
 {
     READ(address, A);
     READ(value, B);
-    machine->last = INT(address);
+    REMEMBER(INT(address));
     cells[(uint32_t)INT(address)] = CELL_OF(value);
     NEXT();
 }
@@ -385,7 +390,7 @@ STEP(STORE)
 STEP(STORE_K)
 {
     READ(address, A);
-    machine->last = INT(address);
+    REMEMBER(INT(address));
     cells[(uint32_t)INT(address)] = krl_tagged((enum krl_tag)pc->tag, (uint32_t)pc->b);
     NEXT();
 }
@@ -477,7 +482,7 @@ STEP(ROW_VIEW)
 /* ---- blocks of cells; references in place always have values */
 STEP(COPY)
 {
-    machine->last = INT(A);
+    REMEMBER(INT(A));
     krl_copy_cells(cells + INT(A), cells + INT(B), pc->c);
     NEXT();
 }
@@ -491,7 +496,7 @@ STEP(CLEAR)
 STEP(FILL_POSE)
 {
     krl_cell *target = cells + INT(A);
-    machine->last = INT(A);
+    REMEMBER(INT(A));
     krl_copy_cells(target, cells + INT(B), pc->d);
     krl_blank_cells(target + pc->d, pc->c - pc->d);
     NEXT();
@@ -502,7 +507,7 @@ STEP(FILL_ARRAY)
     int fault = krl_fill_array(cells, &CELL(pc->a), &CELL(pc->b), pc->c, pc->d);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
-    machine->last = krl_int_in(CELL(pc->a));
+    REMEMBER(krl_int_in(CELL(pc->a)));
     NEXT();
 }
 
@@ -519,7 +524,7 @@ STEP(COPY_VIEW)
 
 STEP(SET_TEXT)
 {
-    machine->last = krl_int_in(CELL(pc->a));
+    REMEMBER(krl_int_in(CELL(pc->a)));
     krl_set_text(cells + krl_int_in(CELL(pc->a)), krl_int_in((&CELL(pc->a))[1]), &machine->program.texts[pc->b]);
     NEXT();
 }
