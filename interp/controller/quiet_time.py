@@ -20,7 +20,6 @@ from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.requests.waits import IDLE_AFTER
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
-from interp.port.executor import Counting, Recurrent
 from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
 
 #: Requests that leave no trace but in what they write.
@@ -92,7 +91,7 @@ class QuietTime:
         if mark is not None and (now - mark.time) % max(self._reach // _LOOKS, cycle):
             return 0
         found = [self._place(task) for task in tasks]
-        executors = [one.executor for one in tasks if isinstance(one.executor, Recurrent)]
+        executors = [one.recurrent for one in tasks if one.recurrent is not None]
         if None in found or len(executors) < len(tasks):
             self._mark = None
             return 0
@@ -126,7 +125,7 @@ class QuietTime:
         is_waiting = blocked is not None and isinstance(blocked.request, (*REPEATABLE, Wait))
         if not is_waiting or blocked is None or task.levels or task.signals or task.is_halted:
             return None
-        standing = task.executor.standing() if isinstance(task.executor, Recurrent) else None
+        standing = None if task.recurrent is None else task.recurrent.standing()
         if standing is None:
             return None
         place = (standing, repr(blocked.request), task.idle_at, task.exempt_line)
@@ -142,7 +141,7 @@ class QuietTime:
 
 def _begun(task: Task) -> int | None:
     """How many statements have begun, if the executor says so."""
-    return task.executor.begun if isinstance(task.executor, Counting) else None
+    return None if task.counting is None else task.counting.begun
 
 
 def _is_timed(task: Task) -> bool:

@@ -12,7 +12,7 @@ from typing import Final, Literal
 
 from interp.controller.state.interrupts import Interrupt, Interrupts
 from interp.controller.state.trace import TaskName, TaskSink
-from interp.port.executor import Executor, Reader
+from interp.port.executor import Counting, Executor, Reader, Recurrent
 from interp.port.requests import At, CodeHandle, Request, SetTrigger, SwitchSignal, Value
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
@@ -79,7 +79,8 @@ class Task:
     ``spent`` are the requests in the slice that ends at ``slice_end``. ``triggers`` wait for the
     next motion. ``busy_at`` is the time in µs at which it last did more than to read variables,
     ``idle_at`` where it was when it had only read them for long. ``polling`` is where a WAIT FOR
-    waits, ``last_at`` the place of the last request.
+    waits, ``last_at`` the place of the last request. ``counting`` and ``recurrent`` are its
+    executor where it is one: to look each time would take longer than a slice.
     """
 
     name: TaskName
@@ -100,6 +101,12 @@ class Task:
     signals: dict[str, SwitchSignal] = field(default_factory=dict)
     is_over: bool = False
     is_halted: bool = False
+    counting: Counting | None = field(init=False)
+    recurrent: Recurrent | None = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.counting = self.executor if isinstance(self.executor, Counting) else None
+        self.recurrent = self.executor if isinstance(self.executor, Recurrent) else None
 
     @property
     def level(self) -> Level | None:
