@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import astuple
+from dataclasses import fields
+from operator import attrgetter
 from typing import Any
 
 from grammar.notation.model import Grammar
@@ -32,6 +33,10 @@ def recall(store: ResultStore, digest: str) -> Kept | None:
         return None
 
 
+#: The fields of a failing line in their order (`dataclasses.astuple` copies them, which is slow).
+_FAILED = attrgetter(*(field.name for field in fields(FailingLine)))
+
+
 def keep(store: ResultStore, results: Iterable[tuple[str, Kept]]) -> None:
     """Keep results by the digest of their content."""
     store.put((digest, _written(kept)) for digest, kept in results)
@@ -41,7 +46,7 @@ def _written(kept: Kept) -> object:
     if isinstance(kept, str):
         return kept
     failures, forms, names = kept
-    return [[astuple(f) for f in failures], [astuple(form) for form in forms], names]
+    return [list(map(_FAILED, failures)), [(f.before, f.kinds, f.index) for f in forms], names]
 
 
 def _read(data: Any) -> Kept:
