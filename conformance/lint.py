@@ -17,7 +17,7 @@ from conformance.evaluation.execution import PROFILES
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.suite.expectations import KINDS, Expectation
-from conformance.suite.registry import Rule, basis, registry
+from conformance.suite.registry import Rule, basis, corners, registry
 from grammar.syntax.build import read_module
 from interp.controller.inputs.input_script import Script, ScriptError
 
@@ -103,6 +103,10 @@ def lint(root: Path = CASES) -> list[str]:
         found += [f"{rule.id}: no case shows it" for rule in coverage(cases).uncovered]
         names = [case.name for case in cases]
         lost = KnownFailures.load().of_no_case(names)
+        found += [
+            f"corners.toml: there is no case {name}"
+            for name in sorted(frozenset().union(*corners().values()).difference(names))
+        ]
         found += [f"known_failures.toml: there is no case {name}" for name in lost]
     return found
 

@@ -22,7 +22,7 @@ from conformance.suite.expectations import (
     Phase,
     read_expectation,
 )
-from conformance.suite.registry import basis
+from conformance.suite.registry import basis, corners
 from grammar.syntax.source import Source
 from support.files.untrusted import read_text
 
@@ -148,7 +148,8 @@ def find_cases(
 def selected(cases: Iterable[Case], selection: Sequence[str]) -> list[Case]:
     """The cases that one of the words names; all where there is none.
 
-    A word is a suite, a case (``suite/stem``), a rule, a topic of rules, a phase, or a path.
+    A word is a suite, a case (``suite/stem``), a rule, a topic of rules, a phase, a path, or
+    ``corner``, alone or with a kind (``corner:zero``).
     Raises `CaseError` for a word that names nothing.
     """
     every = list(cases)
@@ -168,6 +169,10 @@ def _is_named(case: Case, word: str) -> bool:
         return True
     if any(word.upper() in (rule, rule.partition("-")[0]) for rule in case.rules):
         return True
+    if word == "corner":
+        return any(case.name in names for names in corners().values())
+    if word.startswith("corner:"):
+        return case.name in corners().get(word.removeprefix("corner:"), ())
     path = Path(word)
     if not path.exists():
         return False

@@ -62,6 +62,13 @@ def registry() -> Mapping[str, Rule]:
 
 
 @cache
+def corners() -> Mapping[str, frozenset[str]]:
+    """The names of cases that state corners, by kinds."""
+    text = resources.files("conformance").joinpath("corners.toml").read_text(encoding="utf-8")
+    return {kind: frozenset(names.split()) for kind, names in tomllib.loads(text).items()}
+
+
+@cache
 def basis(id_: str) -> Rule | Clause:
     """The rule or clause of an ID. Raises `KeyError` where there is none."""
     rule = registry()[id_.partition(".")[0]]

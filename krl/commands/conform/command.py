@@ -29,9 +29,9 @@ def conform(
         list[str] | None,
         typer.Argument(
             metavar="[SELECT...]",
-            help="Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths; "
-            "default: all. Or: import FILE, export FILE.zip [SELECT...], compare [SELECT...], "
-            "pairs.",
+            help="Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths, "
+            "corners (corner, corner:zero); default: all. Or: import FILE, "
+            "export FILE.zip [SELECT...], compare [SELECT...], pairs.",
         ),
     ] = None,
     executor: Annotated[
@@ -181,6 +181,8 @@ def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
     """The cases, with what a recording needs to know of them."""
     for case in cases:
         typer.echo(shown(f"{case.name:42} {','.join(case.rules):22} {case.title}"))
+    expected = sum(len(case.expectations) for case in cases)
+    typer.echo(f"krl: {len(cases)} cases with {expected:,} expectations", err=True)
     if json_file is not None:
         told = [
             {

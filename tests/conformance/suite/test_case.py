@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from conformance.suite.case import Case, CaseError, find_cases, read_case, selected
+from krl.cli import main
 
 Write = Callable[[str, str], Path]
 
@@ -158,3 +159,12 @@ def test_own_cases_can_be_read(own_cases: list[Case]) -> None:
     assert len(own_cases) >= 500
     assert sum(case.is_negative for case in own_cases) * 4 >= len(own_cases)
     assert len(own_cases) == len({case.name for case in own_cases})
+
+
+def test_corners_are_countable_by_the_command(capsys: pytest.CaptureFixture[str]) -> None:
+    """Cases that state corners are selected, by kinds too, and what they expect is counted."""
+    assert main(["conform", "corner:zero", "--list"]) == 0
+    shown = capsys.readouterr()
+    assert "data/division_by_zero " in shown.out
+    assert "data/bit_edges " not in shown.out
+    assert f"krl: {len(shown.out.splitlines())} cases with " in shown.err
