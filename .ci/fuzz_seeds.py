@@ -80,8 +80,8 @@ def main(folder: Path) -> int:
         except LinkError:
             continue
         if program.codes:
-            told = frozenset[str]() if file in programs else known
-            known |= _write(program, folder / f"{file.stem}.krlb", told)
+            seen = frozenset[str]() if file in programs else known
+            known |= _write(program, folder / f"{file.stem}.krlb", seen)
     return 0
 
 

@@ -115,8 +115,8 @@ def _command(what: str, folder: Path) -> Parser:
     def reads(source: Source) -> str:
         file = folder / source.path.lstrip("$")
         file.write_text(source.text, encoding="utf-8", newline="\n")
-        told = [str(file) if word == "{}" else word for word in words]
-        command = told if "{}" in words else [*told, str(file)]
+        command_words = [str(file) if word == "{}" else word for word in words]
+        command = command_words if "{}" in words else [*command_words, str(file)]
         try:
             done = subprocess.run(
                 command, capture_output=True, timeout=_LONGEST, cwd=folder, check=False

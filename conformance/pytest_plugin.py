@@ -65,7 +65,7 @@ class CaseItem(pytest.Item):
         (result,) = run_case(self.case, [self.setup_of_case], KnownFailures.load()).results
         match result.verdict:
             case "fail":
-                raise _NotMet(_told(self.case, result))
+                raise _NotMet(_failure(self.case, result))
             case "skipped":
                 pytest.skip(result.reason)
             case "unconfirmed" | "known-failure":
@@ -82,7 +82,7 @@ class CaseItem(pytest.Item):
         return self.path, None, f"{self.name}: {self.case.title}"
 
 
-def _told(case: Case, result: Result) -> str:
+def _failure(case: Case, result: Result) -> str:
     lines = [f"{case.title} [{', '.join(case.rules)}]", result.reason]
     for check in result.checks:
         if check.state == "unmet":

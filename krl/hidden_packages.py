@@ -13,9 +13,9 @@ def hiding_package() -> str | None:
         spec = find_spec(name)
         found = Path((spec and spec.origin) or "nowhere").parent
         if found != home / name:
-            told = (
+            message = (
                 f"{name} should be {home / name} and is {found}, of another project: install "
                 "krl-workbench into a separate environment, as `uv tool` and pipx do"
             )
-            return "".join(sign if sign.isprintable() else "?" for sign in told)
+            return "".join(sign if sign.isprintable() else "?" for sign in message)
     return None

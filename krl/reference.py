@@ -83,8 +83,8 @@ def _command(name: str, command: Any) -> Iterator[str]:
     ]
     words = " ".join([name, *(_usage(one) for one in given), *(["[OPTIONS]"] if options else [])])
     yield f"\n## {name}\n\n```\n{words}\n```\n\n{_prose(command.help)}\n"
-    rows = [(f"`{_usage(one)}`", _told(one)) for one in given]
-    rows += [(f"`{_spelled(one)}`", _told(one)) for one in options]
+    rows = [(f"`{_usage(one)}`", _described(one)) for one in given]
+    rows += [(f"`{_spelled(one)}`", _described(one)) for one in options]
     if rows:
         yield "\n| | |\n| --- | --- |\n"
         yield from (f"| {left} | {right} |\n" for left, right in rows)
@@ -111,7 +111,7 @@ def _choices(option: Any) -> list[str]:
     return [str(getattr(one, "value", one)) for one in known or ()]
 
 
-def _told(parameter: Any) -> str:
+def _described(parameter: Any) -> str:
     help_text = " ".join((getattr(parameter, "help", "") or "").split())
     default = parameter.default
     if isinstance(default, str | int | float | Path) and not isinstance(default, bool):

@@ -258,7 +258,7 @@ MOST_MERGED_EDITS = 3
 #: Tokens that could have come which a title names: more say nothing to a reader. Not measured.
 MOST_EXPECTED = 2
 #: Words and signs of a line in a title, where another cluster has the same. Not measured.
-MOST_TOLD = 8
+MOST_DISTINCT = 8
 #: Reserved words that a title lists, where several stand for names. Not measured.
 MOST_LISTED = 3
 

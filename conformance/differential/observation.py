@@ -38,9 +38,9 @@ class Observed:
 
     def values(self, *path: str | int) -> list[Any]:
         """What was assigned to a variable, one after the other."""
-        return [one.value for one in self.told("assign") if one.path == path]
+        return [one.value for one in self.events_of("assign") if one.path == path]
 
-    def told(self, kind: str) -> list[ExecutorEvent]:
+    def events_of(self, kind: str) -> list[ExecutorEvent]:
         """All events of a kind."""
         return [one for one in self.steps if isinstance(one, ExecutorEvent) and one.kind == kind]
 

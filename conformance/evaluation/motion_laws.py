@@ -63,8 +63,8 @@ def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
             tools = flanges[rows] @ matrix_of(placement.tool)
             poses = np.linalg.inv(placement.chains_before(own)) @ tools
             off = np.abs(poses[:, :3, 3] - path.points[rows, :3]).max(axis=1)
-            told = np.array([matrix_of(Pose.of(*row)) for row in path.points[rows]])
-            off = np.maximum(off, np.degrees(np.abs(told - poses)[:, :3, :3].max(axis=(1, 2))))
+            sampled = np.array([matrix_of(Pose.of(*row)) for row in path.points[rows]])
+            off = np.maximum(off, np.degrees(np.abs(sampled - poses)[:, :3, :3].max(axis=(1, 2))))
             if not off.max() <= ROUNDING:
                 place = first + int(np.argmax(~(off <= ROUNDING)))
                 law = "the tool is where axes and machine data put it"

@@ -78,8 +78,8 @@ def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
         ]
         known = [each for each in off if each is not None]
         if max(known, default=0.0) > 1.0 or (len(known) == 2 and max(known) < -1.0):
-            told = " and ".join("?" if each is None else f"{each:.1f}" for each in off)
-            yield one.broken(law, f"{told} tolerances beyond them, before and behind the point")
+            apart = " and ".join("?" if each is None else f"{each:.1f}" for each in off)
+            yield one.broken(law, f"{apart} tolerances beyond them, before and behind the point")
 
 
 def _excess(
@@ -171,8 +171,8 @@ def _axes(one: EndedMotion, before: Array | None) -> Array | None:
 
 def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Array | None:
     """The point that a target gives; what it leaves out stays [MOT-16]."""
-    told = set(_POINT) & set(target or {})
-    if target is None or not told or one.motion.is_relative or (before is None and len(told) < 3):
+    given = set(_POINT) & set(target or {})
+    if target is None or not given or one.motion.is_relative or (before is None and len(given) < 3):
         return None
     if before is None:
         before = np.zeros(3)

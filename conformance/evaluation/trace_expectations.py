@@ -248,8 +248,8 @@ def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
         return ("unmet" if events else "met"), _seen(one, events)
     if "times" in words:
         wanted = int(words[words.index("times") + 1])
-        told = f"{len(events)}: {_seen(one, events)}" if events else "0"
-        return ("met" if len(events) == wanted else "unmet"), told
+        observed = f"{len(events)}: {_seen(one, events)}" if events else "0"
+        return ("met" if len(events) == wanted else "unmet"), observed
     if not events:
         return "unmet", "it never happened"
     if one.when is None:

@@ -120,7 +120,7 @@ def same_geometry(left: Observation, right: Observation) -> str:
         off = _beside(mine, theirs)
         if off.max() > _BESIDE:
             place = mine[int(np.argmax(off))]
-            return f"the {which} path has {_told(place)}, {off.max():.4f} degrees beside the other"
+            return f"the {which} path has {_axes(place)}, {off.max():.4f} degrees beside the other"
     return ""
 
 
@@ -231,5 +231,5 @@ def _beside(points: Array, path: Array) -> Array:
     return found
 
 
-def _told(axes: Sequence[float] | Array) -> str:
+def _axes(axes: Sequence[float] | Array) -> str:
     return "{" + ", ".join(f"A{place} {value:.3f}" for place, value in enumerate(axes[:6], 1)) + "}"

@@ -307,9 +307,9 @@ def _load(case: Case) -> None:
 def _in_copy(mutant: Mutant, cases: _Candidates, pipe: int) -> NoReturn:
     warnings.simplefilter("ignore")  # of computing with what a mutant has made
     try:
-        with os.fdopen(pipe, "wb", buffering=0) as told:
+        with os.fdopen(pipe, "wb", buffering=0) as results:
             for trial in _trials(mutant, cases):
-                told.write(pickle.dumps(trial))
+                results.write(pickle.dumps(trial))
         os._exit(0)
     finally:
         os._exit(1)

@@ -403,7 +403,7 @@ def _different(old: CodeType, new: CodeType) -> Iterator[tuple[CodeType, CodeTyp
 
 
 def _key(code: CodeType) -> tuple[Any, ...]:
-    """Which function it is of; lambdas of a line are told apart by their columns."""
+    """Which function it is of; lambdas of a line are distinguished by their columns."""
     columns = tuple(column for _, _, column, _ in code.co_positions())
     return code.co_filename, code.co_qualname, code.co_firstlineno, columns
 

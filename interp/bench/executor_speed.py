@@ -290,8 +290,8 @@ def _output(command: Sequence[str]) -> str:
         command, capture_output=True, encoding="utf-8", check=False, timeout=_PATIENCE
     )
     if ended.returncode:
-        told = ended.stderr.strip().splitlines()
-        raise OSError(f"{Path(command[0]).name} says {told[0] if told else 'nothing'}")
+        errors = ended.stderr.strip().splitlines()
+        raise OSError(f"{Path(command[0]).name} says {errors[0] if errors else 'nothing'}")
     return ended.stdout
 
 

@@ -430,7 +430,7 @@ class Debugger:
             if one.log is None:
                 found = found or Stop("breakpoint", task, at, text=text)
             elif not self._history.is_repeating:
-                self._log(self._told(one.log, task))
+                self._log(self._log_text(one.log, task))
         return found
 
     def _unmet(self, one: Breakpoint, task: TaskName) -> str | None:
@@ -451,7 +451,7 @@ class Debugger:
             hits.append(count)
         return is_hit(one.hits, bisect_right(hits, count))
 
-    def _told(self, text: str, task: TaskName) -> str:
+    def _log_text(self, text: str, task: TaskName) -> str:
         """The text of a breakpoint with the values of what stands in braces."""
         parts = text.replace("}", "{").split("{")
         for place in range(1, len(parts), 2):
@@ -494,7 +494,7 @@ class Debugger:
         """Do what the client wants: go on, and if so at which line, or leave this run."""
         while True:
             self._stepping = None
-            match self._told_by_client(stop):
+            match self._client_command(stop):
                 case Go():
                     return None
                 case StepCommand(way=way, task=task):
@@ -523,7 +523,7 @@ class Debugger:
                         return selected.line
             stop = Stop("refused", stop.task, stop.at, text=text)
 
-    def _told_by_client(self, stop: Stop) -> Command:
+    def _client_command(self, stop: Stop) -> Command:
         try:
             return self._client(self, stop)
         except RuntimeFailure as error:  # which would count as a fault of the program

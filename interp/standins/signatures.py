@@ -285,10 +285,10 @@ class Signatures:
         for place, given in enumerate(given_to, start=1):
             parameter = f"P{place}"
             kind, is_out, brackets = self._parameter(f"{name}_{parameter}", given)
-            told = parameters[place - 1] if place <= len(parameters) else None
-            if told is not None and not told.is_out and self._has_type(told.type):
-                is_out, brackets = False, "[]" if told.is_array else ""
-                kind = _Kind(told.type, kind.value, is_text=told.is_array)
+            typed = parameters[place - 1] if place <= len(parameters) else None
+            if typed is not None and not typed.is_out and self._has_type(typed.type):
+                is_out, brackets = False, "[]" if typed.is_array else ""
+                kind = _Kind(typed.type, kind.value, is_text=typed.is_array)
             heads.append(f"{parameter}{brackets} :{'OUT' if is_out else 'IN'}")
             declared.append(f"DECL {kind.name} {parameter}{brackets}")
             if is_out and not brackets and kind.value != _NOTHING:

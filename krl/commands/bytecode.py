@@ -48,14 +48,14 @@ def compile_file(
         raise InputError(f"{file}: {error}") from error
     target = output or file.with_suffix(".krlb")
     _write(image.data, target)
-    told = [f"left out: {why}" for why in left]
+    notes = [f"left out: {why}" for why in left]
     if native:
-        told += _native_code(image.data)
-    told += image.refusals
-    for line in told[:_MOST_LISTED]:
+        notes += _native_code(image.data)
+    notes += image.refusals
+    for line in notes[:_MOST_LISTED]:
         typer.echo(one_line(line), err=True)
-    if len(told) > _MOST_LISTED:
-        typer.echo(f"and {len(told) - _MOST_LISTED} more", err=True)
+    if len(notes) > _MOST_LISTED:
+        typer.echo(f"and {len(notes) - _MOST_LISTED} more", err=True)
     count = f"{image.codes:,} code objects, {image.instructions:,} instructions"
     if image.files > 1:
         count += f", from {image.files:,} files of the project"

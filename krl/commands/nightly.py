@@ -133,19 +133,19 @@ def _reported(
     run = {**nightly_record(name, made, went), "failures": failed}
     compared = "" if last is None else str(last["of"].get("conform", ""))
     before = _record(out / compared, "conform") if compared else None
-    told = changes(last, run, before, made.get("conform"))
+    reported = changes(last, run, before, made.get("conform"))
     append_run(history, run)
-    write_json({**run, "changes": told}, folder / "night.json")
+    write_json({**run, "changes": reported}, folder / "night.json")
     write_claims_page(made, folder / "claims")
     pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
     run = {**run, "steps": {**run["steps"], **pages}}
-    page = write_nightly_page({**run, "changes": told, "history": [*runs, run]}, folder)
+    page = write_nightly_page({**run, "changes": reported, "history": [*runs, run]}, folder)
     write_entry_page(out, name, datetime.now(UTC))
     bound_store(folder)
-    write_atomic(folder / "summary.md", nightly_summary({**run, "changes": told}))
+    write_atomic(folder / "summary.md", nightly_summary({**run, "changes": reported}))
     for one in failed:
         typer.echo(one_line(f"failed: {one['what']}"))
-    for line in told or ["nothing changed since the last nightly run"]:
+    for line in reported or ["nothing changed since the last nightly run"]:
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
     return failed
@@ -232,8 +232,8 @@ def _performed(
         else:
             left = 60 * minutes - (began - begun)
             most = max(min(60 * minutes * step.share, left), 1)
-            told = f"{step.name} (at most {most / 60:.3g} min, {number} of {len(steps)})"
-            _say(began - begun, told)
+            words = f"{step.name} (at most {most / 60:.3g} min, {number} of {len(steps)})"
+            _say(began - begun, words)
             _recall(folder, step.name)
             how = _attempt(step, target, most, memory)
             if how.startswith("failed"):
@@ -258,8 +258,8 @@ def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
     return one_line(f"failed: {last or f'status {returned}'}")
 
 
-def _say(seconds: float, told: str) -> None:
-    typer.echo(f"{seconds / 60:5.1f} min  {told}", err=True)
+def _say(seconds: float, words: str) -> None:
+    typer.echo(f"{seconds / 60:5.1f} min  {words}", err=True)
 
 
 def _recall(folder: Path, name: str) -> None:

@@ -148,7 +148,7 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
     prepared = Prepared(program, setup.routine, [setup.submit], is_kept=True)
     with progress_bar("running, virtual seconds", None) as bar, _tracing(trace) as stream:
         kept: list[TraceEvent] = []
-        told = 0
+        shown = 0
 
         def take(event: "TraceEvent") -> None:
             kept.append(event)
@@ -156,9 +156,9 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
                 stream.write(event.line() + "\n")
 
         def on_time(now: int) -> None:
-            nonlocal told
-            bar(now // 1_000_000 - told)
-            told = now // 1_000_000
+            nonlocal shown
+            bar(now // 1_000_000 - shown)
+            shown = now // 1_000_000
 
         done = run_program(prepared, setup, take=take, on_time=on_time)
     for note in prepared.notes:

@@ -211,21 +211,21 @@ def _failures(
             read.append(replace(one, file=_path(stated, program)))
             lines.append(stated.line)
         except (ExpectationError, LookupError) as error:
-            yield from _told(test, stated.line, stated.text, str(error.args[0]))
+            yield from _failure(test, stated.line, stated.text, str(error.args[0]))
     for line, check in zip(lines, evaluate_run(read, seen), strict=True):
         if check.state != "met":
-            yield from _told(test, line, check.text, check.actual or "nothing", program, check)
+            yield from _failure(test, line, check.text, check.actual or "nothing", program, check)
     for check in evaluate_ending(read, seen, program.main.module.path):
-        yield from _told(test, test.line, check.text, check.actual, program, check)
+        yield from _failure(test, test.line, check.text, check.actual, program, check)
     for (file, number), reason in done.controller.skipped.items():
         place = f"{file}:{number}: {reason}"
-        yield from _told(test, test.line, "all motions can be planned", place)
+        yield from _failure(test, test.line, "all motions can be planned", place)
     for event in done.events:
         if event.kind == "call" and event.fields["name"] == UNREADABLE:
-            yield from _told(test, test.line, "all lines can be read", event.place or "")
+            yield from _failure(test, test.line, "all lines can be read", event.place or "")
     for touched in done.observations:
         if not touched.is_estimate:
-            yield from _told(test, test.line, "nothing is touched", str(touched))
+            yield from _failure(test, test.line, "nothing is touched", str(touched))
 
 
 def _check_called(expected: str, program: CheckedProgram) -> None:
@@ -244,7 +244,7 @@ def _stood_in(program: CheckedProgram, done: RunResult) -> Iterator[str]:
         yield f"    note:     in no file, so calls had no effect: {', '.join(names)}"
 
 
-def _told(
+def _failure(
     test: ProgramTest,
     line: int,
     expected: str,

@@ -210,7 +210,7 @@ def _assembled(
     rules = [groups.signatures[n].rule for n in heaviest]
     signatures = _distinct([groups.signatures[n].text for n in heaviest], rules)
     writer = TitleWriter(groups.recognizer)
-    titles = writer.told_apart(
+    titles = writer.distinguished(
         [_title(cause, n, groups, writer) for cause, n in zip(causes, heaviest, strict=True)],
         [groups.lines[n] for n in heaviest],
         rules,

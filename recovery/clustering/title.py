@@ -13,7 +13,7 @@ from grammar.parser.lexer import EOF, ERROR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Proposal
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import MOST_EXPECTED, MOST_LISTED, MOST_TOLD
+from recovery.tuning import MOST_DISTINCT, MOST_EXPECTED, MOST_LISTED
 
 _CLOSER = {"(": ")", "[": "]", "{": "}"}
 
@@ -77,7 +77,7 @@ class TitleWriter:
         *ahead, last = some if len(words) > MOST_LISTED + 1 else words
         return f"{', '.join(ahead)} and {last} as names"
 
-    def told_apart(
+    def distinguished(
         self, titles: Sequence[str], lines: Sequence[LinePattern], rules: Sequence[str]
     ) -> list[str]:
         """The titles; those that are the same with how their line goes on, or where it stands.
@@ -90,14 +90,14 @@ class TitleWriter:
             alike[title].append(number)
         for same in (numbers for numbers in alike.values() if len(numbers) > 1):
             shapes = [(*self._shape(lines[n]), "") for n in same]  # the end tells apart too
-            begun = Counter(s[:n] for s in shapes for n in range(2, min(MOST_TOLD, len(s)) + 1))
+            begun = Counter(s[:n] for s in shapes for n in range(2, min(MOST_DISTINCT, len(s)) + 1))
             for number, shape in zip(same, shapes, strict=True):
-                told = next((n for n in range(2, MOST_TOLD + 1) if begun[shape[:n]] == 1), None)
-                if told is None:
+                end = next((n for n in range(2, MOST_DISTINCT + 1) if begun[shape[:n]] == 1), None)
+                if end is None:
                     out[number] += f" in {_spoken(rules[number])}"
                 else:
-                    dots = " …" if len(shape) - 1 > told else ""
-                    out[number] += f": {' '.join(filter(None, shape[:told]))}{dots}"
+                    dots = " …" if len(shape) - 1 > end else ""
+                    out[number] += f": {' '.join(filter(None, shape[:end]))}{dots}"
         again: Counter[str] = Counter()
         for number, title in enumerate(out):
             again[title] += 1

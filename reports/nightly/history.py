@@ -215,15 +215,15 @@ def changes(
     """
     if before is None:
         return ["this is the first run", *_steps({}, now), *_wrong(now)]
-    told = [*_steps(before, now)]
+    reported = [*_steps(before, now)]
     if before.get("recover") and now.get("recover"):
-        told += _survey(nested(before, "recover"), nested(now, "recover"))
+        reported += _survey(nested(before, "recover"), nested(now, "recover"))
     if before.get("conform") and now.get("conform"):
-        told += _verdicts(nested(before, "conform"), nested(now, "conform"))
-        told += _shifts(nested(before, "conform"), nested(now, "conform"), old, new)
+        reported += _verdicts(nested(before, "conform"), nested(now, "conform"))
+        reported += _shifts(nested(before, "conform"), nested(now, "conform"), old, new)
     if before.get("fuzz") and now.get("fuzz"):
-        told += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
-    return [*told, *_speeds(nested(before, "bench"), nested(now, "bench"))]
+        reported += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
+    return [*reported, *_speeds(nested(before, "bench"), nested(now, "bench"))]
 
 
 def _wrong(now: Record) -> Iterator[str]:
@@ -292,19 +292,19 @@ def _shifts(before: Record, now: Record, old: Record | None, new: Record | None)
 def _details(old: Record, new: Record, names: set[str]) -> dict[str, str]:
     """The first event of each case that happens at another time, or not at all."""
     rows = [{text(c, "name"): list(_timing(c)) for c in records(r, "cases")} for r in (old, new)]
-    told = {}
+    reported = {}
     for name in names:
         left, right = rows[0].get(name, []), rows[1].get(name, [])
         for one, two in zip(left, right, strict=False):
             if one != two:
-                told[name] = (
+                reported[name] = (
                     f": {one[0]} at {one[1] / 1e6:.6f} s → {two[0]} at {two[1] / 1e6:.6f} s"
                 )
                 break
         else:
             if len(left) != len(right):
-                told[name] = f": {len(left)} events → {len(right)}"
-    return told
+                reported[name] = f": {len(left)} events → {len(right)}"
+    return reported
 
 
 def _fuzz(before: Record, now: Record) -> Iterator[str]:

@@ -184,17 +184,17 @@ def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
         yield Figure("files parse", percent(parsed, files), f"{parsed:,} of {files:,}")
     if conform:
         verdicts = nested(conform, "verdicts")
-        told = f"{count(verdicts, 'fail'):,} fail, {count(verdicts, 'skipped'):,} skipped"
-        yield Figure("runs of cases pass", f"{count(verdicts, 'pass'):,}", told)
+        note = f"{count(verdicts, 'fail'):,} fail, {count(verdicts, 'skipped'):,} skipped"
+        yield Figure("runs of cases pass", f"{count(verdicts, 'pass'):,}", note)
         hard, covered = count(conform, "hard"), count(conform, "hard_covered")
-        told = f"{covered:,} of {hard:,} that may fail"
-        yield Figure("rules covered", percent(covered, hard), told)
+        note = f"{covered:,} of {hard:,} that may fail"
+        yield Figure("rules covered", percent(covered, hard), note)
     if fuzz:
-        told = counted(count(fuzz, "divergences"), "divergence")
-        yield Figure("programs fuzzed", f"{count(fuzz, 'programs'):,}", told)
+        note = counted(count(fuzz, "divergences"), "divergence")
+        yield Figure("programs fuzzed", f"{count(fuzz, 'programs'):,}", note)
     if number(bench, "conform.share"):
-        told = f"{number(bench, 'conform.cases_per_s'):,.0f} cases a second"
-        yield Figure("planted faults found", percent(number(bench, "conform.share"), 1), told)
+        note = f"{number(bench, 'conform.cases_per_s'):,.0f} cases a second"
+        yield Figure("planted faults found", percent(number(bench, "conform.share"), 1), note)
 
 
 def _failure(record: Record) -> _Failure:

@@ -46,5 +46,5 @@ def _more(count: int) -> Iterator[str]:
 
 def _code(foreign: str) -> str:
     """A text as code in a line or a cell of a table."""
-    told = shown(foreign, 300).replace("`", "'").replace("|", "¦").strip()
-    return f"`{told or ' '}`"
+    cleaned = shown(foreign, 300).replace("`", "'").replace("|", "¦").strip()
+    return f"`{cleaned or ' '}`"

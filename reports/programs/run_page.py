@@ -79,14 +79,14 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
 
 def _events(events: Sequence[Record]) -> Sequence[Record]:
     """The first of what happened, and as many steps of the advance run as there is room for."""
-    told = [text(event, "kind") not in _STEPS for event in events]
-    room = max(0, _MAX_EVENTS - sum(told))
-    stride = 1 + (len(events) - sum(told)) // (room + 1)
-    steps = accumulate((not is_told for is_told in told), initial=0)
+    is_event = [text(event, "kind") not in _STEPS for event in events]
+    room = max(0, _MAX_EVENTS - sum(is_event))
+    stride = 1 + (len(events) - sum(is_event)) // (room + 1)
+    steps = accumulate((not one for one in is_event), initial=0)
     kept = [
         event
-        for event, is_told, step in zip(events, told, steps, strict=False)
-        if is_told or (room and step % stride == 0)
+        for event, is_kept, step in zip(events, is_event, steps, strict=False)
+        if is_kept or (room and step % stride == 0)
     ]
     return kept[:_MAX_EVENTS]
 

@@ -53,7 +53,9 @@ def test_reference_meets_what_is_expected(archive: Path, cases: list[Case], tmp_
     assert dict.fromkeys(NAMES, "pass") == {one.case.name: one.verdict for one in results}
 
 
-def test_a_fault_is_told_by_its_number(archive: Path, cases: list[Case], tmp_path: Path) -> None:
+def test_a_fault_is_reported_by_its_number(
+    archive: Path, cases: list[Case], tmp_path: Path
+) -> None:
     """A controller that knows none of our words passes with 1444, and fails with another."""
     with ZipFile(archive) as opened:
         reference = json.loads(opened.read("reference.json"))

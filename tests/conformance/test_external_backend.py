@@ -29,7 +29,7 @@ def test_executor_that_does_as_ours_conforms() -> None:
     assert 2 == len(proof.results)
 
 
-def test_executor_that_does_otherwise_is_told_where() -> None:
+def test_executor_that_does_otherwise_is_reported_where() -> None:
     """The cases that fail are named, those that it meets are not."""
     proof = prove(executor=Hasty, select=["io/wait_seconds", "control/exit_for"])
     with pytest.raises(NotConforming, match=r"io/wait_seconds: wait_seconds\.src:5") as raised:

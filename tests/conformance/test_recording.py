@@ -104,7 +104,7 @@ def test_unconfirmed_rules_are_answered(tmp_path: Path, cases: list[Case]) -> No
     assert ("CTL-05", 0, (case.name,)) == (answer.rule, answer.met, answer.against)
 
 
-def test_changed_and_unknown_cases_are_told(tmp_path: Path, cases: list[Case]) -> None:
+def test_changed_and_unknown_cases_are_reported(tmp_path: Path, cases: list[Case]) -> None:
     """A recording of another text is of another case."""
     changed = entry(cases[0], digest="0" * 64)
     unknown = {**entry(cases[1]), "case": "io/nowhere"}

@@ -63,13 +63,13 @@ def test_unmet_expectation_fails_with_its_line(make: MakeCase) -> None:
     assert "line 7: value N 3; seen: 2" == result.reason
 
 
-def test_unconfirmed_rule_fails_nobody(make: MakeCase) -> None:
+def test_unconfirmed_rule_fails_no_executor(make: MakeCase) -> None:
     """What rests on recollection is told as that."""
     case = make(("value N 2", "value N 3"), ("CTL-01", "CTL-02"))
     assert "unconfirmed" == run_case(case, [TREE], NOTHING_KNOWN).verdict
 
 
-def test_known_failure_is_told_and_its_pass_fails(make: MakeCase) -> None:
+def test_known_failure_is_reported_and_its_pass_fails(make: MakeCase) -> None:
     """An entry that is no longer true has to go."""
     known = KnownFailures((Known("control/fact", "not built yet", executor="v*"),))
     wrong = run_case(make(("value N 2", "value N 3")), [TREE, VM], known)

@@ -88,7 +88,7 @@ def test_a_case_finds_a_fault_under_native_code(
     assert [] != list(tmp_path.rglob("*.so"))
 
 
-def test_each_fault_is_told_when_it_was_judged() -> None:
+def test_each_fault_is_reported_when_it_was_judged() -> None:
     """Progress moves with each fault, and nothing depends on how many processes there are."""
     faults, cases = all_faults()[:3], _cases("io/anout_follows", "control/if_else")
     told: list[int] = []

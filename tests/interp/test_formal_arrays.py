@@ -45,7 +45,7 @@ def _run(text: str) -> Observed:
     return tree
 
 
-def _told(text: str, name: str = "N") -> list[object]:
+def _assigned(text: str, name: str = "N") -> list[object]:
     """The values that a variable is assigned in a program that ends well."""
     seen = _run(text)
     assert isinstance(seen.last, End), seen.last
@@ -89,8 +89,8 @@ def _q(body: str, inner: str = "") -> str:
 
 def test_what_was_left_out_is_passed_on() -> None:
     """An array parameter that was left out can be left out of a call by passing it on [SCO-13]."""
-    assert [7] == _told(_q("r(t[])", "N=7"))
-    assert [0] == _told(_q("r(t[])", "N=STRLEN(t[])"))
+    assert [7] == _assigned(_q("r(t[])", "N=7"))
+    assert [0] == _assigned(_q("r(t[])", "N=STRLEN(t[])"))
     assert ("uninitialised", 13) == _fault(_q("r(t[])", 't[1]="a"'))
 
 
@@ -107,14 +107,16 @@ def test_what_was_left_out_reads_as_the_empty_text(
     name: str, expression: str, expected: object
 ) -> None:
     """A function that reads a text finds none in a parameter left out [FCT-04] (unconfirmed)."""
-    assert [expected] == _told(_q(f"{name}={expression}"), name)
+    assert [expected] == _assigned(_q(f"{name}={expression}"), name)
 
 
 def test_what_was_left_out_is_copied_as_the_empty_text() -> None:
     """STRCOPY and STRADD take nothing from a parameter that was left out [FCT-04]."""
     head = 'q()\nEND\nDEF q(t[]:OUT)\nDECL CHAR t[]\nDECL CHAR s[4]\nDECL INT N\ns[]="abc"\n'
-    assert [3] == _told(f"DEF main()\n{head}N=STRADD(s[],t[])\nEND\n")
-    assert [0] == _told(f"DEF main()\n{head}IF STRCOPY(s[],t[]) THEN\nN=STRLEN(s[])\nENDIF\nEND\n")
+    assert [3] == _assigned(f"DEF main()\n{head}N=STRADD(s[],t[])\nEND\n")
+    assert [0] == _assigned(
+        f"DEF main()\n{head}IF STRCOPY(s[],t[]) THEN\nN=STRLEN(s[])\nENDIF\nEND\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -214,8 +216,8 @@ def _rooms(text: str, name: str) -> list[int]:
 
 def test_arrays_of_unknown_size_are_copied() -> None:
     """An array passed on :IN to a routine that changes it stays as it was [SCO-06]."""
-    assert [3, 9, 5] == _told(_COPIED)
-    assert [3, 2, 1] * 3 == _told(_COPIED, "M")
+    assert [3, 9, 5] == _assigned(_COPIED)
+    assert [3, 2, 1] * 3 == _assigned(_COPIED, "M")
 
 
 def test_copies_have_room_for_the_largest() -> None:
@@ -234,7 +236,7 @@ def test_a_copy_is_made_when_the_argument_is_evaluated() -> None:
         'DEFFCT INT change(o[]:OUT)\nDECL CHAR o[]\no[]="x"\nRETURN 1\nENDFCT\n'
         "DEF inner(p[]:IN,k:IN)\nDECL CHAR p[]\nDECL INT k,N\nN=STRLEN(p[])\nEND\n"
     )
-    assert [3] == _told(text)
+    assert [3] == _assigned(text)
 
 
 def test_several_copies_in_one_call() -> None:

@@ -51,7 +51,7 @@ def test_a_caller_has_a_name_of_its_own() -> None:
     assert "KRL_CALLS_1" == program.start().name
 
 
-def test_what_cannot_be_called_is_told() -> None:
+def test_what_cannot_be_called_is_reported() -> None:
     """A parameter of no known type is no parameter that can be given a value."""
     text = "DEF main()\nEND\nDEF f(S:OUT)\nDECL Strange S\nEND\n"
     program = load([Source(text, "main.src")], "main.src", strict=False)

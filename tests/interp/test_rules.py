@@ -124,7 +124,7 @@ def _outcome(make: Callable[[Sink], Executor]) -> Any:
     if isinstance(ended, Fail):
         assert isinstance(ended.fault, Fault), ended.fault
         return f"!{ended.fault.slug}"
-    value = next(one.value for one in reversed(seen.told("assign")) if one.path == ("R",))
+    value = next(one.value for one in reversed(seen.events_of("assign")) if one.path == ("R",))
     return to_json(value)
 
 

@@ -42,7 +42,7 @@ def test_links_lead_from_the_foot_to_the_tool() -> None:
         np.testing.assert_allclose(tip[:3, 3], tool, atol=1e-2)
 
 
-def test_a_way_taken_for_ever_is_told_a_thousand_times() -> None:
+def test_an_endless_loop_is_recorded_a_thousand_times() -> None:
     """Of a loop that counts to 3000 the record has 1000 turns; the way out of it is there."""
     text = "DEF CELL()\nINT I\nI=0\nWHILE I<3000\nI=I+1\nENDWHILE\nEND\n"
     program = load([Source(text, "cell.src")], "cell.src")

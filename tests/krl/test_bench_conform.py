@@ -60,7 +60,7 @@ def test_an_unknown_group_is_refused(capsys: pytest.CaptureFixture[str]) -> None
     assert "the clock" in capsys.readouterr().err
 
 
-def test_laws_are_told_one_by_one(
+def test_laws_are_reported_one_by_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each law has its line and its place in the record; a broken one is status 1."""

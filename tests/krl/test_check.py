@@ -145,7 +145,7 @@ def test_findings_go_to_a_file(
 
 
 @pytest.mark.usefixtures("programs")
-def test_stops_are_told_on_demand(capsys: pytest.CaptureFixture[str]) -> None:
+def test_stops_are_reported_on_demand(capsys: pytest.CaptureFixture[str]) -> None:
     """With --stops, or when their codes are selected, and only then."""
     stops = ["KRL601"]
     assert [] == records(capsys, "C.src")

@@ -32,7 +32,7 @@ def test_help_lists_the_commands(arguments: list[str], capsys: pytest.CaptureFix
     assert all(f"\n  {command} " in said for command in ("recover", "growth", "corpus"))
 
 
-def test_the_shell_is_told_what_could_be_typed() -> None:
+def test_the_shell_completes_what_could_be_typed() -> None:
     """Completion knows commands and their options."""
     asked = {"_KRL_COMPLETE": "complete_bash", "COMP_CWORD": "2", "COMP_WORDS": "krl run --ro"}
     command = [sys.executable, "-m", "krl"]

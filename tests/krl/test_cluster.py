@@ -218,7 +218,7 @@ def _deadly(number: int) -> int:
     return 2 * number
 
 
-def test_what_kills_workers_is_told_from_what_was_beside_it(of_one: _Cluster) -> None:
+def test_what_kills_workers_is_separated_from_what_was_beside_it(of_one: _Cluster) -> None:
     """Only the result of the task that kills is lost, and another worker goes on."""
     for _ in range(2):  # the task that kills is given to a second one
         of_one.hire()

@@ -38,7 +38,7 @@ def test_own_case_passes(capsys: pytest.CaptureFixture[str]) -> None:
     assert "1 cases (0 negative), 1 runs: 1 pass" in capsys.readouterr().out
 
 
-def test_failure_is_told_and_gives_status_1(
+def test_failure_is_reported_and_gives_status_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Name, fact, rule, line and what was seen; the record and JUnit hold it too."""
@@ -84,7 +84,7 @@ def test_wrong_usage_is_one_line_and_status_2(
     assert 1 == len(error.splitlines())
 
 
-def test_lint_tells_each_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lint_reports_each_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A folder of anybody can be looked at; status 1 where something is wrong."""
     folder = tmp_path / "cases"
     folder.mkdir()
@@ -165,7 +165,7 @@ def test_a_change_of_the_machine_shows_beside_the_others(tmp_path: Path) -> None
     assert vm["divergence"]
 
 
-def test_a_change_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_change_has_to_be_unambiguous(capsys: pytest.CaptureFixture[str]) -> None:
     """A line with several changes names them; where there is none, one line says so."""
     several = _on("result = stack[-1] + constant")
     assert len(several) > 1
@@ -177,7 +177,7 @@ def test_a_change_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> No
         assert "there is no such mutant" in capsys.readouterr().err
 
 
-def test_a_fault_has_to_be_told_apart(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_fault_has_to_be_unambiguous(capsys: pytest.CaptureFixture[str]) -> None:
     """Words that fit several faults name them; words that fit none say where all are named."""
     assert 2 == run("control/recursion", "--fault", "groups")
     assert (

@@ -155,7 +155,7 @@ def test_synth_has_a_folder_of_its_own(
     assert f" in {folder}\n" in capsys.readouterr().out
 
 
-def test_synth_tells_of_other_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_synth_reports_other_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Files that were in the folder before stay, and a line on stderr counts them."""
     (tmp_path / "notes.txt").touch()
     assert 0 == main(["corpus", "synth", "--size", "2kB", "--out", str(tmp_path)])

@@ -39,7 +39,7 @@ def test_findings_become_a_table(dataframes: ModuleType, tmp_path: Path) -> None
     assert (0, True) == (len(none), "code" in none.columns)
 
 
-def test_what_cannot_be_done_is_told(dataframes: ModuleType, tmp_path: Path) -> None:
+def test_what_cannot_be_done_is_reported(dataframes: ModuleType, tmp_path: Path) -> None:
     """Status 2 is an error with the line that the command said."""
     with pytest.raises(dataframes.CommandError, match="missing"):
         dataframes.record("recover", tmp_path / "missing")

@@ -156,7 +156,7 @@ def test_wrong_usage(arguments: list[str], text: str, capsys: pytest.CaptureFixt
     assert text == capsys.readouterr().err.strip()
 
 
-def test_a_message_that_comes_again_and_again_is_told_seldom(
+def test_a_repeated_message_is_reported_seldom(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The first ten times with its line, then the 100th."""

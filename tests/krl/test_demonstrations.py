@@ -124,6 +124,6 @@ def test_submit_program_counts(search: RunResult) -> None:
     assert [1] == shown[:1]
 
 
-def test_nothing_is_told(search: RunResult, paper: RunResult) -> None:
+def test_nothing_is_reported(search: RunResult, paper: RunResult) -> None:
     """Neither program makes the controller tell a message."""
     assert [] == of(search.events, "message") + of(paper.events, "message")

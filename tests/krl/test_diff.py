@@ -25,7 +25,9 @@ def states(tmp_path: Path) -> tuple[str, str]:
     return str(tmp_path / "old"), str(tmp_path / "new")
 
 
-def test_differences_are_told(states: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_differences_are_reported(
+    states: tuple[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
     """Statements with their lines, points with how far they went, and a summary."""
     assert 1 == main(["diff", *states])
     said = capsys.readouterr().out
@@ -52,7 +54,7 @@ def test_file_that_went_is_counted(
     assert capsys.readouterr().out.endswith("2 and 1 files: 1 file removed\n")
 
 
-def test_a_folder_that_moved_is_told_once(
+def test_a_folder_that_moved_is_reported_once(
     states: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Files below another folder than before are one line, a single file one of its own."""

@@ -16,7 +16,7 @@ def test_every_code_is_explained(capsys: pytest.CaptureFixture[str]) -> None:
         assert f"krl: ignore[{code}]" in said
 
 
-def test_the_number_of_the_controller_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_number_of_the_controller_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     """A code that is a message of the controller says so, with a wrong and a right program."""
     assert 0 == main(["explain", "no-such-constant"])
     said = capsys.readouterr().out

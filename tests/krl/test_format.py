@@ -138,7 +138,7 @@ def test_what_is_no_krl_is_skipped(capsys: pytest.CaptureFixture[str]) -> None:
     assert said.err.startswith("cell/b.dat: skipped: binary data")
 
 
-def test_one_file_that_is_no_krl_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+def test_one_file_that_is_no_krl_is_reported_once(capsys: pytest.CaptureFixture[str]) -> None:
     """What was asked for and cannot be formatted is one line, and status 2."""
     lay("b.zip", b"junk")
     assert 2 == main(["format", "b.zip"])

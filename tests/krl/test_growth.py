@@ -102,7 +102,7 @@ def test_the_terminal_shows_the_steps(
     assert f"Page: {tmp_path / 'out' / 'index.html'}" in said
 
 
-def test_a_second_run_tells_the_same(corpus: Path, ledger: Path, tmp_path: Path) -> None:
+def test_a_second_run_gives_the_same(corpus: Path, ledger: Path, tmp_path: Path) -> None:
     """From what the first one kept."""
     found = []
     for _ in range(2):

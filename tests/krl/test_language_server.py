@@ -297,7 +297,7 @@ def codes(project: OpenProject, file: str) -> list[str]:
         ("  NOWHERE(", None, 0),
     ],
 )
-def test_a_routine_tells_what_it_takes(
+def test_a_routine_shows_its_parameters(
     project: OpenProject, line: str, label: str | None, active: int
 ) -> None:
     """Also in a line that cannot be read yet; signs in texts and comments are none."""

@@ -45,7 +45,7 @@ def test_a_run_has_its_ending_trace_and_path(tmp_path: Path) -> None:
         still.path_dataframe()
 
 
-def test_a_run_tells_what_stood_in_and_was_skipped(tmp_path: Path) -> None:
+def test_a_run_reports_what_stood_in_and_was_skipped(tmp_path: Path) -> None:
     """Its notes are what `krl run` says behind it."""
     file = tmp_path / "a.src"
     file.write_text("DEF a()\nINT N\nNOWHERE()\nN=N+1\nEND\n", encoding="utf-8")

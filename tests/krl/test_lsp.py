@@ -48,7 +48,7 @@ class _Editor(LanguageClient):
 
         self.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(hear)
 
-    async def told(self, name: str, wanted: Callable[[list[Any]], bool]) -> list[Any]:
+    async def diagnostics(self, name: str, wanted: Callable[[list[Any]], bool]) -> list[Any]:
         """The findings of a file, once they are as wanted."""
         while not (name in self.found and wanted(self.found[name])):
             self.news.clear()
@@ -88,7 +88,7 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
     editor.text_document_did_open(lsp.DidOpenTextDocumentParams(text_document=item))
     heard.before = [
         (one.range.start.line, one.range.start.character, one.code)
-        for one in await editor.told("Cell.src", bool)
+        for one in await editor.diagnostics("Cell.src", bool)
         if one.code == "KRL101"
     ]
     for word in ("CONTINUE", "$OUT", "nParts"):
@@ -119,7 +119,7 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
             ],
         )
     )
-    await editor.told("Cell.src", lambda found: all(one.code != "KRL101" for one in found))
+    await editor.diagnostics("Cell.src", lambda found: all(one.code != "KRL101" for one in found))
     heard.after = [one for one in editor.found["Cell.src"] if one.code == "KRL101"]
     heard.more = await _asked(editor, uri)
     await editor.shutdown_async(None)
@@ -184,7 +184,7 @@ def test_findings_come_while_one_types(heard: _Heard) -> None:
     assert [] == heard.after
 
 
-def test_hover_tells_rule_and_source(heard: _Heard) -> None:
+def test_hover_shows_rule_and_source(heard: _Heard) -> None:
     """A keyword and a system variable are told with their rules, a name with its declaration."""
     assert "ADV-08" in heard.hover["CONTINUE"]
     assert "stops the advance run when written [ADV-05" in heard.hover["$OUT"]
@@ -203,13 +203,13 @@ def test_symbols_are_listed(heard: _Heard) -> None:
     assert [("Cell", []), ("Fetch", ["n"])] == heard.symbols
 
 
-def test_calls_are_told(heard: _Heard) -> None:
+def test_calls_are_reported(heard: _Heard) -> None:
     """The parameter of each argument, and what the routine takes whose arguments one types."""
     assert [(4, 8, "n:")] == heard.more["hints"]
     assert ("DEF Fetch(n:IN INT)", 0) == heard.more["help"]
 
 
-def test_names_are_told_apart(heard: _Heard) -> None:
+def test_names_are_distinguished(heard: _Heard) -> None:
     """Places in the file, kinds for colours, the region to be renamed, names that fit a query."""
     assert [(4, 2), (10, 4)] == heard.more["marks"]
     assert (4, "function") == heard.more["tokens"][0]

@@ -44,7 +44,7 @@ def test_what_is_there_is_not_done_again(
 
 
 @pytest.mark.parametrize("content", [b"", b"[1]", b'{"programs": 1e999}', b"[" * 90_000, b"\xff"])
-def test_a_damaged_record_is_told(
+def test_a_damaged_record_is_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes
 ) -> None:
     """A step whose record cannot be read has failed; it is not taken for done."""

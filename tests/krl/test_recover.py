@@ -341,7 +341,7 @@ def test_the_terminal_shows_the_figures_and_the_first_causes(surveyed: Surveyed)
     assert said.endswith(f"Page: {surveyed.out / 'index.html'}\n")
 
 
-def test_a_corpus_that_parses_is_told_so(
+def test_a_corpus_that_parses_is_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Where nothing is missing there is no table."""
@@ -496,7 +496,7 @@ def test_a_grammar_that_is_the_start_is_surveyed_once(grown: Path, tmp_path: Pat
 
 
 @pytest.mark.usefixtures("grown")
-def test_where_nothing_is_missing_the_page_tells_the_story(tmp_path: Path) -> None:
+def test_where_nothing_is_missing_the_page_shows_the_growth(tmp_path: Path) -> None:
     """A friendly first screen, then how it got there."""
     root = lay(tmp_path / "corpus", fine=FINE, step=STEP % b"2")
     assert 0 == main(["recover", str(root), "--out", str(tmp_path / "out"), "--strict"])

@@ -92,7 +92,7 @@ def test_the_grown_grammar_is_compared_with_the_target(out: Path) -> None:
     assert "of its random sentences KRL.g4 rejects" in page
 
 
-def test_files_beyond_reach_are_told(corpus: Path) -> None:
+def test_files_beyond_reach_are_reported(corpus: Path) -> None:
     """A file with a reserved word that no file shown has is not within reach; the word is told."""
     files = KRL.files([corpus])
     shown = [file for file in files if "SWITCH" not in file.text]

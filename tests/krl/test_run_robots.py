@@ -46,7 +46,7 @@ def run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Run:
     return run
 
 
-def test_contacts_are_told_and_change_nothing(run: Run, tmp_path: Path) -> None:
+def test_contacts_are_reported_and_change_nothing(run: Run, tmp_path: Path) -> None:
     """One line each with names, time and line; status 1; the same trace with and without."""
     scene = TABLE + "frame = {X = 500, Z = 450}\n" + GRIPPER
     traces, seen = set(), set()

@@ -41,7 +41,7 @@ def test_a_file_in_the_working_folder(tmp_path: Path, monkeypatch: pytest.Monkey
     assert (CorpusFile("a.s", "ret\n", origins),) == language_of(".s").files([Path()])
 
 
-def test_no_file_is_told_in_one_line(tmp_path: Path) -> None:
+def test_no_file_is_reported_in_one_line(tmp_path: Path) -> None:
     """Where nothing ends so there is nothing to learn from."""
     with pytest.raises(IngestError, match=r"no file ends in \.s$"):
         language_of(".s").files([tmp_path])

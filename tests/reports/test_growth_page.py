@@ -24,7 +24,7 @@ def _rows(page: str) -> list[str]:
     return [" ".join(re.sub(r"<[^>]*>", " ", row).split()) for row in found]
 
 
-def test_the_headline_tells_where_the_grammar_came_from(
+def test_the_headline_says_where_the_grammar_came_from(
     grown: RecordBuilder, tmp_path: Path
 ) -> None:
     """From the restrictive start to the last construct."""
@@ -51,7 +51,7 @@ def test_what_remains_says_why(grown: RecordBuilder, tmp_path: Path) -> None:
     assert 'LIN <span class="token">{</span>{ X 1' in page
 
 
-def test_health_is_told(grown: RecordBuilder, tmp_path: Path) -> None:
+def test_health_is_reported(grown: RecordBuilder, tmp_path: Path) -> None:
     """Lookahead and lines with two readings."""
     page = _page(grown("believable"), tmp_path)
     assert "Of 196 decisions in the rules 85.5 % need one token and 95.2 %" in page

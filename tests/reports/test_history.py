@@ -22,7 +22,7 @@ def _run(date: str, conform: dict[str, Any], **bench: float) -> dict[str, Any]:
     return nightly_record(date, made, {"conform": {"status": "ok", "seconds": 1.0}})
 
 
-def test_failures_fixes_and_vanished_cases_are_told() -> None:
+def test_failures_fixes_and_vanished_cases_are_reported() -> None:
     """Only what changed is told, a sentence each."""
     old = _conform(_case("a/x", "pass"), _case("a/y", "fail"), _case("a/z", "pass"))
     new = _conform(_case("a/x", "fail"), _case("a/y", "pass"), _case("a/w", "pass"))
@@ -41,7 +41,7 @@ def test_the_same_night_again_changes_nothing() -> None:
     assert [] == changes(_run("1", conform, ratio=2.0), _run("2", conform, ratio=2.0))
 
 
-def test_shifted_times_are_told_with_both_times() -> None:
+def test_shifted_times_are_reported_with_both_times() -> None:
     """An output that comes a cycle later is named."""
     old, new = _conform(_case("a/x", "pass", 12_000)), _conform(_case("a/x", "pass", 24_000))
     (told,) = changes(_run("1", old), _run("2", new), old, new)
@@ -49,7 +49,7 @@ def test_shifted_times_are_told_with_both_times() -> None:
     assert told.endswith("at 0.024000 s")
 
 
-def test_a_slower_bench_is_told_by_its_ratio() -> None:
+def test_a_slower_bench_is_reported_by_its_ratio() -> None:
     """Noise below a quarter is not told; a cost counts the other way round."""
     conform = _conform()
     before = _run("1", conform, native_vs_tree=300.0, crossing_us=2.0, vm_vs_tree=6.0)
@@ -82,7 +82,7 @@ def test_a_night_of_some_steps_hides_none_before_it() -> None:
     ] == told
 
 
-def test_a_first_night_tells_what_is_wrong() -> None:
+def test_a_first_run_reports_what_is_wrong() -> None:
     """Nothing is new in a first nightly run, but failures are no secret."""
     made = {
         "conform": _conform(_case("a/x", "fail"), _case("a/y", "pass")),

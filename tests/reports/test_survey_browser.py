@@ -165,7 +165,7 @@ def test_a_link_to_a_cluster_opens_it_and_brings_it_into_view(
     assert len(find_all(browser, ".card")) == 1
 
 
-def test_a_link_to_an_unknown_cluster_is_told(
+def test_a_link_to_an_unknown_cluster_is_reported(
     browser: webdriver.Chrome, pages: Callable[[str], str]
 ) -> None:
     """The page of another survey may not have it."""

@@ -79,7 +79,7 @@ def test_template_marks_in_a_record_are_not_evaluated(
     assert "{{ 7*7 }}" in _page(survey_record("hostile"), tmp_path)
 
 
-def test_where_nothing_is_missing_the_start_is_told(
+def test_where_nothing_is_missing_the_start_is_reported(
     survey_record: RecordBuilder, tmp_path: Path
 ) -> None:
     """A friendly screen first, then the clusters of the start with what answered them."""

@@ -81,7 +81,7 @@ def test_the_verdict_aims_higher_where_95_per_cent_parse_already() -> None:
     assert _view(record).section.verdict == "Mend the first cluster and every file parses."
 
 
-def test_each_mending_step_tells_what_it_adds(survey_record: RecordBuilder) -> None:
+def test_each_repair_step_says_what_it_adds(survey_record: RecordBuilder) -> None:
     """The gain counts from the step before, the first one from today."""
     record = survey_record("believable")
     steps = _view(record).section.mending
@@ -148,6 +148,6 @@ def test_the_state_of_the_survey_decides_what_the_page_says(
         ("yesterday", "yesterday"),
     ],
 )
-def test_the_time_of_the_survey_is_told_to_the_minute(generated: str, made: str) -> None:
+def test_the_time_of_the_survey_is_given_to_the_minute(generated: str, made: str) -> None:
     """A date alone, or what is no date, stays as it is."""
     assert made == _view({"generated": generated, "clusters": []}).made

@@ -106,7 +106,7 @@ def _row(count: Mapping[str, Any]) -> tuple[int, int, int, int, float]:
     return sum(by_status), by_status[0], by_status[1], by_status[2], count.get("seconds", 0.0)
 
 
-def told(counts: Mapping[str, Any]) -> str:
+def table(counts: Mapping[str, Any]) -> str:
     """The counts for a terminal."""
     lines = [f"{'':18}{'inputs':>8}{'0':>7}{'1':>7}{'2':>7}{'CPU s':>9}"]
     lines += [

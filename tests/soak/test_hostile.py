@@ -34,7 +34,7 @@ from krl.cli import main
 from tests.soak.entries import ENTRIES
 from tests.soak.foundry import Foundry
 from tests.soak.given import Given, put
-from tests.soak.hostile_page import told
+from tests.soak.hostile_page import table
 
 pytestmark = [
     pytest.mark.soak,
@@ -205,7 +205,7 @@ def test_nothing_breaks_and_nothing_escapes(
         "seconds": round(time.monotonic() - began),
     }
     with capfd.disabled():
-        print(f"\n{told(counts)}")
+        print(f"\n{table(counts)}")
     assert not failures, "\n".join(failures)
     if not ONLY:
         COUNTS.mkdir(parents=True, exist_ok=True)

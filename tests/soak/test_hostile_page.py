@@ -5,7 +5,7 @@ import re
 import pytest
 
 from tests.soak.entries import ENTRIES
-from tests.soak.hostile_page import PAGE, added, page, told
+from tests.soak.hostile_page import PAGE, added, page, table
 from tests.soak.pieces import KINDS
 
 COUNTS = {
@@ -49,4 +49,4 @@ def test_slices_are_added() -> None:
         whole["slowest"]["input"],
     )
     assert "| check | a program, its name strange too | 12 | 6 | 4 | 2 |" in page(whole)
-    assert "all                     20" in told(whole)
+    assert "all                     20" in table(whole)

@@ -84,13 +84,13 @@ class _DataFlow:
     def __init__(self, context: Context, routine: RoutineBody) -> None:
         self._context = context
         self._routine = routine
-        told = context.module.words or frozenset()
+        unread = context.module.words or frozenset()
         symbols = routine.table.table.spaces[Space.VALUE].values()
         asked = _names_in_texts(context, routine)
         followed = {
             one.key: one
             for one in symbols
-            if one.key not in told and one.key not in asked and not context.is_cut(routine)
+            if one.key not in unread and one.key not in asked and not context.is_cut(routine)
         }
         self.parameters = frozenset(
             key for key, one in followed.items() if one.kind is Kind.PARAMETER
@@ -121,13 +121,13 @@ class _DataFlow:
             return
         bits = {key: 1 << index for index, key in enumerate(sorted(followed))}
         known = self._reaching(0, lambda node, _, value: value | self._changed(node, bits))
-        told = 0
+        reported = 0
         for node in sorted(known, key=_position):
             value = known[node]
             for access in self._of(node):
                 bit = bits.get(access.name.key, 0)
-                if access.use is Use.READ and bit and not (value | told) & bit:
-                    told |= bit
+                if access.use is Use.READ and bit and not (value | reported) & bit:
+                    reported |= bit
                     yield access
                 elif access.use is not Use.READ:
                     value |= bit
@@ -189,13 +189,13 @@ class _DataFlow:
 
     def read_too_early(self) -> Iterator[Diagnostic]:
         """Variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
-        told: set[str] = set()
+        reported: set[str] = set()
         for access in self.early(self.variables):
-            told.add(access.name.key)
+            reported.add(access.name.key)
             message = f"{access.name.text} has no value yet"
             reason = "nothing before this assigns to it"
             yield self._context.finding("read-too-early", access.name, message, reason=reason)
-        for access, line in self._possibly_early(self.variables - told):
+        for access, line in self._possibly_early(self.variables - reported):
             message = f"{access.name.text} may have no value yet"
             reason = f"line {line} assigns to it, and there is a way past that"
             yield self._context.finding("read-perhaps-early", access.name, message, reason=reason)
@@ -221,18 +221,18 @@ class _DataFlow:
 
         known = self._reaching(sum(bits.values()), lacking)
         place_of = {placed.statement: placed for placed in self._routine.statements}
-        told: set[str] = set()
+        reported: set[str] = set()
         for node in sorted(known, key=_position):
             value = known[node]
             for access in self._of(node):
                 key = access.name.key
                 if access.use is not Use.READ:
                     value &= ~bits.get(key, 0)
-                elif node.statement and key not in told and bits.get(key, 0) & value:
+                elif node.statement and key not in reported and bits.get(key, 0) & value:
                     read = place_of[node.statement]
                     asked = set[str]().union(*map(self._asked, (read, *_around(read))))
                     if asked.isdisjoint(some[key].deciding):
-                        told.add(key)
+                        reported.add(key)
                         yield access, self._context.source.place(some[key].offset)[0]
 
     def _on_conditions(self, followed: frozenset[str]) -> dict[str, _OnCondition]:

@@ -154,7 +154,7 @@ class _Collector:
         match node:
             case ast.InterruptDeclaration(number=number):
                 known = integer_of(self._context, number)
-                if known is not None and 1 <= known <= 128:  # others are told there
+                if known is not None and 1 <= known <= 128:  # others are reported there
                     self._interrupts.append(self._place(number, str(known)))
             case ast.InterruptSwitch(action="ON" | "ENABLE", number=number):
                 known = None if number is None else integer_of(self._context, number)
@@ -348,10 +348,10 @@ def _of_two_kinds(files: Iterable[Effects]) -> Iterator[Diagnostic]:
 
 
 def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:
-    told = set()
+    reported = set()
     for place in declared:
-        if place.what not in switched_on and place.what not in told:
-            told.add(place.what)
+        if place.what not in switched_on and place.what not in reported:
+            reported.add(place.what)
             message = f"interrupt {place.what} is never switched on"
             yield diagnose("interrupt-never-on", place.path, place.region, message)
 

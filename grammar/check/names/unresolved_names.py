@@ -204,16 +204,16 @@ def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[
         elif all(one.is_all_read for one in some) and len(some) <= _MOST_MODULES:
             lost[all(one.is_certain for one in some)].append(key)
     programs = Counter(uses[key][0].path for key in lost[False])
-    told = slips | {
+    reported = slips | {
         key: ()
         for is_certain, keys in lost.items()
         for key in keys
         if len(keys) <= _MOST_LOST and (is_certain or programs[uses[key][0].path] == 1)
     }
     for key, some in uses.items():
-        if key in told:
+        if key in reported:
             for reference in some:
-                yield _undeclared(reference, told[key])
+                yield _undeclared(reference, reported[key])
         elif key[0]:
             yield _from_elsewhere(some, counts[key])
 

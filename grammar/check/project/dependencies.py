@@ -52,18 +52,18 @@ def contribution(
     path: str, text: str, table: ModuleTable | None, unread: frozenset[str] | None
 ) -> Contribution:
     """The contribution of a file; ``unread`` are the words in what of it cannot be read."""
-    told: dict[str, list[str]] = {}
+    known: dict[str, list[str]] = {}
     if table is not None:
         for space, symbol in table.table.symbols():
             if symbol.kind is not Kind.LABEL:
-                told.setdefault(symbol.key, []).append(f"{space.name} {_said(symbol)}")
+                known.setdefault(symbol.key, []).append(f"{space.name} {_said(symbol)}")
         for symbol in table.externals.values():
-            told.setdefault(symbol.key, []).append(f"EXT {_said(symbol)}")
+            known.setdefault(symbol.key, []).append(f"EXT {_said(symbol)}")
         for name in table.calls:
-            told.setdefault(name, []).append("is called")
+            known.setdefault(name, []).append("is called")
     for word in unread or ():
-        told.setdefault(word, []).append("is not read")
-    facts = {name: f"{path}: {'; '.join(some)}" for name, some in told.items()}
+        known.setdefault(word, []).append("is not read")
+    facts = {name: f"{path}: {'; '.join(some)}" for name, some in known.items()}
     return Contribution(facts, words_of(text))
 
 

@@ -158,12 +158,12 @@ class Machine:
             state.request = Crash(self._services.at(), f"{type(error).__name__}: {error}")
         request = state.request
         assert request is not None, "a machine stops for a request"
-        told = self._passed(request.at)
+        passed = self._passed(request.at)
         if state.completion is not None:
-            self._open = _Open(None, request, state.completion, is_asked=told is None)
+            self._open = _Open(None, request, state.completion, is_asked=passed is None)
         elif isinstance(request, Fail | Crash):
             self._final = request
-        return told or request
+        return passed or request
 
     def _passed(self, at: At) -> Request | None:
         """What has passed before a request without being asked for, if anything has."""

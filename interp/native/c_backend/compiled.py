@@ -94,8 +94,8 @@ def library_of(source: str) -> Path:
         except subprocess.TimeoutExpired as error:
             raise OSError(f"{command} takes more than {_PATIENCE} s") from error
         if done.returncode:
-            told = done.stderr.decode(errors="replace").strip().splitlines()
-            raise OSError(f"{command}: {told[0] if told else 'failed'}")
+            errors = done.stderr.decode(errors="replace").strip().splitlines()
+            raise OSError(f"{command}: {errors[0] if errors else 'failed'}")
         made.replace(target)
     for old in sorted(folder.glob("*.so"), key=lambda one: one.stat().st_mtime)[:-_MOST_KEPT]:
         old.unlink(missing_ok=True)

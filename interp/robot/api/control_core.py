@@ -65,7 +65,7 @@ class ControlCore:
         self.now = 0
         self._switch = switch
         self._cycle = cycle
-        self._told: list[CoreEvent] = []
+        self._events: list[CoreEvent] = []
         self._due: list[tuple[int, int, Effect | None, Command]] = []
         self._order = count()
         self._links: dict[Event, list[Link]] = defaultdict(list)
@@ -125,8 +125,8 @@ class ControlCore:
     def run_until(self, time: int) -> list[CoreEvent]:
         """Go on to a time; returns what happened since the last call, in its order."""
         self._advance(time)
-        told, self._told = self._told, []
-        return told
+        events, self._events = self._events, []
+        return events
 
     def run_out(self) -> list[CoreEvent]:
         """Go on until nothing more happens by itself; returns what happened, as `run_until`."""
@@ -364,7 +364,7 @@ class ControlCore:
         fault: Fault | None = None,
     ) -> None:
         """Record an event and do what is linked to it, at once or after its delay."""
-        self._told.append(CoreEvent(self.now, command, what, key, arm, fault))
+        self._events.append(CoreEvent(self.now, command, what, key, arm, fault))
         if command is None:
             return
         for link in self._links.pop(Event(command, what, key), ()):

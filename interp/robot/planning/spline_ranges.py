@@ -69,10 +69,10 @@ def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
     ends = np.cumsum([0.0, *(_length(piece) for piece in pieces)])
     start: float | None = None
     for mark in marks:
-        told = mark.range
-        segment = min(mark.number + (0 if told.on_start else 1), len(pieces))
-        place = float(np.clip(ends[segment] + (told.value or 0.0), 0.0, ends[-1]))
-        if told.edge == "START":
+        wanted_range = mark.range
+        segment = min(mark.number + (0 if wanted_range.on_start else 1), len(pieces))
+        place = float(np.clip(ends[segment] + (wanted_range.value or 0.0), 0.0, ends[-1]))
+        if wanted_range.edge == "START":
             start = place
         elif start is not None:
             pieces = _kept(pieces, ends, start, place)
@@ -140,18 +140,18 @@ def _timed(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
     shares: list[float] = []
     begins: int | None = None
     for mark in marks:
-        told = mark.range
-        if told.edge == "START":
+        wanted_range = mark.range
+        if wanted_range.edge == "START":
             groups, shares, begins = [], [], mark.number
-        elif begins is not None and told.edge == "PART":
+        elif begins is not None and wanted_range.edge == "PART":
             groups.append(range(begins, mark.number))
-            shares.append(told.value or 0.0)
+            shares.append(wanted_range.value or 0.0)
             begins = mark.number
-        elif begins is not None and told.edge == "END":
+        elif begins is not None and wanted_range.edge == "END":
             if not groups:
                 groups, shares = [range(begins, mark.number)], [1.0]
             total = sum(shares) or 1.0
-            wanted = [(told.value or 0.0) * share / total for share in shares]
+            wanted = [(wanted_range.value or 0.0) * share / total for share in shares]
             pieces = _slowed(pieces, groups, wanted)
             begins = None
     return pieces

@@ -86,8 +86,8 @@ def read_scene(path: Path) -> Scene:
     try:
         found = toml_of(text)
     except DocumentError as error:
-        told = re.search(r"line (\d+)", str(error))
-        line = told[1] if told else text.count("\n") + 1
+        quoted = re.search(r"line (\d+)", str(error))
+        line = quoted[1] if quoted else text.count("\n") + 1
         raise SceneError(f"{path}:{line}: {str(error).split(' (at ')[0]}") from None
     headers = [
         number

@@ -92,12 +92,12 @@ def _print(record: Mapping[str, Any]) -> None:
 
 def _print_speed(console: Console, record: Mapping[str, Any]) -> None:
     counts = record["findings"]
-    told = ", ".join(
+    found = ", ".join(
         counted(counts[word], word) for word in ("error", "warning", "note") if word in counts
     )
     console.print(
         f"{counted(record['files'], 'file')} of {counted(record['projects'], 'project')}, "
-        f"{record['bytes'] / MB:.2f} MB; {told or 'no findings'}; Python {record['python']}",
+        f"{record['bytes'] / MB:.2f} MB; {found or 'no findings'}; Python {record['python']}",
         soft_wrap=True,
     )
     console.print(

@@ -270,8 +270,8 @@ def _print_summary(console: Console, record: Mapping[str, Any]) -> None:
         soft_wrap=True,
     )
     counts = record["results"]
-    told = [f"{words}: {counts[name]:,}" for name, words in _RESULTS.items() if name in counts]
-    console.print("; ".join(told), soft_wrap=True)
+    counted = [f"{words}: {counts[name]:,}" for name, words in _RESULTS.items() if name in counts]
+    console.print("; ".join(counted), soft_wrap=True)
     if rows:
         moved, served = (record[name] / len(rows) for name in ("moved", "served"))
         console.print(

@@ -98,8 +98,8 @@ def _print(record: Mapping[str, Any]) -> None:
         value = record[key]
         summary.add_row(label, "–" if value is None else f"{value:,.2f} times", aim)
     for name, costs in record["request_us"].items():
-        told = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
-        summary.add_row(f"a request: {_HEADINGS[name]}", told, "")
+        listed = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
+        summary.add_row(f"a request: {_HEADINGS[name]}", listed, "")
     for name, times in record["controlled_vs_bare"].items():
         label = f"time in `krl run`: {_HEADINGS[name]}"
         summary.add_row(label, f"{times:.2f} times", "≤ 1.3 times")

@@ -184,7 +184,7 @@ def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
     expected = sum(len(case.expectations) for case in cases)
     typer.echo(f"krl: {len(cases)} cases with {expected:,} expectations", err=True)
     if json_file is not None:
-        told = [
+        verdicts = [
             {
                 "case": case.name,
                 "digest": case.digest,
@@ -196,7 +196,7 @@ def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
             }
             for case in cases
         ]
-        write_json({"cases": told}, json_file)
+        write_json({"cases": verdicts}, json_file)
     return FINE
 
 
@@ -298,11 +298,11 @@ def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
         typer.echo(f"… and {len(failed) - _SHOWN} more cases failed")
     runs = [result for one in results for result in one.results]
     counted = {verdict: sum(r.verdict == verdict for r in runs) for verdict in VERDICTS}
-    told = ", ".join(f"{count:,} {verdict}" for verdict, count in counted.items() if count)
+    verdicts = ", ".join(f"{count:,} {verdict}" for verdict, count in counted.items() if count)
     rate = len(runs) / seconds if seconds else 0.0
     covered, hard = coverage(one.case for one in results).count(hard=True)
     negative = sum(one.case.is_negative for one in results)
-    typer.echo(f"{len(results):,} cases ({negative:,} negative), {len(runs):,} runs: {told}")
+    typer.echo(f"{len(results):,} cases ({negative:,} negative), {len(runs):,} runs: {verdicts}")
     typer.echo(f"rules that may fail: {covered} of {hard} have a case; {rate:.1f} runs a second")
 
 
@@ -416,7 +416,7 @@ def _import(
     _write(results, [recording.controller], robots, seconds, json_file, junit, html, "")
     typer.echo(one_line(f"recorded on {recording.controller}"))
     for answer in answers(results):
-        told = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
-        typer.echo(f"{answer.rule}: {answer.met} cases as we read it, {told}")
+        rest = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
+        typer.echo(f"{answer.rule}: {answer.met} cases as we read it, {rest}")
     _print_summary(results, seconds)
     return FINDINGS if wrong or any(one.verdict == "fail" for one in results) else FINE

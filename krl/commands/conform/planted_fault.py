@@ -35,8 +35,8 @@ def _mutant(words: str) -> Iterator[str]:
     file, _, line = words.rpartition(":")
     on_line = of_line(file, int(line)) if file.endswith(".py") and line.isdigit() else []
     if len(on_line) > 1:
-        told = "; ".join(f"{one.name}: {one.was} becomes {one.now}" for one in on_line)
-        raise InputError(f"--fault {words}: which one? {told}")
+        choices = "; ".join(f"{one.name}: {one.was} becomes {one.now}" for one in on_line)
+        raise InputError(f"--fault {words}: which one? {choices}")
     try:
         mutant = on_line[0] if on_line else named(words)
         with put_in_place(mutant):
@@ -60,6 +60,6 @@ def _chosen(words: str) -> "Fault":
         raise InputError(
             f"--fault {words}: there is none; 'krl bench conform --json' names them all"
         )
-    told = "; ".join(one.words for one in fitting[:_SHOWN])
+    choices = "; ".join(one.words for one in fitting[:_SHOWN])
     more = f"; and {len(fitting) - _SHOWN} more" if len(fitting) > _SHOWN else ""
-    raise InputError(f"--fault {words}: which one? {told}{more}")
+    raise InputError(f"--fault {words}: which one? {choices}{more}")

@@ -124,7 +124,7 @@ def test_events_are_at_their_time(text: str, time: int, state: str) -> None:
     assert state == states(case(text), *motion, seen)[0]
 
 
-def test_what_nobody_measured_is_open() -> None:
+def test_what_was_not_measured_is_open() -> None:
     """Without times an expectation about time is neither met nor broken."""
     seen = event("out", None, number=2, value=True)
     assert ["open", "met"] == states(case("out 2 TRUE at 1.0", "out 2 TRUE"), seen)
@@ -137,7 +137,7 @@ def test_marks_name_moments() -> None:
     assert ["met", "met"] == states(asked, here, event("out", 500_000, number=1, value=True))
 
 
-def test_advance_stops_are_told_from_running_ahead() -> None:
+def test_advance_stops_differ_from_running_ahead() -> None:
     """A line that was never executed does neither."""
     stopped = [event("line"), event("advance_stop")]
     assert ["met", "unmet"] == states(case("stops advance", "runs-ahead"), *stopped)

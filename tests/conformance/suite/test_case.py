@@ -116,7 +116,7 @@ def test_confidence_is_that_of_the_first_rule(write: Write, tmp_path: Path) -> N
         ("N = 2 ;", 'N = "2 ;> never', "not closed"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(
+def test_what_is_wrong_is_reported_with_its_place(
     write: Write, tmp_path: Path, old: str, new: str, part: str
 ) -> None:
     """A case that says something unknown is none, and the reason is one line."""

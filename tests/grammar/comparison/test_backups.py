@@ -101,7 +101,7 @@ def test_a_routine_that_moved_is_not_new() -> None:
     assert (["LIN XP2"], ["PTP XP2"]) in lines(found)
 
 
-def test_a_name_changed_throughout_is_told_once() -> None:
+def test_a_name_changed_throughout_is_reported_once() -> None:
     """Calls and the routine itself differ in the name alone, so nothing else is told."""
     found = changes(MAIN.replace("PICK", "FETCH"))
     assert [{"old": "PICK", "new": "FETCH"}] == found["names"]

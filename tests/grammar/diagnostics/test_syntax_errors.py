@@ -173,7 +173,7 @@ def test_a_block_that_is_not_closed_is_named(opener: str, closer: str) -> None:
         ("PTP {A1 0., A2 0}", "a number ends with a digit", "PTP {A1 0.0, A2 0}"),
     ],
 )  # fmt: skip
-def test_the_token_that_mends_a_line_is_told(wrong: str, message: str, right: str) -> None:
+def test_the_token_that_mends_a_line_is_reported(wrong: str, message: str, right: str) -> None:
     """A token too many, too few or misspelt is named, and the edit is what makes the line right."""
     closer = "\nENDIF" if wrong.startswith("IF") else ""
     text = f"DEF A()\nHALT\n{wrong}{closer}\nEND\n"
@@ -233,7 +233,7 @@ def test_the_end_of_the_file() -> None:
     )
 
 
-def test_expected_is_told_in_words() -> None:
+def test_expected_is_reported_in_words() -> None:
     """Without a name for the mistake, what could have stood there is told."""
     assert "FOR or SEC is missing before 5" == only("WAIT 5").message
     assert "a value is missing behind +" == only("N = 1 +").message
@@ -284,7 +284,7 @@ def test_what_follows_is_left_out() -> None:
     ]
 
 
-def test_only_so_many_are_told() -> None:
+def test_only_so_many_are_reported() -> None:
     """A file of which no line can be read is told in bounded length."""
     found = findings("DEF A()\n" + "5 5\n" * (MOST_LISTED + 50) + "END\n")
     assert MOST_LISTED + 1 == len(found)

@@ -26,7 +26,7 @@ def test_declarations_are_krl() -> None:
     assert isinstance(found, ast.Module)
 
 
-def test_nothing_is_told_twice() -> None:
+def test_nothing_is_reported_twice() -> None:
     """What a package brings along is no function of the controller itself."""
     assert [] == [name for name in load_packages().routines if name in System.load().functions]
 

@@ -263,7 +263,7 @@ def test_signals_know_their_side(system: System) -> None:
     assert system.variables["$OUT"].signal is None
 
 
-def test_what_is_only_told_counts_as_unknown(system: System) -> None:
+def test_what_is_only_mentioned_counts_as_unknown(system: System) -> None:
     """Without a declaration written by a controller nothing wrong is said of a variable."""
     assert UNKNOWN == system.variables["$SOFTPLCINT"].type
     assert UNKNOWN == system.types["CALL_STACK"]

@@ -40,7 +40,7 @@ def items(*lines: str) -> tuple[ast.Item, ...]:
     return module.content.items
 
 
-def told(value: object) -> str:
+def outline(value: object) -> str:
     """A node in words: names and literals as text, what is not there left out."""
     match value:
         case ast.Name(text=text):
@@ -52,11 +52,11 @@ def told(value: object) -> str:
         case ast.RealLiteral(text=text):
             return text
         case tuple():
-            return f"[{' '.join('-' if item is None else told(item) for item in value)}]"
+            return f"[{' '.join('-' if item is None else outline(item) for item in value)}]"
         case ast.Node():
             parts = [(f.name, getattr(value, f.name)) for f in fields(value) if f.name != "span"]
             shown = [
-                name if part is True else f"{name}={told(part)}"
+                name if part is True else f"{name}={outline(part)}"
                 for name, part in parts
                 if part is not None and part is not False
             ]
@@ -136,7 +136,7 @@ def test_expressions(text: str, expected: str) -> None:
     """An expression becomes a tree in which operators bind as ARI-05 says, from the left."""
     (statement,) = statements(f"X={text}")
     assert isinstance(statement, ast.Assignment)
-    assert expected == told(statement.value)
+    assert expected == outline(statement.value)
 
 
 SIMPLE = [
@@ -223,7 +223,7 @@ SIMPLE += [(text, f"Motion({expected})") for text, expected in MOTIONS]
 @pytest.mark.parametrize(("text", "expected"), SIMPLE)
 def test_statements_of_one_line(text: str, expected: str) -> None:
     """A statement becomes the node that it is, keywords in upper case."""
-    assert [expected] == [told(statement) for statement in statements(text)]
+    assert [expected] == [outline(statement) for statement in statements(text)]
 
 
 BLOCKS = [
@@ -274,7 +274,7 @@ BLOCKS = [
 @pytest.mark.parametrize(("text", "expected"), BLOCKS)
 def test_blocks(text: str, expected: str) -> None:
     """A block holds its statements; what was not written is not there."""
-    assert [expected] == [told(statement) for statement in statements(*text.split("|"))]
+    assert [expected] == [outline(statement) for statement in statements(*text.split("|"))]
 
 
 DECLARATIONS = [
@@ -320,8 +320,8 @@ DECLARATIONS = [
 @pytest.mark.parametrize(("text", "expected"), DECLARATIONS)
 def test_declarations(text: str, expected: str) -> None:
     """A declaration becomes the same in a routine and in a data list."""
-    assert [expected] == [told(statement) for statement in statements(text)]
-    assert [expected] == [told(item) for item in items(text)]
+    assert [expected] == [outline(statement) for statement in statements(text)]
+    assert [expected] == [outline(item) for item in items(text)]
 
 
 def test_initial_values() -> None:
@@ -334,7 +334,7 @@ def test_initial_values() -> None:
         "value=Aggregate(components=[Component(name=X value=1)]))])",
     ]
     found = items("DECL GLOBAL CONST INT A=1,B[2]", "", "B[1]=-2", "E6POS P={X 1}")
-    assert expected == [told(item) for item in found]
+    assert expected == [outline(item) for item in found]
 
 
 def test_modules() -> None:
@@ -346,8 +346,8 @@ def test_modules() -> None:
         "Parameter(name=A indices=[- -] mode=IN) Parameter(name=B)] body=[]) "
         "Routine(name=G parameters=[] body=[])]))"
     )
-    assert expected == told(module_of(text))
-    assert "Module(headers=[] content=DataList(name=D is_public items=[]))" == told(
+    assert expected == outline(module_of(text))
+    assert "Module(headers=[] content=DataList(name=D is_public items=[]))" == outline(
         module_of("DEFDAT D PUBLIC\nENDDAT\n")
     )
 
@@ -406,7 +406,7 @@ def test_every_rule_becomes_something(krl: Grammar) -> None:
     assert set() == built - rules - names
 
 
-def test_all_failures_are_told() -> None:
+def test_all_failures_are_reported() -> None:
     """A text with two syntax errors gives both: path, place, token and what could have come."""
     found = failures_of("DEF A()\nX=(1\nIF 2\nEND\n", "cell/a.src")
     assert [("cell/a.src", 2, 5, 12, "\n"), ("cell/a.src", 3, 5, 17, "\n")] == [

@@ -231,7 +231,7 @@ def test_lines_and_their_ends_stay() -> None:
     assert "&ACCESS  rvp\r\n &REL 1 \r\nDEF a()\n\n\rHALT\r\n\r\nEND\r\n\r\n;x" == laid_out(text)
 
 
-def test_syntax_errors_are_told() -> None:
+def test_syntax_errors_are_reported() -> None:
     """A text that is no program is not set out: its failures are given."""
     found = formatter().layout("DEF A()\nx=(\nEND\n", "a.src")
     assert isinstance(found, list)

@@ -33,7 +33,7 @@ def test_text_and_image_round_trip(
         ("disasm", b"KRLI" + bytes(40), "has format 0"),
     ],
 )
-def test_what_is_wrong_is_told_on_one_line(
+def test_what_is_wrong_is_reported_on_one_line(
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
     command: str,

@@ -406,7 +406,7 @@ def test_differences_are_found() -> None:
     assert (1, fact_of(steps[0]), None) == (short.place, short.expected, short.actual)
 
 
-def test_refusals_are_told() -> None:
+def test_refusals_are_reported() -> None:
     """What ends the program is told with its place, once."""
     compiled = compile_program(_loaded("DEF main()\nGone()\nGone()\nEND\n"))
     assert isinstance(compiled, Compiled)

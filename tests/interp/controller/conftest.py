@@ -101,15 +101,15 @@ class SecondArm:
         """The events of all motions that have not ended; a point once passed stays as it was."""
         queue, place = self.queue, self._at(now)
         passed = [one for one in queue.events if one[0] <= place and one[1] == 1]
-        told = {(one[2].kind, one[2].motion, one[2].key) for one in passed}
+        events_of = {(one[2].kind, one[2].motion, one[2].key) for one in passed}
         events: list[tuple[int, ArmEvent]] = []
         for index, (start, motion) in enumerate(queue.motions):
             end, number = start + SECOND, motion.number
             follows = index + 1 < len(queue.motions)
             next_start = queue.motions[index + 1][0] if follows else None
             blends = bool(motion.criteria) and next_start == end
-            was_exact = ("motion_end", number, None) in told
-            if blends and place > end - BLEND and ("blend_start", number, None) not in told:
+            was_exact = ("motion_end", number, None) in events_of
+            if blends and place > end - BLEND and ("blend_start", number, None) not in events_of:
                 blends = False
             events.append((start, ArmEvent(0, "motion_start", number)))
             if blends and not was_exact:
@@ -131,7 +131,7 @@ class SecondArm:
         order = ["blend_start", "blend_apex", "motion_end", "motion_start", "place", "blend_end"]
         events.sort(key=lambda one: (one[0], order.index(one[1].kind)))
         queue.events = passed + [
-            (at, 0, one) for at, one in events if (one.kind, one.motion, one.key) not in told
+            (at, 0, one) for at, one in events if (one.kind, one.motion, one.key) not in events_of
         ]
 
     def _next(self) -> tuple[int, int, ArmEvent] | None:
@@ -235,7 +235,7 @@ class Ran:
     controller: Controller
     arm: SecondArm
 
-    def told(self, *kinds: str) -> list[TraceEvent]:
+    def events_of(self, *kinds: str) -> list[TraceEvent]:
         """The events of some kinds."""
         return [one for one in self.events if one.kind in kinds]
 
@@ -243,7 +243,7 @@ class Ran:
         """The times in seconds of the events of a kind that have these fields."""
         return [
             one.time / SECOND
-            for one in self.told(kind)
+            for one in self.events_of(kind)
             if fields.items() <= dict(one.fields).items()
         ]
 
@@ -251,12 +251,12 @@ class Ran:
         """Changes of digital outputs: time in seconds, number, value."""
         return [
             (one.time / SECOND, one.fields["number"], one.fields["value"])
-            for one in self.told("out")
+            for one in self.events_of("out")
         ]
 
     def messages(self) -> list[int]:
         """The numbers of messages."""
-        return [one.fields["number"] for one in self.told("message")]
+        return [one.fields["number"] for one in self.events_of("message")]
 
     def value(self, *path: str | int) -> Any:
         """The value of a system variable at the end."""
@@ -264,9 +264,9 @@ class Ran:
 
     def last(self, name: str) -> Any:
         """What was assigned to a variable of the program last."""
-        return [one.fields["value"] for one in self.told("assign") if one.fields["name"] == name][
-            -1
-        ]
+        return [
+            one.fields["value"] for one in self.events_of("assign") if one.fields["name"] == name
+        ][-1]
 
 
 Runner = Callable[..., Ran]

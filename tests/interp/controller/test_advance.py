@@ -42,7 +42,7 @@ def test_stops(go: Go, line: str) -> None:
     ran = go(text, "on HALT press START")
     assert [0.0] == ran.times("advance_stop")[:1]
     assert [2.0] == ran.times("motion_planned", motion=3)
-    assert [] == ran.told("blend_apex")
+    assert [] == ran.events_of("blend_apex")
     assert [1442] == ran.messages()
 
 
@@ -81,7 +81,7 @@ def test_coincidence_run(go: Go) -> None:
     text = program("B=$MOVE_BCO", "CONTINUE", "$OUT[1]=TRUE", "PTP {A1 1}", declarations="BOOL B\n")
     ran = go(text, profile=profile)
     assert [(0.0, 309), (1.0, 1350)] == [
-        (one.time / 1e6, one.fields["number"]) for one in ran.told("message")
+        (one.time / 1e6, one.fields["number"]) for one in ran.events_of("message")
     ]
     assert [(1.0, 1, True)] == ran.outputs()
     assert False is ran.last("B")

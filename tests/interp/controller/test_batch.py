@@ -35,7 +35,7 @@ def test_batch_is_longer_than_the_advance_run(go: Go) -> None:
     body = "FOR I=1 TO 9\nPTP {A1 1} C_PTP\nENDFOR\nPTP {A1 2}\n"
     ran = go(program(body), core=BatchCore)
     assert [0.0] * 11 == ran.times("motion_planned")
-    assert 9 == len(ran.told("blend_apex"))
+    assert 9 == len(ran.events_of("blend_apex"))
     assert [11.0] == ran.times("end")
 
 
@@ -65,4 +65,4 @@ def test_fault_is_found_late(go: Go) -> None:
     """A point that cannot be reached is found when the batch goes, and nothing of it moves."""
     ran = go(program("PTP {A1 500} C_PTP\nI=1\nPTP {A1 2}\n"), core=BatchCore)
     assert ([1447], 1) == (ran.messages(), ran.last("I"))
-    assert [1] == [one.fields["motion"] for one in ran.told("motion_start")]
+    assert [1] == [one.fields["motion"] for one in ran.events_of("motion_start")]

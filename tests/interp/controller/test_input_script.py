@@ -133,7 +133,7 @@ def test_events_repeat(go: Go) -> None:
     )
     script = "on OUT[1]=TRUE after 0.1 IN[1]=TRUE\non OUT[1]=FALSE after 0.1 IN[1]=FALSE"
     ran = go(PROGRAM.format(body), script)
-    assert [True, False] * 3 == [one.fields["value"] for one in ran.told("in")]
+    assert [True, False] * 3 == [one.fields["value"] for one in ran.events_of("in")]
     assert [0.1, 0.208] == ran.times("in")[:2]
 
 
@@ -156,7 +156,7 @@ def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bo
     """The inputs of a condition change through all combinations until it holds, or back."""
     text = f"DEF main()\nSIGNAL WORD $IN[8] TO $IN[10]\nWAIT FOR {condition}\nEND\n"
     ran = go(text, "fulfil waits after 1", until=3.0)
-    assert changes == [(one.fields["number"], one.fields["value"]) for one in ran.told("in")]
+    assert changes == [(one.fields["number"], one.fields["value"]) for one in ran.events_of("in")]
     cycles = [1.008 + 0.012 * place for place in range(len(changes))]
     assert cycles == pytest.approx(ran.times("in"))
     assert ("time" if "FLAG" in condition else "end") == ran.outcome.ending
@@ -196,13 +196,13 @@ def test_waits_begin_anew(go: Go) -> None:
     assert [0.504, 1.02, 1.536, 2.052] == ran.times("in")
 
 
-def test_inputs_are_told(go: Go) -> None:
+def test_inputs_are_reported(go: Go) -> None:
     """An input is an event of the trace that comes from no line."""
     ran = go(PROGRAM.format("WAIT SEC 1\n"), "t=0.5 IN[3]=TRUE, ANIN[1]=0.5")
     assert [("$IN", 3, True), ("$ANIN", 1, 0.5)] == [
-        tuple(one.fields.values()) for one in ran.told("in")
+        tuple(one.fields.values()) for one in ran.events_of("in")
     ]
-    assert [None, None] == [one.place for one in ran.told("in")]
+    assert [None, None] == [one.place for one in ran.events_of("in")]
 
 
 def test_values_are_converted(go: Go) -> None:

@@ -72,7 +72,7 @@ NESTED_MOTIONS = program(
 def test_motion_in_a_routine_above_a_braked_one(go: Go) -> None:
     """Whoever has moved the arm, the routine that braked takes it back [INT-09]."""
     ran = go(NESTED_MOTIONS, "t=1.5 IN[1]=TRUE\nt=1.6 IN[2]=TRUE")
-    started = [(one.fields["motion"], one.time / 1e6) for one in ran.told("motion_start")]
+    started = [(one.fields["motion"], one.time / 1e6) for one in ran.events_of("motion_start")]
     assert [(1, 0.0), (2, 1.0), (3, 1.608), (4, 2.608)] == started
     assert [4.108] == ran.times("motion_end", motion=2)
     assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
@@ -96,7 +96,7 @@ def test_interrupt_behind_the_last_line_of_a_routine(go: Go) -> None:
     text = text.replace("DEF MOVES()\nPTP {A1 -30}", "DEF MOVES()\nBRAKE\nWAIT SEC 0.12")
     ran = go(text, "t=1.5 IN[1]=TRUE\nt=2 IN[2]=TRUE")
     assert [(2.136, 10), (3.642, 20)] == [
-        (one.time / 1e6, one.fields["priority"]) for one in ran.told("interrupt_leave")
+        (one.time / 1e6, one.fields["priority"]) for one in ran.events_of("interrupt_leave")
     ]
     assert [4.142] == ran.times("motion_end", motion=2)
     assert "end" == ran.outcome.ending
@@ -152,7 +152,7 @@ def test_resume_from_a_nested_interrupt(go: Go) -> None:
     )
     text += "DEF SLOW()\nWAIT SEC 0.9\n$OUT[7]=TRUE\nEND\n"
     ran = go(text, "t=1.2 IN[2]=TRUE\nt=1.5 IN[1]=TRUE")
-    assert [10, 20] == [one.fields["priority"] for one in ran.told("interrupt_leave")]
+    assert [10, 20] == [one.fields["priority"] for one in ran.events_of("interrupt_leave")]
     assert [] == ran.outputs()
     assert 1 == ran.last("I")
 

@@ -52,7 +52,7 @@ def test_nesting(go: Go, events: list[tuple[int, float]]) -> None:
     """Routines nest by rising priority and unwind to the state before."""
     ran = go(NESTING, pulses(events))
     stack: list[int] = []
-    for one in ran.told("interrupt_enter", "interrupt_leave"):
+    for one in ran.events_of("interrupt_enter", "interrupt_leave"):
         priority = one.fields["priority"]
         if one.kind == "interrupt_enter":
             assert not stack or priority < stack[-1]
@@ -63,7 +63,7 @@ def test_nesting(go: Go, events: list[tuple[int, float]]) -> None:
     assert "end" == ran.outcome.ending
     assert 6 == ran.last("I")
     assert [0.0] * 6 == list(ran.value("$BASE").members)  # as the program left it
-    assert [1, 2, 3] == [one.fields["motion"] for one in ran.told("motion_end")]
+    assert [1, 2, 3] == [one.fields["motion"] for one in ran.events_of("motion_end")]
 
 
 STOPPING = (

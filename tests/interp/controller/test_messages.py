@@ -32,7 +32,7 @@ def test_notification(go: Go) -> None:
     """A message is told with its parameters filled in, and does not stay [FCT-10]."""
     ran = go(program(FILL + "H=SET_KRLMSG(#NOTIFY,MSG,PAR[],OPT)\nB=EXISTS_KRLMSG(H)\n"))
     assert [{"number": 17, "text": "part 3 of all", "type": "notify"}] == [
-        dict(one.fields) for one in ran.told("message")
+        dict(one.fields) for one in ran.events_of("message")
     ]
     assert False is ran.last("B")
 
@@ -45,7 +45,9 @@ def test_confirm_statement(go: Go) -> None:
         + "B=ISMESSAGESET(17)\n"
     )
     values = [
-        one.fields["value"] for one in go(program(body)).told("assign") if one.fields["name"] == "B"
+        one.fields["value"]
+        for one in go(program(body)).events_of("assign")
+        if one.fields["name"] == "B"
     ]
     assert [True, False] == values
 
@@ -83,9 +85,9 @@ def test_what_is_not_simulated(go: Go) -> None:
 def test_size_of_a_variable(go: Go) -> None:
     """GETVARSIZE tells the elements of a system variable [FCT-11]."""
     body = "I=GETVARSIZE(#TIMER)\nI=GETVARSIZE(#AN_IN)\nI=GETVARSIZE(#COUNT_I)\n"
-    assert [64, 32, 160] == [one.fields["value"] for one in go(program(body)).told("assign")]
+    assert [64, 32, 160] == [one.fields["value"] for one in go(program(body)).events_of("assign")]
     old = go(program(body), profile=Profile.load("kss5"))
-    assert [32, 32, 160] == [one.fields["value"] for one in old.told("assign")]
+    assert [32, 32, 160] == [one.fields["value"] for one in old.events_of("assign")]
 
 
 def test_robot_is_stopped(go: Go) -> None:

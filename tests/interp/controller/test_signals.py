@@ -12,9 +12,9 @@ def program(body: str, declarations: str = "INT I\nBOOL B\nREAL X\n", routines: 
     return f"DEF main()\n{declarations}{body}END\n{routines}"
 
 
-def test_only_changes_are_told(go: Go) -> None:
+def test_only_changes_are_reported(go: Go) -> None:
     """An output that is set to what it has is no event."""
-    assert [] == go(program("$OUT[5]=FALSE\n$ANOUT[1]=0.0\n")).told("out", "anout")
+    assert [] == go(program("$OUT[5]=FALSE\n$ANOUT[1]=0.0\n")).events_of("out", "anout")
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_cyclic_output(go: Go) -> None:
     )
     ran = go(text)
     assert [(0.112, 0.25), (0.616, 0.5)] == [
-        (one.time / 1e6, one.fields["value"]) for one in ran.told("anout")
+        (one.time / 1e6, one.fields["value"]) for one in ran.events_of("anout")
     ]
 
 

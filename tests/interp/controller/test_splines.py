@@ -29,7 +29,7 @@ def test_block_is_one_motion(go: Go) -> None:
     assert [("SPL", None), ("SLIN", None), ("SCIRC", {"X": 3.0})] == [
         (part.kind, part.auxiliary) for part in block.parts
     ]
-    assert ["PTP", "SPLINE"] == [one.fields["motion_kind"] for one in ran.told("motion_start")]
+    assert ["PTP", "SPLINE"] == [one.fields["motion_kind"] for one in ran.events_of("motion_start")]
 
 
 def test_values_of_one_motion(go: Go) -> None:

@@ -35,7 +35,7 @@ def test_state(go: Go) -> None:
     )
     ran = go(text, files=sub("COUNT=1\n"), submit="SPS")
     assert [True, True] == [
-        one.fields["value"] for one in ran.told("assign") if one.task == "robot"
+        one.fields["value"] for one in ran.events_of("assign") if one.task == "robot"
     ]
 
 

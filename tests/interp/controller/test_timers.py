@@ -19,7 +19,7 @@ def test_flag_is_written(go: Go) -> None:
         "WAIT SEC 0.1\nB=$TIMER_FLAG[1]\n$TIMER[1]=-100\n$TIMER_FLAG[1]=FALSE\nWAIT SEC 0.2\n"
         "B=$TIMER_FLAG[1]\n"
     )
-    told = go(program(body)).told("assign")
+    told = go(program(body)).events_of("assign")
     assert [True, False, True] == [one.fields["value"] for one in told if one.fields["name"] == "B"]
 
 
@@ -64,7 +64,7 @@ def test_halt(go: Go) -> None:
     text = program("I=1\nHALT\nI=2\nWAIT SEC 0.1\nHALT\nI=3\n")
     ran = go(text)
     assert ("halt", 1) == (ran.outcome.ending, ran.last("I"))
-    assert "main.src:6" == ran.told("halt")[0].place
+    assert "main.src:6" == ran.events_of("halt")[0].place
     assert "halt" == ran.controller.run().ending
     assert 2 == ran.last("I")
     assert "end" == ran.controller.run().ending
@@ -106,21 +106,21 @@ def test_home(go: Go) -> None:
             f"PTP {{A1 0.6,A2 0,A3 0,A4 0,A5 0,A6 0}}\n{look}PTP {{A1 1}}\n{look}"
         )
     )
-    told = [one.fields["value"] for one in ran.told("assign") if one.fields["name"] == "B"]
+    told = [one.fields["value"] for one in ran.events_of("assign") if one.fields["name"] == "B"]
     assert [False, False, False, True, True, True] == told
 
 
 def test_interface_of_the_plc(go: Go) -> None:
     """$I_O_ACTCONF tells that the PLC has its say, as in mode #EX."""
     body = program("B=$I_O_ACTCONF\nB=$EXT\n")
-    assert [False] * 2 == [one.fields["value"] for one in go(body).told("assign")]
+    assert [False] * 2 == [one.fields["value"] for one in go(body).events_of("assign")]
     ran = go(body, "t=0 MODE_OP=#EX")
-    assert [True] * 2 == [one.fields["value"] for one in ran.told("assign")]
+    assert [True] * 2 == [one.fields["value"] for one in ran.events_of("assign")]
 
 
 def test_states(go: Go) -> None:
     """$PRO_STATE tells what the program does, $ROB_STOPPED whether the arm stands [SUB-08]."""
     text = program("B=$PRO_STATE1==#P_ACTIVE\nB=$PRO_STATE0==#P_FREE\nB=$ROB_STOPPED\nB=$T1\n")
     ran = go(text, "t=0 MODE_OP=#T1")
-    assert [True] * 4 == [one.fields["value"] for one in ran.told("assign")]
+    assert [True] * 4 == [one.fields["value"] for one in ran.events_of("assign")]
     assert "#P_END" == repr(ran.value("$PRO_STATE1"))

@@ -64,7 +64,7 @@ def _run(executor: Executor, recorder: Recorder) -> tuple[list[ExecutorEvent], l
 
 
 @pytest.mark.parametrize("name", available())
-def test_only_what_is_wanted_is_told(prepared: Prepared, name: str) -> None:
+def test_only_what_is_wanted_is_reported(prepared: Prepared, name: str) -> None:
     """Each choice of kinds gives the events of these kinds, and the same requests."""
     everything = Recorder()
     events, requests = _run(prepared.executor("tree", Limits(), everything), everything)

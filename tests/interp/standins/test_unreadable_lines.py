@@ -75,7 +75,7 @@ def test_blocks_whose_heads_cannot_be_read(executor: str) -> None:
     assert [f"main.src:{line}" for line in (3, 5, 9, 14, 15, 17)] == _passed(run)
 
 
-def test_every_broken_line_is_told() -> None:
+def test_every_broken_line_is_reported() -> None:
     """Why each line cannot be read is told with file and line."""
     left: list[str] = []
     load([Source(TEXT, "main.src")], "main.src", strict=False, stands_in=True, unread=left)

@@ -57,7 +57,7 @@ def test_every_other_line_keeps_its_number(line_end: str, before: list[str], bod
         (Driver("T", (), "work"), {"helper": [["END"]]}, "'END' is no statement of KRL"),
     ],
 )
-def test_what_cannot_be_is_told(
+def test_what_cannot_be_is_reported(
     driver: Driver, stand_ins: dict[str, list[list[str]]], said: str
 ) -> None:
     """A statement, a call or a routine that there is not, in one sentence."""

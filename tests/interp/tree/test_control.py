@@ -22,7 +22,7 @@ def test_switch(go: Run) -> None:
     switch = "SWITCH I\nCASE 1,2\nN=10\nCASE 3\nN=30\nDEFAULT\nN=99\nENDSWITCH\n"
     ran = go(body(f"FOR I=1 TO 4\n{switch}ENDFOR"))
     assert [10, 10, 30, 99] == ran.values("N")
-    assert [1, 1, 2, 0] == [event.way for event in ran.told("branch")]
+    assert [1, 1, 2, 0] == [event.way for event in ran.events_of("branch")]
 
 
 def test_endless_recursion(go: Run) -> None:
@@ -33,7 +33,7 @@ def test_endless_recursion(go: Run) -> None:
         assert ("stack", 1424) == (fault.slug, fault.number)
 
 
-def test_calls_are_told(go: Run) -> None:
+def test_calls_are_reported(go: Run) -> None:
     """A call is told at its caller's line, its end at the last line of the routine."""
     ran = go(body("Sub()") + "DEF Sub()\nHALT\nEND\n")
     events = [one for one in ran.steps if isinstance(one, ExecutorEvent)]
@@ -62,7 +62,7 @@ def test_budget(go: Run) -> None:
         ran = go(body(loop), Limits(statements=100, per_slice=30))
         assert isinstance(ran.last.fault, BudgetExhausted), loop
         assert 3 == len(ran.asked(Slice)), loop
-        assert 100 == len(ran.told("line")), loop
+        assert 100 == len(ran.events_of("line")), loop
 
 
 def test_ended_stays_ended(make: Make) -> None:

@@ -49,4 +49,4 @@ def test_palletiser_runs_on() -> None:
     seen = executed("palletiser/KRC/R1/cell.src", 3_000)
     assert seen.is_cut
     assert not isinstance(seen.last, Fail | Crash)
-    assert all(map(seen.told, ("line", "assign", "call", "return", "branch")))
+    assert all(map(seen.events_of, ("line", "assign", "call", "return", "branch")))

@@ -449,7 +449,7 @@ def test_functions_are_described() -> None:
         assert len(primitive.operands) == len(BUILTINS[name].parameters)
 
 
-def test_changes_are_told() -> None:
+def test_changes_are_reported() -> None:
     """The table tells which arguments a function may change; all of SREAD's variables [FCT-09]."""
     for name, places in (("STRADD", [0]), ("STRTOINT", [1]), ("STRLEN", []), ("SWRITE", [0, 1, 2])):
         assert places == [place for place in range(9) if BUILTINS[name].is_out(place)]

@@ -40,7 +40,7 @@ def test_catalogue_names_what_exists() -> None:
     assert all(kind.rules for kind in FAULTS.values())
 
 
-def test_codes_are_places_and_texts_are_told_apart() -> None:
+def test_codes_are_places_and_texts_are_kept_apart() -> None:
     """A fault has the code of its place, and no two have the same text."""
     assert list(range(len(FAULTS))) == [kind.code for kind in FAULTS.values()]
     assert list(FAULTS) == [kind.slug for kind in FAULTS.values()]

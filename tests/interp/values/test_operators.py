@@ -256,7 +256,7 @@ def test_empty_text_is_no_operand() -> None:
         ("+", ("INT",), ((),), None),
     ],
 )
-def test_selection_tells_conversions(
+def test_selection_reports_conversions(
     operator: str,
     kinds: tuple[Kind, ...],
     conversions: tuple[tuple[str, ...], ...],

@@ -33,7 +33,7 @@ def test_turns_about_z_then_y_then_x() -> None:
     assert distance(about_z @ about_y @ about_x, Pose.of(a=20, b=-70, c=130)) < 1e-15
 
 
-def test_the_right_frame_is_told_in_the_left_one() -> None:
+def test_the_right_frame_is_expressed_in_the_left_one() -> None:
     """10 mm along X of a frame that is turned by 90 degrees about Z lie along Y [ARI-08]."""
     assert (100, 210, 300) == (Pose.of(100, 200, 300, a=90) @ Pose.of(10)).position
 

@@ -151,7 +151,7 @@ def test_a_loop_that_is_always_entered_is_no_branch(write: Write) -> None:
     assert {5: {"entered": 0, "zero times": 1}} == found["branches"]
 
 
-def test_a_recording_is_compared_and_told_as_a_diff(write: Write) -> None:
+def test_a_recording_is_compared_and_reported_as_a_diff(write: Write) -> None:
     """What differs from the recorded run stands in the failure, line by line."""
     head = "recorded = true\nio = 'on OUT[1]=TRUE after 0.2 IN[1]=TRUE'\n[[test]]\nname = 'r'\n"
     path = write(head + "call = 'work(1)'\n")

@@ -35,7 +35,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("text", "said"), WRONG)
-def test_what_is_wrong_is_told_in_one_line(write: Write, text: str, said: str) -> None:
+def test_what_is_wrong_is_reported_in_one_line(write: Write, text: str, said: str) -> None:
     """An unknown key, a missing or bad value: file, line, and what is wrong."""
     path = write(text)
     with pytest.raises(TestFileError) as error:

@@ -87,7 +87,7 @@ def test_scaling_reads_corpora_of_the_sizes(record: dict[str, Any]) -> None:
     assert pytest.approx(last["peak_mb"] - first["peak_mb"]) == record["memory_growth_mb"]
 
 
-def test_steps_are_told_beforehand(record: dict[str, Any]) -> None:
+def test_steps_are_reported_beforehand(record: dict[str, Any]) -> None:
     """As many steps are reported as `steps` says."""
     assert steps(SIZES, rounds=1) == record["told"]
 

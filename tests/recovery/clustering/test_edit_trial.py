@@ -270,7 +270,7 @@ def test_a_line_is_tried_behind_what_lets_it_begin_in_every_way() -> None:
     assert frozenset([0]) == trial.result([edit]).mended
 
 
-def test_two_readings_are_told() -> None:
+def test_two_readings_are_reported() -> None:
     """A word that is read as it is and by a rule has two readings; the rule alone gives one."""
     grammar = read_file(GRAMMAR)
     found = survey_texts([("a.src", "DEF A()\nHALT C_DIS\nEND\n")], grammar)

@@ -66,7 +66,7 @@ def test_one_lack_has_one_reason(texts: tuple[str, ...]) -> None:
         (routine("RETURN X"), routine("HALT X"), routine("FOR I=1 TO 2 X", "ENDFOR")),
     ],
 )
-def test_what_is_lacking_tells_reasons_apart(texts: tuple[str, ...]) -> None:
+def test_what_is_lacking_distinguishes_reasons(texts: tuple[str, ...]) -> None:
     """A word as a name is none too many; signs, brackets and first words make a difference."""
     assert len(texts) == len(set(reasons(*texts)))
 

@@ -86,7 +86,7 @@ def test_a_word_that_no_rule_knows_is_taken_for_a_keyword(
     assert title == cluster_of(*lines).title
 
 
-def test_titles_that_are_the_same_are_told_apart() -> None:
+def test_equal_titles_are_made_distinct() -> None:
     """By how the line goes on, then by the rule it stands in, in words; last by a number."""
     recognizer = Recognizer(PRELIMINARY)
     finder = FailureFinder(recognizer)
@@ -101,7 +101,7 @@ def test_titles_that_are_the_same_are_told_apart() -> None:
         "No in data list",
         "No in module",
         "No in module (2)",
-    ] == TitleWriter(recognizer).told_apart(["No"] * 5, patterns, rules)
+    ] == TitleWriter(recognizer).distinguished(["No"] * 5, patterns, rules)
 
 
 def test_the_identity_hangs_on_the_signature_and_not_on_the_title() -> None:

@@ -83,7 +83,7 @@ def test_a_line_that_fails_again_is_not_answered(found: Survey) -> None:
     assert [None] == answers(found, [("halt.src", 3)])
 
 
-def test_the_constructs_that_answered_are_told_once(found: Survey) -> None:
+def test_the_constructs_that_answered_are_reported_once(found: Survey) -> None:
     """In the order of the ledger, with the edit each made at its place."""
     given = [cluster(found, ("halt.src", 2)), cluster(found, ("step.src", 2))] * 2
     told = answered(given, found, STEPS, jobs=1)["constructs"]

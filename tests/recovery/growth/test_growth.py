@@ -108,7 +108,7 @@ def test_bytes_and_files_include_copies(corpus: Path) -> None:
     assert ["table.dat"] == names([s["path"] for s in record["skipped"]])
 
 
-def test_a_step_tells_its_construct(corpus: Path) -> None:
+def test_a_step_names_its_construct(corpus: Path) -> None:
     """Title, grounds, evidence, the edit in words and as a difference, the examples."""
     step = growth([corpus], START, STEPS, jobs=1)["steps"][1]
     assert ("Step", "accepted", "Why.") == (step["title"], step["state"], step["summary"])

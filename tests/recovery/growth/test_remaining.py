@@ -73,7 +73,7 @@ def test_a_file_that_has_changed_is_left_out(tmp_path: Path) -> None:
     assert {"remaining": [], "remaining_files": []} == remaining(contents, START)
 
 
-def test_what_a_person_found_out_is_told_by_digest(
+def test_what_a_person_found_out_is_reported_by_digest(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A file of the public corpus has the reason that was written down for its content."""

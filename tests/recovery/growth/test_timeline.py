@@ -61,7 +61,7 @@ def timelines(
     return read_through(contents_of([corpus])[0], row, jobs=jobs, cache=cache)
 
 
-def told(found: Sequence[Timeline]) -> object:
+def record_of(found: Sequence[Timeline]) -> object:
     return [(f.content, dict(f.failing), f.reason) for f in found]
 
 
@@ -106,7 +106,7 @@ def test_copies_are_places_of_one_content(corpus: Path) -> None:
 
 def test_more_processes_tell_the_same(corpus: Path) -> None:
     """In the same order."""
-    assert told(timelines(corpus)) == told(timelines(corpus, jobs=2))
+    assert record_of(timelines(corpus)) == record_of(timelines(corpus, jobs=2))
 
 
 def test_what_is_kept_is_not_read_again(
@@ -115,7 +115,7 @@ def test_what_is_kept_is_not_read_again(
     """A second time nothing is left to do, and the result is the same."""
     first = timelines(corpus, cache=tmp_path / "cache")
     monkeypatch.setattr(timeline, "_perform", lambda *_: pytest.fail("read again"))
-    assert told(first) == told(timelines(corpus, cache=tmp_path / "cache"))
+    assert record_of(first) == record_of(timelines(corpus, cache=tmp_path / "cache"))
 
 
 def test_only_what_is_new_is_read(
@@ -139,7 +139,7 @@ def test_only_what_is_new_is_read(
     assert {(4, 5), (0, 1), (1, 1), (2, 1), (3, 1), (4, 1)} == {
         (number, count) for numbers, count in asked for number in numbers
     }
-    assert told(kept) == told(timelines(corpus))
+    assert record_of(kept) == record_of(timelines(corpus))
 
 
 def test_a_growth_that_breaks_off_goes_on_with_the_next_grammar(
@@ -163,7 +163,7 @@ def test_a_growth_that_breaks_off_goes_on_with_the_next_grammar(
     kept = timelines(corpus, cache=tmp_path / "cache")
     assert [0, 1, 2, 2, 3, 4] == asked
     monkeypatch.undo()
-    assert told(kept) == told(timelines(corpus))
+    assert record_of(kept) == record_of(timelines(corpus))
 
 
 def test_what_is_kept_holds_for_another_row_of_the_same_grammars(
@@ -172,21 +172,21 @@ def test_what_is_kept_holds_for_another_row_of_the_same_grammars(
     """Results are kept by grammar, not by number."""
     timelines(corpus, cache=tmp_path / "cache")
     other = [ROW[0], ROW[3], ROW[1]]
-    expected = told(timelines(corpus, other))
+    expected = record_of(timelines(corpus, other))
     monkeypatch.setattr(timeline, "_perform", lambda *_: pytest.fail("read again"))
-    assert expected == told(timelines(corpus, other, cache=tmp_path / "cache"))
+    assert expected == record_of(timelines(corpus, other, cache=tmp_path / "cache"))
 
 
 def test_a_damaged_result_is_worked_out_again(corpus: Path, tmp_path: Path) -> None:
     """What is kept is never trusted."""
-    expected = told(timelines(corpus, cache=tmp_path / "cache"))
+    expected = record_of(timelines(corpus, cache=tmp_path / "cache"))
     with sqlite3.connect(tmp_path / "cache" / "results.sqlite") as base:
         base.execute("UPDATE result SET body = ?", (b"nonsense",))
     base.close()
-    assert expected == told(timelines(corpus, cache=tmp_path / "cache"))
+    assert expected == record_of(timelines(corpus, cache=tmp_path / "cache"))
 
 
-def test_a_file_that_changes_meanwhile_is_told(corpus: Path, tmp_path: Path) -> None:
+def test_a_file_that_changes_meanwhile_is_reported(corpus: Path, tmp_path: Path) -> None:
     """Lines of one text are not told of another, nor is it kept that it could not be read."""
     contents, _ = contents_of([corpus])
     text = (corpus / "fine.src").read_text(encoding="utf-8")
@@ -196,7 +196,7 @@ def test_a_file_that_changes_meanwhile_is_told(corpus: Path, tmp_path: Path) -> 
     assert "changed while it was read" == reasons["fine.src"]
     (corpus / "fine.src").write_text(text, encoding="utf-8", newline="\n")
     again = read_through(contents, ROW[:1], jobs=1, cache=tmp_path / "cache")
-    assert told(again) == told(timelines(corpus, ROW[:1]))
+    assert record_of(again) == record_of(timelines(corpus, ROW[:1]))
 
 
 def test_a_place_that_cannot_be_read_is_skipped(corpus: Path) -> None:

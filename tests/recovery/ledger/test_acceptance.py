@@ -255,7 +255,7 @@ def test_a_change_in_the_middle_may_not_undo_what_came_after(house: House, tmp_p
     assert (("in the end", "no longer parses: programs/a.src:2, at '=='"),) == found.refusals
 
 
-def test_progress_is_told(house: House) -> None:
+def test_progress_is_reported(house: House) -> None:
     """Each construct that was weighed is one."""
     done: list[int] = []
     note: Callable[[int], object] = done.append

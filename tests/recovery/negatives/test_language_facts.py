@@ -189,7 +189,7 @@ def test_routines_and_data_lists_differ(text: str, fact: str | None) -> None:
     assert fact == (found and found.fact)
 
 
-def test_the_last_line_tells_that_a_block_is_open() -> None:
+def test_the_last_line_shows_that_a_block_is_open() -> None:
     """A program that ends too early breaks a fact."""
     found = violation("DEF A()\nX = 1\n")
     assert found is not None

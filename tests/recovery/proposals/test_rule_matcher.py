@@ -59,7 +59,7 @@ def test_rules_of_values_read_names_and_more() -> None:
     assert not {"literal", "variable"} & READERS.value_rules
 
 
-def test_a_list_of_all_words_tells_nothing() -> None:
+def test_a_list_of_all_words_decides_nothing() -> None:
     """That a rule which reads any keyword reads this one is no meaning of its own."""
     listed = RuleMatcher(
         Recognizer(

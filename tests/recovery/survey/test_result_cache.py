@@ -24,7 +24,7 @@ def corpus(tmp_path: Path) -> Path:
     return folder
 
 
-def told(found: Survey) -> object:
+def record_of(found: Survey) -> object:
     return found.files, found.skipped, found.forms
 
 
@@ -32,11 +32,11 @@ def run(corpus: Path, cache: Path | None, grammar: Grammar = PRELIMINARY) -> Sur
     return survey([corpus], grammar, jobs=1, cache=cache)
 
 
-def test_a_second_survey_tells_the_same(corpus: Path, tmp_path: Path) -> None:
+def test_a_second_survey_gives_the_same(corpus: Path, tmp_path: Path) -> None:
     """What is recalled equals what was worked out, failures, forms and reasons alike."""
     fresh = run(corpus, None)
     first, second = (run(corpus, tmp_path / "cache") for _ in range(2))
-    assert told(fresh) == told(first) == told(second)
+    assert record_of(fresh) == record_of(first) == record_of(second)
 
 
 def test_nothing_is_read_again(
@@ -60,7 +60,7 @@ def test_a_changed_grammar_reads_everything_again(corpus: Path, tmp_path: Path) 
     run(corpus, tmp_path / "cache")
     wider = g4.read(PRELIMINARY.text.replace("    : RETURN\n", "    : RETURN\n    | NAME NAME\n"))
     found = run(corpus, tmp_path / "cache", wider)
-    assert told(found) == told(run(corpus, None, wider))
+    assert record_of(found) == record_of(run(corpus, None, wider))
 
 
 @pytest.mark.parametrize("damage", [b"", b"no database", b"SQLite format 3\x00" + b"\xff" * 4000])
@@ -70,4 +70,4 @@ def test_a_damaged_file_is_put_aside(corpus: Path, tmp_path: Path, damage: bytes
     run(corpus, cache)
     for file in cache.iterdir():
         file.write_bytes(damage)
-    assert told(run(corpus, cache)) == told(run(corpus, None))
+    assert record_of(run(corpus, cache)) == record_of(run(corpus, None))

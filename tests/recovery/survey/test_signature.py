@@ -135,7 +135,7 @@ def test_a_word_behind_many_names_is_a_keyword() -> None:
     assert 4 * ["DEFDAT … PUBLIC"] == signature_texts(*programs)
 
 
-def test_keywords_in_the_middle_of_a_line_are_told_with_their_places() -> None:
+def test_keywords_in_the_middle_of_a_line_are_reported_with_their_places() -> None:
     """All would-be keywords of a line are found, not only the one it fails at."""
     lines = ("FOR I=1 TO 9 STEP 2", "FOR I=1 TO N STEP K", "FOR I=1 TO 4 STEP M", "HALT 1 STEP 3")
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]

@@ -53,7 +53,7 @@ def timeless(found: Survey) -> Survey:
     return replace(found, seconds=0)
 
 
-def told(found: Survey) -> object:
+def record_of(found: Survey) -> object:
     """What a survey says, whatever the numbers of its forms."""
     return found.skipped, [
         (f.places, f.size, [(replace(x, form=0), found.forms[x.form]) for x in f.failures])
@@ -227,10 +227,10 @@ def test_the_order_of_roots_makes_no_difference(many: Path) -> None:
 
 def test_results_kept_for_the_next_time_make_no_difference(many: Path, tmp_path: Path) -> None:
     """With a cache, cold, warm or half warm, the survey is as it is without."""
-    expected = told(surveyed(many))
+    expected = record_of(surveyed(many))
     surveyed(many / "cell1", many / "cell3", cache=tmp_path)
-    assert expected == told(surveyed(many, cache=tmp_path))
-    assert expected == told(surveyed(many, cache=tmp_path))
+    assert expected == record_of(surveyed(many, cache=tmp_path))
+    assert expected == record_of(surveyed(many, cache=tmp_path))
 
 
 def test_a_changed_file_is_read_again(tmp_path: Path) -> None:

@@ -291,7 +291,7 @@ def test_archives_are_origins(tmp_path: Path) -> None:
     assert {"a.src": "cell", "z.src": "KR210.2019"} == origins(tmp_path)
 
 
-def test_archives_of_one_name_are_told_apart(tmp_path: Path) -> None:
+def test_archives_of_one_name_are_distinguished(tmp_path: Path) -> None:
     """Archives that share a name are named with as many folders as tell them apart."""
     lay(tmp_path, "a/x/backup.zip", "b/x/backup.zip", "b/y/backup.zip", "b/y/other.zip")
     expected = ["a/x/backup", "b/x/backup", "y/backup", "other"]

@@ -21,7 +21,7 @@ def test_what_is_larger_than_the_limit_is_not_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
-def test_a_pipe_that_nobody_writes_to_is_refused_at_once(tmp_path: Path) -> None:
+def test_a_pipe_without_a_writer_is_refused_at_once(tmp_path: Path) -> None:
     """Only regular files are read: opening this one would wait for ever."""
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)

@@ -47,7 +47,7 @@ def test_work_that_kills_every_process_is_given_up() -> None:
         list(ordered_map(_deadly, [(4,)], jobs=2))
 
 
-def test_what_kills_is_told_from_what_was_beside_it() -> None:
+def test_what_kills_is_separated_from_what_was_beside_it() -> None:
     """Where a lost result can be replaced, only that of the task that kills is."""
     done = ordered_map(_deadly, ((number,) for number in range(7)), jobs=2, lost=lambda n: -n)
     assert [0, 2, 4, 6, -4, 10, 12] == list(done)
@@ -65,7 +65,7 @@ def test_no_scheduler_is_one_clear_line(
 
 
 @pytest.mark.parametrize("answer", [b"", b"\xff" * 64, b"\x00" * 64, b"HTTP/1.1 400 Bad\r\n\r\n"])
-def test_what_answers_and_is_no_scheduler_is_told(
+def test_what_answers_and_is_no_scheduler_is_reported(
     monkeypatch: pytest.MonkeyPatch, answer: bytes
 ) -> None:
     """A server that says nothing, or something else than a scheduler, is not waited for."""

@@ -85,7 +85,7 @@ def test_a_label_that_is_nearly_there_is_offered(finds: Callable[..., list[Any]]
     assert "did you mean FINISH?" == found.fix.text
 
 
-def test_a_misspelt_label_is_told_in_its_place(finds: Callable[..., list[Any]]) -> None:
+def test_a_misspelt_label_is_reported_in_its_place(finds: Callable[..., list[Any]]) -> None:
     """A label that no GOTO leads to, one slip from where two go, is the one that is wrong."""
     found = finds({"NEG.src": routine("GOTO FINISH", "GOTO FINISH", "FINSH:")})
     assert [4] == [one.region.line for one in found if one.code == "KRL402"]
@@ -127,7 +127,7 @@ def test_function_that_can_end_without_return(agrees: Agrees, lines: tuple[str, 
     agrees(function(*lines, mark=" ;> KRL306-"))
 
 
-def test_what_is_never_reached_is_told_once(agrees: Agrees) -> None:
+def test_what_is_never_reached_is_reported_once(agrees: Agrees) -> None:
     """The first statement behind an end is told, not all that follow; blocks in it neither."""
     agrees(
         routine(

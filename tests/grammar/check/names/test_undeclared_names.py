@@ -29,7 +29,7 @@ END"""
     agrees(files, is_complete=None)
 
 
-def test_without_config_only_a_slip_is_told(agrees: Agrees) -> None:
+def test_without_config_only_a_slip_is_reported(agrees: Agrees) -> None:
     """Where $CONFIG is missing a slip is a warning, and any other name is a note."""
     cell = """DEF CELL()
   GRIPPED = 1
@@ -40,7 +40,7 @@ END"""
     agrees({"cell.dat": DATA, "cell.src": cell}, is_complete=None)
 
 
-def test_a_constant_without_its_mark_is_told() -> None:
+def test_a_constant_without_its_mark_is_reported() -> None:
     """A name that nothing declares where a constant of that name fits is told with its #."""
     text = "DEF CELL()\n$IPO_MODE = BASE\n$ORI_TYPE = VAR\nEND\n"
     syntax = read_module(text, "cell.src")
@@ -74,7 +74,7 @@ def test_small_letters_that_another_name_begins_with_are_a_prefix(
 def test_a_name_is_swapped_with_one_that_is_near_alone(declared: str, line: str) -> None:
     """Of several that are near none is meant for certain, nor where a line may declare the name."""
     data = f"DEFDAT CELL\nDECL INT {declared}\nENDDAT\n"
-    found = told({"cell.dat": data, "cell.src": f"DEF CELL()\n{line}\nEND\n"})
+    found = found_in({"cell.dat": data, "cell.src": f"DEF CELL()\n{line}\nEND\n"})
     assert "KRL101" not in [code for *_, code in found]
 
 
@@ -221,7 +221,7 @@ def test_what_nothing_uses_and_others_write_otherwise_is_misspelt(
 
 
 @pytest.mark.parametrize(("used", "line"), [("PART", 2), ("PRAT", 1)])
-def test_a_misspelt_parameter_is_told_where_the_slip_is(
+def test_a_misspelt_parameter_is_reported_where_the_slip_is(
     finds: Callable[..., list[Diagnostic]], used: str, line: int
 ) -> None:
     """What the body uses is right: the name in the head, or that of the declaration."""
@@ -332,7 +332,7 @@ ENUM = "DEFDAT $CONFIG PUBLIC\nGLOBAL ENUM JOB PICK, PLCAE ;> KSS2296\nDECL GLOB
 PLACES = "DEF A()\nJ = #PLACE\nIF J==#PLACE THEN\nHALT\nENDIF\nEND\n"
 
 
-def test_a_slip_in_a_constant_is_told_where_it_is_declared(agrees: Agrees) -> None:
+def test_a_slip_in_a_constant_is_reported_where_it_is_declared(agrees: Agrees) -> None:
     """What several places call otherwise, and nothing as it is declared, is one finding."""
     b = PLACES.replace("A()", "B()")
     agrees({"$config.dat": ENUM, "a.src": PLACES, "b.src": b}, is_complete=None)
@@ -371,7 +371,7 @@ def test_any_slip_is_one_where_the_list_has_what_nothing_uses(
     agrees({"cell.dat": data, "cell.src": cell}, is_complete=None)
 
 
-def told(files: dict[str, str]) -> list[tuple[str, int, str]]:
+def found_in(files: dict[str, str]) -> list[tuple[str, int, str]]:
     """The errors and warnings in files that need not be readable."""
     contents = [Content(path, "", text.encode()) for path, text in files.items()]
     found = found_in_project(contents, recheck(contents, CheckOptions(), {}))
@@ -385,7 +385,7 @@ UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
 @pytest.mark.parametrize("other", ["J = = #PLCAE\nEND\n", "HALT\n"])
 def test_what_cannot_be_read_may_use_a_declaration(other: str) -> None:
     """Then it has no slip for certain, and the uses are told."""
-    found = told({"$config.dat": ENUM, "a.src": PLACES, "b.src": f"DEF B()\n{other}"})
+    found = found_in({"$config.dat": ENUM, "a.src": PLACES, "b.src": f"DEF B()\n{other}"})
     assert [2, 3] == [line for path, line, _ in found if path == "a.src"]
     assert "$config.dat" not in [path for path, *_ in found]
 
@@ -393,21 +393,21 @@ def test_what_cannot_be_read_may_use_a_declaration(other: str) -> None:
 @pytest.mark.parametrize(("line", "is_slip"), [("HALT", True), ("CUNTER = = 1", False)])
 def test_a_line_that_cannot_be_read_may_use_a_variable(line: str, is_slip: bool) -> None:
     """Then it is not declared by a slip for certain."""
-    found = told({"a.src": f"DEF A()\nINT CUNTER\nCOUNTER = 1\nCOUNTER = 2\n{line}\nEND\n"})
+    found = found_in({"a.src": f"DEF A()\nINT CUNTER\nCOUNTER = 1\nCOUNTER = 2\n{line}\nEND\n"})
     assert is_slip == (("a.src", 2, "KRL101") in found)
 
 
 @pytest.mark.parametrize(("more", "count"), [("", 1), (", PLAEC", 0)])
 def test_a_slip_has_one_name_that_is_near(more: str, count: int) -> None:
     """Of two declarations that are near neither is wrong for certain."""
-    found = told({"$config.dat": ENUM.replace("PLCAE", f"PLCAE{more}"), "a.src": PLACES})
+    found = found_in({"$config.dat": ENUM.replace("PLCAE", f"PLCAE{more}"), "a.src": PLACES})
     assert count == [path for path, *_ in found].count("$config.dat")
     uses = "PLACE = 1\n" * 5 + "END\n"
     data = f"DEFDAT B PUBLIC\nDECL GLOBAL INT PLCAE{more}\nENDDAT\n"
-    assert count == [path for path, *_ in told({"a.src": f"DEF A()\n{uses}", "b.dat": data})].count(
-        "b.dat"
-    )
-    found = told({"a.src": f"DEF A()\nINT PLCAE{more}\n{uses}"})
+    assert count == [
+        path for path, *_ in found_in({"a.src": f"DEF A()\n{uses}", "b.dat": data})
+    ].count("b.dat")
+    found = found_in({"a.src": f"DEF A()\nINT PLCAE{more}\n{uses}"})
     assert count == [line for _, line, _ in found].count(2)
 
 
@@ -441,7 +441,7 @@ JOBS = "DEF A()\nDECL JOB J\nDECL BOX B\nJ=#PICK\nJ=#PALCE\nJ=5\nB.HIGH=1\nB.SID
 
 def test_a_type_whose_line_is_damaged_is_one_with_other_members() -> None:
     """What is read of its line is known, and what is lost may be anything."""
-    damaged = told({"$config.dat": OPEN.format("5", "REAL"), "a.src": JOBS})
+    damaged = found_in({"$config.dat": OPEN.format("5", "REAL"), "a.src": JOBS})
     config = [("$config.dat", line, "KRL001") for line in (2, 3)]
     wrong = [("a.src", line, "KSS1446") for line in (6, 8)]
     assert [*config, *wrong] == damaged
@@ -462,11 +462,11 @@ def test_a_type_whose_line_is_damaged_is_one_with_other_members() -> None:
         ),
     ],
 )
-def test_what_is_damaged_is_told_alone(
+def test_what_is_damaged_is_reported_alone(
     files: dict[str, str], expected: list[tuple[str, int]]
 ) -> None:
     """What a damaged line or a cut file may have declared is missed nowhere else."""
-    assert expected == [(path, line) for path, line, _ in told(files)]
+    assert expected == [(path, line) for path, line, _ in found_in(files)]
 
 
 def test_a_missing_data_list_may_hide_what_is_global() -> None:
@@ -474,7 +474,7 @@ def test_a_missing_data_list_may_hide_what_is_global() -> None:
     config = "DEFDAT $CONFIG\nDECL GLOBAL INT I[20]\nENDDAT\n"
     main = "DEF MAIN()\n  UNKNOWN_A = UNKNOWN_B\n  I = 1\nEND\n"
     files = {"R1/System/$config.dat": config, "R1/main.src": main}
-    assert [] == told(files)
-    assert [("R1/main.src", 3, "KSS2052")] == told(
+    assert [] == found_in(files)
+    assert [("R1/main.src", 3, "KSS2052")] == found_in(
         {**files, "R1/main.dat": "DEFDAT MAIN\nDECL INT UNKNOWN_A\nDECL INT UNKNOWN_B=0\nENDDAT\n"}
     )

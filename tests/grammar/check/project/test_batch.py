@@ -196,7 +196,7 @@ def test_files_that_are_too_large_may_use_any_name(
     assert [("C.src", 1, "KRL003")] == codes(check(root))
 
 
-def test_syntax_failures_are_told_and_the_rest_is_checked(tmp_path: Path) -> None:
+def test_syntax_failures_are_reported_and_the_rest_is_checked(tmp_path: Path) -> None:
     """A file that cannot be read does not keep others from being checked."""
     root = lay(tmp_path, A__src="DEF A()\nIF 1\nEND\n", B__src="DEF B()\nEXIT\nEND\n")
     assert [("A.src", 2, "KRL001"), ("B.src", 2, "KRL401")] == codes(check(root))

@@ -101,7 +101,7 @@ def test_findings_can_be_kept(checked: Check) -> None:
     assert found(made.findings) == found(kept)
 
 
-def test_an_unknown_external_is_told_once(finds: Find) -> None:
+def test_an_unknown_external_is_reported_once(finds: Find) -> None:
     """A name that several files take from elsewhere gives one note, at its first place."""
     text = "DEF {}()\n  FOREIGN()\n  FOREIGN()\nEND\n"
     found = finds({f"{name}.src": text.format(name) for name in "ABC"}, is_complete=False)

@@ -28,12 +28,12 @@ def test_a_comment_silences_its_file() -> None:
     assert [(2, "KRL404")] == kept(text, *found)
 
 
-def test_comments_that_say_nothing_are_told() -> None:
+def test_comments_that_say_nothing_are_reported() -> None:
     """No code, or one that no code begins with, is a warning at the comment."""
     assert [(1, "KRL901"), (2, "KRL901")] == kept("A ; krl: ignore\nB ; KRL: ignore[XYZ]\n")
 
 
-def test_comments_without_use_are_told() -> None:
+def test_comments_without_use_are_reported() -> None:
     """What silences nothing can go, unless it is for what was not looked for."""
     text = "A ; krl: ignore[KRL401]\nB ; krl: ignore[KRL601]\n"
     assert [(1, "KRL902"), (2, "KRL902")] == kept(text)

@@ -104,7 +104,7 @@ def test_expression(agrees: Agrees, rule: str, line: str) -> None:
     agrees(program(line))
 
 
-def test_an_error_is_told_once(agrees: Agrees) -> None:
+def test_an_error_is_reported_once(agrees: Agrees) -> None:
     """What is wrong within an expression makes nothing around it wrong."""
     agrees(program("I = ((B + 1) * 2) - LIST[4 * (1 + B)] ;> KSS2256 KSS2256"))
 

@@ -261,7 +261,7 @@ def test_changed_system_variables_are_written(run: Runner) -> None:
     assert [7] == shown(run(text, (None, {1: 7})))
 
 
-def test_what_cannot_be_run_is_told_when_it_is_reached(run: Runner) -> None:
+def test_what_cannot_be_run_is_reported_when_it_is_reached(run: Runner) -> None:
     """A routine without a file, or a type that nobody knows: the program ends with the reason."""
     text = HEAD + 'text WHY "SUB is a routine that no file has"\n'
     requests = run(text + routine("PUSH_INT 1\nASK SHOW\nUNLINKED WHY"))
@@ -561,7 +561,7 @@ def test_what_was_not_handed_over_is_refused(start: Starter) -> None:
 # ------------------------------------------------------------------------------- the trace
 
 
-def test_trace_tells_what_happens_in_order(start: Starter, recorder: Any) -> None:
+def test_trace_has_what_happens_in_order(start: Starter, recorder: Any) -> None:
     """Statements, calls, assignments by their paths, ways taken, returns."""
     text = (
         HEAD
@@ -625,7 +625,7 @@ def test_trace_may_tell_what_was_not_assigned(start: Starter, recorder: Any) -> 
     assert ["line", "return"] == [event.kind for event in recorder.events]
 
 
-def test_defect_is_told_as_one(start: Starter) -> None:
+def test_defect_is_reported_as_one(start: Starter) -> None:
     """Whatever goes wrong in the machine itself ends the program with one line."""
     machine = start(HEAD + routine("PUSH_INT 4\nASK READ\nASK SHOW"))
     machine.advance()

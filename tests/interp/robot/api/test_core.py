@@ -45,7 +45,7 @@ def core(paced: Any, outputs: Outputs) -> ControlCore:
     return ControlCore(paced, outputs, cycle=1)
 
 
-def told(events: list[CoreEvent]) -> list[tuple[int, str, str]]:
+def brief(events: list[CoreEvent]) -> list[tuple[int, str, str]]:
     return [(event.time, str(event.command), event.what) for event in events]
 
 
@@ -60,13 +60,13 @@ def test_gas_on_when_the_ignition_ends(
     ignite, gas = make_motion(1, 1_234_567), output()
     core.load(1_000, Transaction(ignite, gas).link(ignite.ended, "start", gas))
     assert 1_000 == core.next_time()
-    assert [(1_000, "motion 1 (LIN)", "started")] == told(core.run_until(1_235_566))
+    assert [(1_000, "motion 1 (LIN)", "started")] == brief(core.run_until(1_235_566))
     assert (CommandState.ACTIVE, CommandState.LINKED) == (ignite.state, gas.state)
     assert [
         (1_235_567, "motion 1 (LIN)", "ended"),
         (1_235_567, "output $OUT.1", "started"),
         (1_235_567, "output $OUT.1", "ended"),
-    ] == told(core.run_until(5_000_000))
+    ] == brief(core.run_until(5_000_000))
     assert [(1_235_567, ("$OUT", 1), True)] == outputs
     assert (CommandState.ENDED, CommandState.ENDED) == (ignite.state, gas.state)
     assert core.next_time() is None
@@ -142,7 +142,7 @@ def test_causes_come_before_the_next_event_of_the_path(
         ("output $OUT.1", "started"),
         ("output $OUT.1", "ended"),
         ("motion 2 (LIN)", "started"),
-    ] == [(command, what) for _, command, what in told(core.run_until(1_500_000))]
+    ] == [(command, what) for _, command, what in brief(core.run_until(1_500_000))]
 
 
 def test_a_place_behind_the_end(core: ControlCore, outputs: Outputs, make_motion: Make) -> None:
@@ -187,7 +187,7 @@ def test_cancelling_a_motion_brakes(core: ControlCore, paced: Any, make_motion: 
         .link(second.ended, "start", gas)
         .link(first.cancelled, "start", alarm),
     )
-    events = told(core.run_until(2_000_000))
+    events = brief(core.run_until(2_000_000))
     assert ["brake at 300000", "discard at 310000"] == paced.calls
     assert (310_000, "None", "stopped") in events
     assert (310_000, "motion 2 (LIN)", "cancelled") in events
@@ -205,7 +205,7 @@ def test_stopping_a_motion_that_has_not_begun(
     core.load(0, Transaction(motion, at_once).link(at_once.ended, "stop", motion))
     assert CommandState.CANCELLED is motion.state
     assert ["stop at 0", "discard at 0"] == paced.calls
-    assert (0, "motion 1 (LIN)", "cancelled") == told(core.run_until(0))[-1]
+    assert (0, "motion 1 (LIN)", "cancelled") == brief(core.run_until(0))[-1]
 
 
 def test_the_owner_stops_a_motion(core: ControlCore, paced: Any, make_motion: Make) -> None:
@@ -214,7 +214,7 @@ def test_the_owner_stops_a_motion(core: ControlCore, paced: Any, make_motion: Ma
     core.load(0, Transaction(motion))
     core.apply(200_000, "stop", motion)
     assert CommandState.ACTIVE is motion.state
-    assert (210_000, "motion 1 (LIN)", "cancelled") == told(core.run_until(900_000))[-1]
+    assert (210_000, "motion 1 (LIN)", "cancelled") == brief(core.run_until(900_000))[-1]
     assert ["stop at 200000", "discard at 210000"] == paced.calls
 
 
@@ -227,7 +227,7 @@ def test_cancelling_what_is_no_motion(core: ControlCore) -> None:
         .link(short.ended, "cancel", long)
         .link(long.ended, "start", gas),
     )
-    assert (40, "output $OUT.1", "cancelled") == told(core.run_until(1_000))[-1]
+    assert (40, "output $OUT.1", "cancelled") == brief(core.run_until(1_000))[-1]
     assert [CommandState.CANCELLED] * 2 == [long.state, gas.state]
 
 
@@ -236,10 +236,10 @@ def test_brake_and_proceed(core: ControlCore, paced: Any, make_motion: Make) -> 
     motion = make_motion(1)
     core.load(0, Transaction(motion))
     core.brake(500_000, is_hard=True)
-    assert (510_000, "None", "stopped") == told(core.run_until(510_000))[-1]
+    assert (510_000, "None", "stopped") == brief(core.run_until(510_000))[-1]
     assert (None, 1, CommandState.ACTIVE) == (core.next_time(), core.pending(), motion.state)
     core.proceed(510_000)
-    assert [(1_010_000, "motion 1 (LIN)", "ended")] == told(core.run_until(2_000_000))
+    assert [(1_010_000, "motion 1 (LIN)", "ended")] == brief(core.run_until(2_000_000))
     assert ["stop at 500000", "proceed at 510000"] == paced.calls
 
 
@@ -293,7 +293,7 @@ def test_a_call_lasts_until_it_is_completed(core: ControlCore, make_motion: Make
         .link(motion.started, "start", call)
         .link(call.ended, "start", gas),
     )
-    assert [(0, "call routine 5", "started")] == told(core.run_until(10))[1:]
+    assert [(0, "call routine 5", "started")] == brief(core.run_until(10))[1:]
     core.complete(700, call)
     assert (CommandState.ENDED, CommandState.ENDED) == (call.state, gas.state)
     core.complete(800, call)

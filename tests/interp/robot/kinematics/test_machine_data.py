@@ -83,7 +83,7 @@ def test_a_linear_external_axis(machine_text: Callable[..., str]) -> None:
     assert (AxisKind.ENDLESS, -math.inf, math.inf) == (table.kind, table.lower, table.upper)
 
 
-def test_where_axes_stand_that_nobody_tells(machine_text: Callable[..., str]) -> None:
+def test_where_axes_without_a_start_stand(machine_text: Callable[..., str]) -> None:
     """At 0, or at the software limit nearest to it."""
     lines = ("INT $EX_AX_NUM=2", "$SOFTN_END[7]=150.0", "$SOFTP_END[7]=4000.0")
     machine = read_machine(machine_text(*lines))

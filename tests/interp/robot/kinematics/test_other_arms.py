@@ -117,7 +117,7 @@ def test_five_axes_reach_every_place(
 
 @pytest.mark.parametrize("held", Palletising)
 @given(axes=axes_at_random, turn=st.tuples(*(st.floats(-30, 30),) * 3))
-def test_the_tip_of_a_palletiser_is_where_it_was_told(
+def test_the_tip_of_a_palletiser_is_where_it_was_sent(
     arm: Kinematics, held: Palletising, axes: Array, turn: tuple[float, float, float]
 ) -> None:
     """Whatever of the orientation it cannot have."""

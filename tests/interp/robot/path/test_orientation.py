@@ -17,7 +17,7 @@ def rotation(a: float, b: float, c: float) -> np.ndarray:
     return np.array(Pose.of(a=a, b=b, c=c).rows)[:, :3]
 
 
-def test_it_starts_and_ends_as_told() -> None:
+def test_it_starts_and_ends_as_given() -> None:
     """Between any two rotations, both ends are met."""
     many = Rotation.random(100, rng=5).as_matrix()
     for one, other in pairwise(many):

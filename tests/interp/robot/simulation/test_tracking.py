@@ -73,7 +73,7 @@ def test_a_row_each_cycle(arm: Any) -> None:
     assert "t q1 q2 q3 q4 q5 q6 x y z a b c".split() == list(record.columns())
 
 
-def test_external_axes_nobody_told_the_start_of(machine: MachineData) -> None:
+def test_external_axes_without_a_known_start(machine: MachineData) -> None:
     """They stand at 0 at first, in the record and for the robot, and have columns of their own."""
     arm = PlannedArm(machine, START)
     tracking = Tracking(arm, KinematicRobot(12_000), machine, 12_000, START)
