@@ -11,7 +11,7 @@ before a capital (``gnPart``) are a prefix only where other names have it too.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 
 # Shorter names are near too many others.
@@ -45,16 +45,23 @@ class Typos:
     """Names that can be meant, indexed so that a look-up costs the length of the name.
 
     Each name is entered under itself without each of its letters, as SymSpell does: names that are
-    one slip apart meet in such a key. Names of fewer than ``shortest`` letters are left out.
+    one slip apart meet in such a key. Names of fewer than ``shortest`` letters are left out. Those
+    of ``known`` are there too, and are not entered again; nothing is added to it any more.
     """
 
     def __init__(
-        self, names: Iterable[str], shortest: int = _SHORTEST, *, series: Series = Series.LETTERS
+        self,
+        names: Iterable[str],
+        shortest: int = _SHORTEST,
+        *,
+        series: Series = Series.LETTERS,
+        known: Typos | None = None,
     ) -> None:
         self._shortest = shortest
-        self._names: dict[str, tuple[str, Series]] = {}
+        self._names: dict[str, tuple[str, Series]] = {} if known is None else known._names.copy()
+        self._known: Mapping[str, Sequence[str]] = {} if known is None else known._keys
         self._keys: dict[str, list[str]] = {}
-        self.prefixes: set[str] = set()
+        self.prefixes: set[str] = set() if known is None else known.prefixes.copy()
         self.add(names, series)
 
     def add(self, names: Iterable[str], series: Series) -> None:
@@ -78,7 +85,7 @@ class Typos:
         near = {
             right
             for shorter in _shortened(wrong)
-            for right in self._keys.get(shorter, ())
+            for right in (*self._keys.get(shorter, ()), *self._known.get(shorter, ()))
             if right != wrong and _is_slip(name, *self._names[right], has_slipped)
         }
         return tuple(self._names[right][0] for right in sorted(near))

@@ -20,7 +20,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import PurePosixPath
 
 from grammar.diagnostics.typos import Series, Typos
@@ -154,8 +154,9 @@ class Project:
         made = {}
         for space, names in self._names.items():
             known = [found[0] for found in names.values()]
-            made[space] = Typos(self._globals.system.names(space), series=Series.DIGITS)
-            made[space].add((one.symbol.name for one in known if not one.module), Series.DIGITS)
+            system = _system_typos(self._globals.system.system, space)
+            digits = (one.symbol.name for one in known if not one.module)
+            made[space] = Typos(digits, series=Series.DIGITS, known=system)
             made[space].add((one.symbol.name for one in known if one.module), Series.LETTERS)
         return made
 
@@ -340,6 +341,11 @@ def _is_config(module: Module) -> bool:
 def _has_read(module: Module) -> bool:
     """Whether a file is the $CONFIG list and can be read to its end."""
     return _is_config(module) and module.table is not None and not module.is_cut
+
+
+@cache
+def _system_typos(system: System, space: Space) -> Typos:
+    return Typos(SystemScope(system).names(space), series=Series.DIGITS)
 
 
 def _is_in_system(module: Module) -> bool:
