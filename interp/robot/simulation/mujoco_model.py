@@ -25,6 +25,8 @@ from interp.values.poses import IDENTITY, Pose
 
 #: The site of the flange.
 FLANGE: Final = "flange"
+#: The geoms of the floor and of the pedestal that the arm stands on.
+GROUND: Final = ("floor", "pedestal")
 
 _FRICTION = 4.0  # 1/s: torque by speed, as a share of the rotor's inertia
 
@@ -59,7 +61,7 @@ def mjcf_of(machine: MachineData) -> str:
         "  </asset>",
         "  <worldbody>",
         f'    <light pos="0 0 {_number(4 * reach / 1000.0)}" dir="0 0 -1" diffuse="0.5 0.5 0.5"/>',
-        f'    <geom name="floor" type="plane" size="0 0 0.05" material="tiles" '
+        f'    <geom name="{GROUND[0]}" type="plane" size="0 0 0.05" material="tiles" '
         f'pos="0 0 {_number((machine.robroot.position[2] - reach) / 1000.0)}"/>',
         _pedestal(machine),
         *_nested(links, None, machine, "    "),
@@ -142,7 +144,8 @@ def _pedestal(machine: MachineData) -> str:
     x, y, z = machine.robroot.position
     reach = reach_of(machine)
     return (
-        f'    <geom type="cylinder" fromto="{_metres((x, y, z - reach))} {_metres((x, y, z))}" '
+        f'    <geom name="{GROUND[1]}" type="cylinder" '
+        f'fromto="{_metres((x, y, z - reach))} {_metres((x, y, z))}" '
         f'size="{_number(0.12 * reach / 1000.0, 6)}" contype="0" conaffinity="0" rgba="{DARK}"/>'
     )
 

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.simulation.mujoco_model import FLANGE
+from interp.robot.simulation.mujoco_model import FLANGE, GROUND
 
 _TRAIL = 3.0  # pixels
 _PIECES = 200  # of the trail: each takes as long to draw as a part of the arm
@@ -33,7 +33,8 @@ def _draw(folder: Path, width: int, height: int, first: int) -> None:
     data = mujoco.MjData(model)
     places = np.load(folder / "places.npy")
     flange, parts = _passed(model, data, places)
-    camera = _camera(model, parts, width / height)
+    mujoco.mj_forward(model, data)
+    camera = _camera(model, np.concatenate([parts, _foot(model, data, parts)]), width / height)
     lengths = np.cumsum(np.linalg.norm(np.diff(flange, axis=0, prepend=flange[:1]), axis=1))
     piece = max(lengths[-1] / _PIECES, 1e-3)
     with mujoco.Renderer(model, height, width, max_geom=model.ngeom + _PIECES + 1_000) as renderer:
@@ -71,6 +72,24 @@ def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
     return flange, np.concatenate([flange, np.concatenate(parts).reshape(-1, 3)])
 
 
+def _foot(model: Any, data: Any, points: Points) -> Points:
+    """Where the pedestal stands, after the floor is drawn no lower than something reaches.
+
+    The simulated floor is out of the arm's reach: with it in the frame the arm is small.
+    """
+    floor, pedestal = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name) for name in GROUND)
+    if min(floor, pedestal) < 0:
+        return np.empty((0, 3))
+    (x, y, middle), (radius, half) = model.geom_pos[pedestal], model.geom_size[pedestal, :2]
+    others = (model.geom_bodyid == 0) & ~np.isin(np.arange(model.ngeom), (floor, pedestal))
+    bottoms = data.geom_xpos[others, 2] - model.geom_rbound[others]
+    top = middle + half
+    low = max(middle - half, min((top - 2 * radius, points[:, 2].min(), *bottoms)))
+    model.geom_pos[floor, 2] = low
+    model.geom_pos[pedestal, 2], model.geom_size[pedestal, 1] = (top + low) / 2, (top - low) / 2
+    return np.array([(x + dx, y + dy, low) for dx in (-radius, radius) for dy in (-radius, radius)])
+
+
 def _camera(model: Any, points: Points, aspect: float) -> Any:
     """A camera from which all points are in the frame, and fill it."""
     azimuth, elevation = math.radians(_AZIMUTH), math.radians(_ELEVATION)
@@ -83,13 +102,16 @@ def _camera(model: Any, points: Points, aspect: float) -> Any:
     )
     right = np.array((math.sin(azimuth), -math.cos(azimuth), 0.0))
     across, up, deep = ((points @ axis) for axis in (right, np.cross(right, ahead), ahead))
-    centre = [(values.min() + values.max()) / 2 for values in (across, up, deep)]
-    tall = math.tan(math.radians(model.vis.global_.fovy) / 2)
-    reach = np.maximum(np.abs(across - centre[0]) / (tall * aspect), np.abs(up - centre[1]) / tall)
+    middle, tall = deep.mean(), math.tan(math.radians(model.vis.global_.fovy) / 2) / _MARGIN
+    centre, distances = [], []
+    for values, slope in ((across, tall * aspect), (up, tall)):  # the planes that touch both sides
+        high, low = (values - slope * deep).max(), (values + slope * deep).min()
+        centre.append((high + low) / 2)
+        distances.append(middle + (high - low) / (2 * slope))
     camera = mujoco.MjvCamera()
     camera.azimuth, camera.elevation = _AZIMUTH, _ELEVATION
-    camera.lookat = np.array(centre) @ np.array((right, np.cross(right, ahead), ahead))
-    camera.distance = _MARGIN * (reach - (deep - centre[2])).max()
+    camera.lookat = np.array((*centre, middle)) @ np.array((right, np.cross(right, ahead), ahead))
+    camera.distance = max(distances)
     return camera
 
 

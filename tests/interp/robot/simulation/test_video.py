@@ -63,7 +63,7 @@ def test_a_video_as_mp4(tmp_path: Path) -> None:
 
 
 def test_a_picture_of_the_arm(tmp_path: Path) -> None:
-    """The arm is wholly in it, and fills more than half of its height."""
+    """The arm and its foot are wholly in it, and fill more than half of its height."""
     path = tmp_path / "arm.png"
     try:
         write_picture(path, Cell(default_machine()), TIMES, AXES)
@@ -71,11 +71,13 @@ def test_a_picture_of_the_arm(tmp_path: Path) -> None:
         pytest.skip(str(error))
     with image.open(path) as picture:
         pixels = np.asarray(picture.convert("RGB"), dtype=np.int16)
+    is_pedestal = (pixels[300:].max(axis=-1) < 70).any(axis=-1)
     rows, columns = np.nonzero(pixels[..., 0] - pixels[..., 2] > 80)
     assert (600, 800) == pixels.shape[:2]
     assert 0 < rows.min() < rows.max() < 599
     assert 0 < columns.min() < columns.max() < 799
     assert np.ptp(rows) > 300
+    assert 100 < np.nonzero(is_pedestal)[0].max() < 290
 
 
 def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
