@@ -90,19 +90,15 @@ static void instruction(struct translator *at, int32_t place)
     case KRL_LOAD: krl_load(at); break;
     case KRL_STORE: krl_store(at); break;
     case KRL_MEMBER: krl_member(at, operands[0]); break;
-    case KRL_INDEX: {
-        int32_t number = krl_add_array(at, krl_array_of(at, 0, operands[0]));
-        krl_consume(at, KRL_STEP_INDEX_ANY, types[operands[0]].count + 1)->c = number;
-        krl_push_places(at, 1);
-        break;
-    }
+    case KRL_INDEX: krl_row(at, operands[0], types[operands[0]].count); break;
     case KRL_INDEX_LOCAL: krl_element(at, 1, operands[0], operands[1]); break;
     case KRL_INDEX_DATA: krl_element(at, 0, operands[0], operands[1]); break;
     case KRL_ELEMENT_LOCAL: krl_element(at, 1, operands[0], operands[1]), krl_load(at); break;
     case KRL_ELEMENT_DATA: krl_element(at, 0, operands[0], operands[1]), krl_load(at); break;
     case KRL_INDEX_VIEW: krl_view_index(at, operands[0]); break;
     case KRL_VIEW: krl_view(at, &types[operands[0]]); break;
-    case KRL_ROW: case KRL_ROW_VIEW: krl_row(at, now); break;
+    case KRL_ROW: krl_row(at, operands[0], operands[1]); break;
+    case KRL_ROW_VIEW: krl_row_of_view(at, operands[0], operands[1]); break;
     case KRL_COPY:
         step = krl_consume(at, KRL_STEP_COPY, 2);
         step->b = step->a + 1;

@@ -104,7 +104,8 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
 void krl_view_index(struct translator *at, int32_t place);
 
 /* The view of a row of an array or of a view; of all of an array. */
-void krl_row(struct translator *at, const struct krl_instruction *instruction);
+void krl_row(struct translator *at, int32_t type, int32_t count);
+void krl_row_of_view(struct translator *at, int32_t place, int32_t count);
 void krl_view(struct translator *at, const struct krl_type *type);
 
 /* A step that takes so many places of the stack, all settled; `a` is the first of them. */

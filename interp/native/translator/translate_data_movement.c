@@ -204,40 +204,28 @@ void krl_view_index(struct translator *at, int32_t place)
         krl_push_result(at);
         return;
     }
-    krl_settle_all(at);
-    at->height -= dimensions;
-    step = krl_emit(at, KRL_STEP_INDEX_VIEW_ANY);
-    step->a = krl_place_of(at, at->height);
-    step->c = place;
-    step->d = width;
-    step->tag = (uint16_t)dimensions;
-    krl_push_places(at, 1);
+    krl_row_of_view(at, place, dimensions);
 }
 
-void krl_row(struct translator *at, const struct krl_instruction *instruction)
+/* What indices leave of an array is a view; where none is left out, the address of an element. */
+void krl_row(struct translator *at, int32_t type, int32_t count)
 {
-    const int32_t *operands = instruction->operands;
-    int32_t count = operands[1], dimensions, width = 0, number = 0, tag = 0;
-    krl_settle_all(at);
-    at->height -= count;
-    if (instruction->op == KRL_ROW) {
-        number = krl_add_array(at, krl_array_of(at, 0, operands[0]));
-        dimensions = at->program->types[operands[0]].count;
-        at->height--; /* the address of the array */
-    } else {
-        const struct krl_slot *slot = krl_slot_at(at->code, operands[0]);
-        dimensions = slot->handed.dimensions;
-        width = at->program->types[slot->handed.type].size;
-        number = operands[0];
-        tag = dimensions;
-    }
-    struct krl_step *step = krl_emit(at, instruction->op == KRL_ROW ? KRL_STEP_ROW : KRL_STEP_ROW_VIEW);
-    step->a = krl_place_of(at, at->height);
+    int32_t number = krl_add_array(at, krl_array_of(at, 0, type));
+    struct krl_step *step = krl_consume(at, KRL_STEP_ROW, 1 + count);
     step->b = count;
     step->c = number;
-    step->d = width;
-    step->tag = (uint16_t)tag;
-    krl_push_places(at, 1 + dimensions - count);
+    krl_push_places(at, 1 + at->program->types[type].count - count);
+}
+
+void krl_row_of_view(struct translator *at, int32_t place, int32_t count)
+{
+    const struct krl_handed *handed = &krl_slot_at(at->code, place)->handed;
+    struct krl_step *step = krl_consume(at, KRL_STEP_ROW_VIEW, count);
+    step->b = count;
+    step->c = place;
+    step->d = at->program->types[handed->type].size;
+    step->tag = (uint16_t)handed->dimensions;
+    krl_push_places(at, 1 + handed->dimensions - count);
 }
 
 void krl_view(struct translator *at, const struct krl_type *type)

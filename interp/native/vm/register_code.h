@@ -54,11 +54,9 @@
     X(INDEX_THREE_LOCAL) X(INDEX_THREE_DATA) /* the same with three, the third in a register that array c names */ \
     X(GET_THREE_LOCAL) X(GET_THREE_DATA)                                                           \
     X(PUT_THREE_LOCAL) X(PUT_THREE_DATA)                                                           \
-    X(INDEX_ANY)      /* the address a of array c, then its indices; a the address of the element */ \
     X(INDEX_VIEW)     /* a the address of element b of view c, d cells each */                     \
     X(INDEX_VIEW_TWO) /* the same with two indices, b and d, tag cells each */                     \
     X(GET_VIEW) X(GET_VIEW_TWO) /* a from the element */                                           \
-    X(INDEX_VIEW_ANY) /* a and its indices, view c, d cells each, tag dimensions */                \
     X(ROW)            /* the address a, then b indices, array c */                                 \
     X(ROW_VIEW)       /* a and its b indices, view c, d cells each, tag dimensions */              \
     X(COPY) X(CLEAR)  /* to a from b, c cells; from a on, c cells */                               \

@@ -426,29 +426,8 @@ STEP(PUT_ELEMENT_DATA_K)
     NEXT();
 }
 
-STEP(INDEX_ANY)
-{
-    const struct krl_array *array = KRL_ARRAY(pc->c);
-    int32_t place = krl_flat_place(array->sizes, array->dimensions, &CELL(pc->a) + 1);
-    FAULT_IF(place < 0, INDEX);
-    CELL(pc->a) = krl_of_int(krl_int_in(CELL(pc->a)) + place * array->width);
-    NEXT();
-}
-
 VIEW_STEPS(VIEW, FIND_IN_VIEW)
 VIEW_STEPS(VIEW_TWO, FIND_TWO_IN_VIEW)
-
-STEP(INDEX_VIEW_ANY)
-{
-    int32_t sizes[KRL_MOST_DIMENSIONS];
-    krl_cell base = CELL(pc->c);
-    FAULT_IF(base == KRL_NOTHING, UNINITIALISED);
-    krl_view_sizes(&CELL(pc->c), pc->tag, sizes);
-    int32_t place = krl_flat_place(sizes, pc->tag, &CELL(pc->a));
-    FAULT_IF(place < 0, INDEX);
-    CELL(pc->a) = krl_of_int(krl_int_in(base) + place * pc->d);
-    NEXT();
-}
 
 STEP(ROW)
 {
