@@ -80,11 +80,6 @@ class DataUse:
         """How a member of it is used."""
         return self.members.setdefault(name.key, DataUse(is_part=True))
 
-    @property
-    def is_typed(self) -> bool:
-        """Whether its type is known."""
-        return bool(self.types or self.members or self.constants or self.motions or self.is_text)
-
 
 @dataclass(slots=True, eq=False)
 class RoutineUse:
