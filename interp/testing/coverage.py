@@ -152,7 +152,10 @@ def _statements(program: CheckedProgram, unit: Unit) -> _Statements:
     loops: dict[int, int] = {}
     routines: dict[str, int] = {}
     for routine in program.routines_of(unit):
-        own = statement_lines(routine)
+        end = routine.node.span[1] - 1  # where a RETURN stands in
+        own = statement_lines(routine) - {
+            unit.line(one) for one in routine.node.body if one.span[0] == end
+        }
         lines |= own
         if own:
             routines[routine.name] = min(own)

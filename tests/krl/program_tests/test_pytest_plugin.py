@@ -38,6 +38,7 @@ def test_the_cell_of_the_tutorial_passes_as_documented(pytester: pytest.Pytester
     lcov = (pytester.path / "cov.info").read_text(encoding="utf-8")
     assert "SF:cell/KRC/R1/Program/pick_place.src" in lcov
     assert "DA:23,0" in lcov  # HALT behind a gripper that does not open
+    assert "DA:51," not in lcov  # ENDFCT of a function
     assert "test_gripper.src" not in lcov
     page = (pytester.path / "cov" / "index.html").read_text(encoding="utf-8")
     assert "never executed" in page
