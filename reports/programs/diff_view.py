@@ -76,13 +76,14 @@ def diff_view(record: Record) -> DiffView:
     routines, points, data = (records(record, key) for key in ("routines", "points", "data"))
     far = sorted(points, key=lambda one: -_far(one))
     figures = [
-        _figure("routines changed", len(routines), ""),
-        _figure("points changed", len(points), ""),
-        _figure("other data", len(data), ""),
-        _figure("names changed throughout", len(records(record, "names")), ""),
+        _figure("routines changed", len(routines), "routines"),
+        _figure("points changed", len(points), "points"),
+        _figure("other data", len(data), "data"),
+        _figure("names changed throughout", len(records(record, "names")), "names"),
         _figure(
             "files now",
             count(files, "new"),
+            "",
             f"{count(files, 'same'):,} the same; {count(files, 'noise'):,} but for comments",
         ),
     ]
@@ -103,8 +104,10 @@ def diff_view(record: Record) -> DiffView:
     )
 
 
-def _figure(label: str, value: int, note: str) -> Mapping[str, Any]:
-    return {"label": label, "value": f"{value:,}", "share": None, "note": note}
+def _figure(label: str, value: int, section: str, note: str = "") -> Mapping[str, Any]:
+    """A number above the page, which leads to its section."""
+    link = {"href": f"#{section}"} if section and value else {}
+    return {"label": label, "value": f"{value:,}", "share": None, "note": note, **link}
 
 
 def _files(files: Record) -> Iterator[str]:
