@@ -27,7 +27,7 @@ from interp.tree.names import find_text
 from interp.tree.places import LocalPlace, Place, SystemPlace, element, member, of_type
 from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import LinkError, fault
-from interp.values.values import Value, copied, index
+from interp.values.values import ArrayValue, StructureValue, Value, copied, index
 
 _MOST_SIGNALS = 8
 
@@ -139,7 +139,12 @@ class Designators(ABC):
         if isinstance(place, SystemPlace):
             yield Write(self.at(), place.path, of_type(place.type, value))
             return
+        old = place.get()
         place.set(value)
+        new = place.get()
+        # As text: the numbers 1, 1.0 and TRUE are equal, and so are both zeros.
+        if isinstance(new, StructureValue | ArrayValue) or repr(old) != repr(new):
+            self.run.changes += 1
         if self.run.assignments is not None:
             self.run.assignments.assign(self.at(), place.path, copied(place.get()))
 

@@ -263,8 +263,9 @@ class TreeExecutor:
         is_full = run.cells + run.size_of(call.routine) > MOST_CELLS
         if is_full or run.depth >= run.limits.depth:
             return fault("stack")
-        if self._run.calls is not None:
-            self._run.calls.call(self._run.at(stack[-1].frame), call.routine.name)
+        if run.calls is not None:
+            run.changes += 1
+            run.calls.call(self._run.at(stack[-1].frame), call.routine.name)
         stack.append(self._active(call))
         self._run.depth += 1
         return None

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from grammar.semantics.scopes import Scope
 from grammar.semantics.symbols import Symbol
@@ -83,12 +83,22 @@ class Guard(Enum):
     NOW = 2
 
 
+class Round(NamedTuple):
+    """What holds where a loop, or a GOTO to a label, is back at its place."""
+
+    place: object
+    changes: int
+    guard: Guard
+    begun: int
+
+
 class ProgramState:
     """The state of a program apart from its frames.
 
     ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold. The
     sink is there once for each kind of event, where it wants that kind. ``begun`` are the
-    statements that have begun, ``due`` is when as many have begun as end the slice.
+    statements that have begun, ``due`` is when as many have begun as end the slice. ``changes``
+    counts what sets a round of a loop apart from the last: new values, requests, chance, events.
     """
 
     def __init__(
@@ -103,7 +113,7 @@ class ProgramState:
         self.lines, self.assignments = wanting(sink, "line"), wanting(sink, "assign")
         self.calls, self.returns = wanting(sink, "call"), wanting(sink, "return")
         self.branches = wanting(sink, "branch")
-        self.random = random or Randomness()
+        self._random = random or Randomness()
         self.data: dict[Symbol, LocalPlace] = {}
         self.depth = 0
         self.cells = 0
@@ -111,6 +121,7 @@ class ProgramState:
         self.skips = self.limits.skips_failures
         self.begun = 0
         self.due = self.limits.per_slice
+        self.changes = 0
         self._sizes: dict[Routine, int] = {}
         self._codes: list[Handed] = []
         self._numbers: dict[tuple[ast.Node, Frame], int] = {}
@@ -134,6 +145,26 @@ class ProgramState:
     def asked(self) -> None:
         """A request was made: a new slice begins."""
         self.due = self.begun + self.limits.per_slice
+        self.changes += 1
+
+    def random(self) -> float:
+        """The next number by chance."""
+        self.changes += 1
+        return self._random()
+
+    def again(self, place: object, last: Round | None) -> Round:
+        """A loop is back at a place: where a round has changed nothing, neither will the next.
+
+        All whole rounds that are left in the slice then count as begun, so that the requests and
+        the statement at which the budget ends are the same.
+        """
+        is_shown = self.lines is not None or self.assignments is not None
+        now = Round(place, self.changes, self.guard, self.begun)
+        if last is not None and last[:-1] == now[:-1] and not is_shown:
+            size = self.begun - last.begun
+            free = min(self.due, self.limits.statements) - self.begun
+            self.begun += max(free, 0) // size * size
+        return now
 
     def size_of(self, routine: Routine) -> int:
         """How many cells the parameters and local data of a routine have."""

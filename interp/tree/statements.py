@@ -97,6 +97,7 @@ class Statements(Motions):
         except _Return as returned:
             value = returned.value
         if self.run.returns is not None:
+            self.run.changes += 1
             self.run.returns.leave(self.at(), self.frame.name)
         return value
 
@@ -128,7 +129,7 @@ class Statements(Motions):
     def _block(self, body: tuple[ast.Statement, ...]) -> Steps[None]:
         around = self._blocks
         self._blocks = (*around, body)
-        place = max(self._place_on_way(body), 0)
+        place, last = max(self._place_on_way(body), 0), None
         try:
             while place < len(body):
                 try:
@@ -138,6 +139,7 @@ class Statements(Motions):
                     place = _place_of(jump.label, body)
                     if place < 0:
                         raise
+                    last = self.run.again(place, last)
                 except Selected as selected:
                     self._way = selected.way
                     place = self._place_on_way(body)
@@ -181,6 +183,7 @@ class Statements(Motions):
 
     def _branch(self, way: int) -> None:
         if self.run.branches is not None:
+            self.run.changes += 1
             self.run.branches.branch(self.at(), way)
 
     def _is_true(self, condition: ast.Expression) -> Steps[bool]:
@@ -232,23 +235,28 @@ class Statements(Motions):
 
     @_left_by_exit
     def _while(self, node: ast.While) -> Steps[None]:  # [CTL-01]
+        last = None
         while self._way or (yield from self._is_true(node.condition)):
             yield from self._block(node.body)
             yield from self._begin(node)
+            last = self.run.again(node, last)
 
     @_left_by_exit
     def _repeat(self, node: ast.Repeat) -> Steps[None]:  # [CTL-01]
-        is_done = False
+        is_done, last = False, None
         while not is_done:
             yield from self._block(node.body)
             yield from self._begin(node.condition)
+            last = self.run.again(node, last)
             is_done = yield from self._is_true(node.condition)
 
     @_left_by_exit
     def _loop(self, node: ast.Loop) -> Steps[None]:  # [CTL-01]
+        last = None
         while True:
             yield from self._block(node.body)
             yield from self._begin(node)
+            last = self.run.again(node, last)
 
     def _exit(self, _node: ast.Exit) -> Steps[None]:
         if not self._loops:

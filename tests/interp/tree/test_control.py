@@ -3,10 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 from interp.port.events import ExecutorEvent
-from interp.port.requests import Fail, Halt, Slice
+from interp.port.requests import End, Fail, Halt, Slice
 from interp.program.load import Limits
 from interp.tree import TreeExecutor
+from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 
 Run = Callable[..., Any]
@@ -63,6 +66,33 @@ def test_budget(go: Run) -> None:
         assert isinstance(ran.last.fault, BudgetExhausted), loop
         assert 3 == len(ran.asked(Slice)), loop
         assert 100 == len(ran.events_of("line")), loop
+
+
+def test_rounds_that_change_nothing(go: Run, make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They count as begun without being run, and all requests come where they did."""
+    limits, begin, begun = Limits(statements=1_000, per_slice=301), ProgramState.begin, list[int]()
+
+    def counted(run: ProgramState, frame: Frame, line: int) -> Steps[None]:
+        begun.append(line)
+        return begin(run, frame, line)
+
+    monkeypatch.setattr(ProgramState, "begin", counted)
+    for loop in ("LOOP\nJ=0\nENDLOOP", "WHILE I<1\nENDWHILE", "A:\nI=0\nGOTO A"):
+        slow = [one.at for one in go(body(f"I=0\n{loop}"), limits).asked(Slice)]
+        begun.clear()
+        quick = make(body(f"I=0\n{loop}"), limits)
+        asked = [quick.advance(None).at for _ in slow]
+        assert isinstance(quick.advance(None), Fail), loop
+        assert (slow, 1_000, True) == (asked, quick.begun, len(begun) < 100), loop
+
+
+def test_rounds_that_change_something(make: Make) -> None:
+    """A loop whose variables change is run to its end."""
+    for change in ("J=1-J\nI=I+J", "I=I+F()"):
+        text = body(f"I=0\nJ=0\nREPEAT\n{change}\nUNTIL I>3")
+        executor = make(text + "DEFFCT INT F()\nRETURN 1\nENDFCT\n", Limits(statements=200))
+        assert isinstance(executor.advance(), End | Fail), change
+        assert executor.begun < 200, change
 
 
 def test_ended_stays_ended(make: Make) -> None:
