@@ -167,10 +167,11 @@ def test_busy_before_is_busy_behind() -> None:
 
 @pytest.mark.parametrize("executor", MACHINES)
 @pytest.mark.parametrize("body", ["$OUT[1]=$IN[1]\n", "PASS ($IN[2])\n", "", "B=$IN[1]\n"])
-def test_idle_takes_few_looks(looks: list[int], executor: str, body: str) -> None:
-    """A minute of it takes some looks a second, and not one in every cycle."""
+@pytest.mark.parametrize("wait", ["WAIT FOR $IN[7]", "WAIT SEC 90"])
+def test_idle_takes_few_looks(looks: list[int], executor: str, body: str, wait: str) -> None:
+    """A minute of it beside a program that waits takes some looks a second, not one each cycle."""
     setup = RunSetup(executor=executor, submit="SPS", is_traced=False, until=60_000_000)
-    run = run_program(_program(SPS.format("", body)), setup)
+    run = run_program(_program(SPS.format("", body), f"DEF main ( )\n{wait}\nEND\n"), setup)
     assert ("time", True) == (run.outcome.ending, len(looks) < 60 * 5)
 
 
