@@ -88,8 +88,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         ),
     ),
     # left out: files of machine data, what checks them, and torques; motions written in Python and
-    # what only they ask of the core, which also checks what it is given; and planning in batches,
-    # which is there to be compared with, and what it takes back
+    # what only they ask of the core, which also checks what it is given, forgets links of what
+    # is past; and planning in batches, which is there to be compared with, and what it takes back
     "robot": (
         (
             "interp.robot.path.*",
@@ -105,7 +105,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                 f"interp.robot.api.control_core.ControlCore.{name}"
                 for name in (
                     *("link", "run_out", "apply", "_act", "_end_path", "_stuck"),
-                    *("_check", "_check_link", "_settle", "_cancel_stuck"),
+                    *("_check", "_check_link", "_settle", "_cancel_stuck", "_drop_behind"),
                 )
             ),
             "interp.robot.kinematics.*._check_*",
