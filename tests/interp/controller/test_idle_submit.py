@@ -171,7 +171,8 @@ def test_busy_before_is_busy_behind() -> None:
 def test_idle_takes_few_looks(looks: list[int], executor: str, body: str, wait: str) -> None:
     """A minute of it beside a program that waits takes some looks a second, not one each cycle."""
     setup = RunSetup(executor=executor, submit="SPS", is_traced=False, until=60_000_000)
-    run = run_program(_program(SPS.format("", body), f"DEF main ( )\n{wait}\nEND\n"), setup)
+    main = MAIN.format("", "", "", SHOW).replace("WAIT FOR $IN[7]", wait)
+    run = run_program(_program(SPS.format("", body), main), setup)
     assert ("time", True) == (run.outcome.ending, len(looks) < 60 * 5)
 
 
