@@ -140,12 +140,13 @@ broken: /* where a statement begins its frame has no operands */
 wait:
     stopped.why = KRL_STOP_LINE;
 before:
-    machine->top = (int32_t)(fp - cells) + machine->routines[machine->code].frame;
     stopped.at = (int32_t)(pc - machine->steps);
-    goto stop;
-failed:
+    goto bare;
+failed: /* the operands of what has failed are given up */
     stopped.why = KRL_STOP_FAULT;
     stopped.at = fault;
+bare:
+    machine->top = (int32_t)(fp - cells) + machine->routines[machine->code].frame;
 stop:
     machine->fp = (int32_t)(fp - cells);
     machine->left = left;

@@ -328,6 +328,21 @@ def test_endless_calls_are_not_skipped() -> None:
     assert ("fault", {}) == (run.outcome.ending, run.controller.skipped)
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_conditions_are_looked_at_where_a_routine_has_failed(executor: str) -> None:
+    """A statement of a routine that was called fails: what its frame held is given up at once."""
+    program = _program(
+        {
+            "main.src": f"DEF main ( )\nOPT ( )\n{HOME}WAIT SEC 1\nEND\n",
+            "sps.sub": "DEF sps ( )\nINTERRUPT DECL 9 WHEN $PRO_STATE1==#P_FREE DO sub ( )\n"
+            "INTERRUPT ON 9\nLOOP\nWAIT FOR NOT $POWER_FAIL\nfails ( )\nENDLOOP\nEND\n"
+            "DEF fails ( )\nINT I,J,K\nI=J\nEND\nDEF sub ( )\nEND\n",
+        }
+    )
+    setup = RunSetup(executor=executor, submit="sps", is_tolerant=True, skips_failures=True)
+    assert "end" == run_program(program, setup).outcome.ending
+
+
 def test_strict_run() -> None:
     """A run that is not tolerant fails at a point out of reach, stand-ins or not."""
     program = _main(f"OPT ( )\n{HOME}LIN {{X 9000.0}}\n")
