@@ -304,9 +304,11 @@ BALANCED_ORIGINS = 2
 FILES_WITH_ONE_DAMAGED = 6
 #: Words between opener and closer of one block. Not measured.
 BLOCK_MIDDLES = 3
-#: A middle is in at least one in so many blocks; where more than one in so many of the lines that
-#: blocks begin with are no middle, they have a body ahead of it. Not measured.
+#: A middle is in at least one in so many blocks, or in blocks of so many origins; where more than
+#: one in so many of the lines that blocks begin with are no middle, they have a body ahead of it.
+#: Not measured.
 MIDDLE_PART = 3
+MIDDLE_ORIGINS = 3
 BODY_PART = 20
 #: The part of what one rule reads that two may read together to be preferred. Not measured.
 READ_TOGETHER_SHARE = 0.8
@@ -364,6 +366,9 @@ FRESH_SHARE = 0.5
 #: Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
 #: Not measured.
 OPERAND_FILES = 5
+#: Origins that show what is new between the brackets of operands, where there are several.
+#: Measured: a split whose own sentences were rejected by 72 % comes to 7 %.
+BRACKET_ORIGINS = 2
 #: Grammars under which it is known how the files read: before steps, with all, with those kept.
 #: Bound on memory.
 GRAMMARS_KEPT = 3

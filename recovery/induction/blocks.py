@@ -24,6 +24,7 @@ from recovery.tuning import (
     BLOCK_MIDDLES,
     BODY_PART,
     FILES_WITH_ONE_DAMAGED,
+    MIDDLE_ORIGINS,
     MIDDLE_PART,
 )
 
@@ -190,8 +191,13 @@ def _gathered(
     if not any(lengths):  # nothing is ever between: two statements that come in pairs
         return None
     middles = [word for word in order if word not in outside]
-    # a middle divides: it recurs in most of the blocks
-    middles = [w for w in middles if sum(w in s for s in seen) * MIDDLE_PART >= len(seen)]
+    # a middle divides: it recurs in many of the blocks, or in several origins in nothing else
+    middles = [
+        word
+        for word in middles
+        if sum(word in s for s in seen) * MIDDLE_PART >= len(seen)
+        or len(frozenset[str]().union(*inside[word].values())) >= MIDDLE_ORIGINS
+    ]
     if len(middles) > BLOCK_MIDDLES:
         middles = []
     for word in middles:

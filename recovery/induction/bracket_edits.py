@@ -13,7 +13,7 @@ from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import BRACKETS, Symbol, bracket_pairs
-from recovery.tuning import MISSING_RUN
+from recovery.tuning import BRACKET_ORIGINS, MISSING_RUN
 
 
 class BracketEdits:
@@ -59,6 +59,8 @@ class BracketEdits:
     ) -> Iterator[tuple[tuple[Edit, ...], int]]:
         """Edits for contents of brackets, with their breadth: parts left out, then new forms."""
         source_of = self.at.grammar.by_name[rule].source_of
+        # operands are everywhere: one of several origins shows too little
+        least = BRACKET_ORIGINS if rule in self.at.rules.bracketed.values() else 1
         for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
             for opening, start, end in bracket_pairs(alternative):
                 if opening != sign:
@@ -67,14 +69,17 @@ class BracketEdits:
                 for first, count in _runs(len(old)):
                     text = optional(" ".join(map(source_of, old[first : first + count])))
                     yield (Replace(rule, (number, start + 2 + first), text, count),), 0
-                yield from self._of_items(old, contents)
-                for text in self.forms.of(contents, samples_of(self.at.rules, old)):
+                yield from self._of_items(old, contents, least)
+                for text in self.forms.of(contents, samples_of(self.at.rules, old), least):
                     at, count = (number, start + 2), len(old)
                     edit = Replace(rule, at, text, count) if count else Insert(rule, at, text)
                     yield (*self.forms.reserving(text), edit), self.forms.lost(old, text)
 
     def _of_items(
-        self, old: Sequence[Element], contents: dict[tuple[Symbol, ...], list[int]]
+        self,
+        old: Sequence[Element],
+        contents: dict[tuple[Symbol, ...], list[int]],
+        least: int,
     ) -> Iterator[tuple[tuple[Edit, ...], int]]:
         """Edits of the rule that reads the items of a list and nothing else."""
         called = {e.name for o in old for e in walk(o) if isinstance(e, Reference)}
@@ -86,9 +91,8 @@ class BracketEdits:
             for inside, numbers in contents.items():
                 for item in split_at_commas(inside)[1:]:  # ahead of the first one there may be more
                     items[item] += numbers
-            for text in (
-                self.forms.of(items, samples_of(self.at.rules, first.elements)) if items else ()
-            ):
+            known = samples_of(self.at.rules, first.elements)
+            for text in self.forms.of(items, known, least) if items else ():
                 edit = Replace(name, (1, 1), text, len(first.elements))
                 yield (*self.forms.reserving(text), edit), self.forms.lost(first.elements, text)
 

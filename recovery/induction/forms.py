@@ -136,6 +136,9 @@ class FormWriter:
         for pieces in cut:
             first = pieces[0]
             size = _suffix(first, shapes, longest)
+            if not size and len(pieces) == 1:  # no list, rather than one of nothing
+                out.append(first)
+                continue
             ahead.append(first[len(first) - size :])
             out.append((*first[: len(first) - size], Symbol(_LIST)))
         if not longest:  # commas alone

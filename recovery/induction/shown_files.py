@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from grammar.notation.edits import apply
+from grammar.notation.edits import AddAlternative, AddToken, apply
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.wellformed import problem
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.names_rule import names_kept
-from recovery.induction.steps import Evidence, Reading, Refused, Taken, joined
+from recovery.induction.steps import Reading, Refused, Taken, joined
 from recovery.language import CorpusFile
 from recovery.tuning import GRAMMARS_KEPT
 
@@ -42,11 +42,16 @@ class ShownFiles:
     ) -> tuple[list[Taken], list[Refused]]:
         """The steps without those under which a file fails earlier than it did, and these.
 
-        A word of a step that lines use as a name is left one in the rule of ``names`` before.
+        A word of a step that lines use as a name is left one in the rule of ``names`` before, if
+        more files show the step than have these lines.
         """
         before = self.failures(grammar)[1]
         after = self.failures(apply(grammar, joined(taken)))[1]
-        worse = [p for p, found in enumerate(after) if _first(found) < _first(before[p])]
+        worse = {
+            place: _first(before[place])
+            for place, found in enumerate(after)
+            if _first(found) < _first(before[place])
+        }
         if not worse:
             return list(taken), []
         kept: list[Taken] = []
@@ -64,11 +69,14 @@ class ShownFiles:
                     break
                 finder = FailureFinder(Recognizer(wider))
                 read = {p: finder.find(self.files[p].text) for p in worse}
-                lost_in = [p for p, f in read.items() if _first(f) < _first(before[p])]
-                if not lost_in or self._is_outvoted(lost_in, step.evidence):
+                lost_in = [place for place, found in read.items() if _first(found) < worse[place]]
+                if not lost_in or self._is_outvoted(lost_in, step):
                     reason = ""
+                    worse |= {place: _first(read[place]) for place in lost_in}
                     break
                 reason = "loses lines that can be read"
+                if len(lost_in) >= step.evidence.files:
+                    break
                 used = {w.upper() for p in lost_in for w in read[p][0].lexemes}
                 version = names_kept(step, used, names)
             if reason:
@@ -82,10 +90,17 @@ class ShownFiles:
         before, after = self.failures(grammar)[1], self.failures(apply(grammar, joined(taken)))[1]
         return _standing(after) > _standing(before)
 
-    def _is_outvoted(self, places: Sequence[int], evidence: Evidence) -> bool:
-        """Whether files are of one origin, and an edit is shown by more origins and files."""
+    def _is_outvoted(self, places: Sequence[int], step: Taken) -> bool:
+        """Whether files are of one origin, and a step is shown by more origins and files.
+
+        As many origins will do for words with which lines of their own begin.
+        """
         origins = frozenset[str]().union(*(self.files[p].origins for p in places))
-        return len(origins) == 1 < evidence.origins and 2 * len(places) < evidence.files
+        words = {edit.name for edit in step.edits if isinstance(edit, AddToken)}
+        added = [edit.text.split() for edit in step.edits if isinstance(edit, AddAlternative)]
+        is_ahead = words <= {word for text in added if len(text) > 1 for word in text[:2]}
+        enough = step.evidence.origins + (is_ahead and bool(words))
+        return len(origins) == 1 < enough and 2 * len(places) < step.evidence.files
 
 
 def reading(failures: Failures) -> Reading:

@@ -29,14 +29,20 @@ class SupportedForms:
         self.writer = FormWriter(at.reader, operands_of(at.symbols))
 
     def of(
-        self, shapes: dict[tuple[Symbol, ...], list[int]], old: Sequence[tuple[Symbol, ...]] = ()
+        self,
+        shapes: dict[tuple[Symbol, ...], list[int]],
+        old: Sequence[tuple[Symbol, ...]] = (),
+        least: int = 1,
     ) -> Iterator[str]:
         """Forms of ``old`` shapes and these: all, those that recur, those whose words recur.
 
-        One odd line must not spoil the form, nor one origin.
+        One odd line must not spoil the form, nor one origin: neighbours are such in ``least``, if
+        that is more than is asked of all forms and so many have the shapes.
         """
         having = {shape: self.origins_of(numbers) for shape, numbers in shapes.items()}
-        shapes = {shape: shapes[shape] for shape in self.supported(having, old)}
+        least = min(least, len(frozenset[str]().union(*having.values())))
+        known = self.supported(having, old, max(least, self._least))
+        shapes = {shape: shapes[shape] for shape in known}
         lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
         choices = [
             [shape for shape, numbers in shapes.items() if len(numbers) >= least]
@@ -57,6 +63,7 @@ class SupportedForms:
         self,
         shapes: Mapping[tuple[Symbol, ...], Collection[str]],
         old: Sequence[tuple[Symbol, ...]] = (),
+        least: int = 0,
     ) -> list[tuple[Symbol, ...]]:
         """Those in which all neighbours are such in enough origins, or in an ``old`` shape.
 
@@ -68,7 +75,8 @@ class SupportedForms:
         for shape, origins in shapes.items():
             for pair in pairs[shape]:
                 having[pair].update(origins)
-        enough = known | {pair for pair, found in having.items() if len(found) >= self._least}
+        least = least or self._least
+        enough = known | {pair for pair, found in having.items() if len(found) >= least}
         return [shape for shape in shapes if pairs[shape] <= enough]
 
     def pairs(self, symbols: Sequence[Symbol], group: str = "") -> Iterator[tuple[str, ...]]:

@@ -23,6 +23,16 @@ def test_a_word_only_found_inside_divides() -> None:
     assert ({"M": "+", "D": "?"}, False) == (block.often, block.has_body)
 
 
+@pytest.mark.parametrize(("origins", "often"), [("aab", {}), ("abc", {"M": "?"})])
+def test_a_seldom_word_divides_where_three_origins_have_it(
+    origins: str, often: dict[str, str]
+) -> None:
+    """Fewer than a third of the blocks have it, and nothing else."""
+    files = [_file("O x C " * 4 + "O M x C", origin) for origin in origins]
+    (block,) = find_blocks(files, ["O", "C", "M"])
+    assert often == block.often
+
+
 def test_two_statements_in_pairs_are_no_block() -> None:
     """Words with nothing between them in any file open nothing."""
     files = [_file("O C x", o) for o in "abc"]

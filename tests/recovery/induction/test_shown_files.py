@@ -1,6 +1,8 @@
 """Steps tried on the files shown, and the failing lines of these."""
 
-from grammar.notation.edits import AddRule, Replace
+import pytest
+
+from grammar.notation.edits import AddAlternative, AddRule, AddToken, Replace
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
@@ -21,6 +23,17 @@ def test_a_step_that_needs_one_not_taken(toy: Grammar, toy_files: tuple[CorpusFi
     halting = (*toy_files, CorpusFile("four/a.toy", "HALT\n", frozenset({"four"})))
     taken, lost = ShownFiles(halting).kept(toy, [shrunk, resting], None)
     assert ([], ["a", "b"]) == (taken, [step.title for step in lost])
+
+
+@pytest.mark.parametrize(("form", "kept"), [("GO NUMBER", 1), ("NUMBER GO", 1), ("GO", 0)])
+def test_one_file_that_uses_a_word_as_a_name(toy: Grammar, form: str, kept: int) -> None:
+    """It keeps no word from leading lines of its own in more files, of one origin too."""
+    files = tuple(CorpusFile(f"a/{n}", f"{form}\n", frozenset("a")) for n in range(3))
+    named = CorpusFile("b", "GO := 1\n", frozenset("b"))
+    edits = (AddToken("GO"), AddAlternative("simpleStatement", form))
+    step = Taken("go", edits, Evidence(3, 1, 3, ()))
+    taken, _ = ShownFiles((*files, named)).kept(toy, [step], None)
+    assert kept == len(taken)
 
 
 def test_a_stray_sign_moves_no_word(toy: Grammar) -> None:
