@@ -95,7 +95,8 @@ def nightly(
         for step, how, seconds in _performed(steps, folder, minutes, memory * 1_000_000):
             before = went.pop(step.name, None)
             if seconds or not isinstance(before, dict) or "failed" in how:
-                before = {"status": how, "seconds": round(seconds, 1), "page": step.page}
+                page = step.page if (folder / step.page).is_file() else ""
+                before = {"status": how, "seconds": round(seconds, 1), "page": page}
             went[step.name] = before
             write_json(went, folder / "steps.json")
             record = _record(folder, step.name)

@@ -82,10 +82,12 @@ function proposals(cluster) {
     const edit = [el("code", "", ...visible(proposal.edit)),
       proposal.kind ? el("span", "kind", ` ${proposal.kind}`) : null];
     body.append(el("tr", "", el("td", "", proposal.diff ? folded(edit, () => diffBlock(proposal.diff)) : edit),
-      ...shownVerdicts.map(([key, , , harm]) => {
+      ...shownVerdicts.map(([key, name, , harm]) => {
         const value = proposal[key];
         const state = value === null || value === 0 ? " zero" : harm ? " bad" : "";
-        return el("td", `num${state}`, value === null ? "–" : number(value));
+        const cell = el("td", `num${state}`, value === null ? "–" : number(value));
+        cell.dataset.label = name;
+        return cell;
       })));
   }
   // what the start lacked is answered or proposed under the grammar in force, not from here

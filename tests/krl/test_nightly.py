@@ -158,6 +158,7 @@ def test_a_step_that_fails_is_tried_once_more(
     assert (told != "ok") == run(tmp_path, capsys, "recover")[0]
     assert {"recover": told} == steps_of(tmp_path)
     assert 1 + ("failed" in told) == len(asked)
+    assert "recover/index.html" not in (tmp_path / DATE / "index.html").read_text()
 
 
 def test_the_summary_mentions_and_links_nothing(
