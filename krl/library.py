@@ -15,7 +15,7 @@ part, although work is shared out to processes.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -50,6 +50,16 @@ _COORDINATES = "X Y Z A B C S T A1 A2 A3 A4 A5 A6 E1 E2 E3 E4 E5 E6".split()
 # ------------------------------------------------------------------------------------- check
 
 
+def _brief(result: Any) -> str:
+    """What a notebook shows of a result: its fields, collections by how much they hold."""
+    values = ((one.name, getattr(result, one.name)) for one in fields(result) if one.repr)
+    said = (
+        f"{name}=<{len(value)}>" if isinstance(value, tuple | Mapping) else f"{name}={value!r}"
+        for name, value in values
+    )
+    return f"{type(result).__name__}({', '.join(said)})"
+
+
 @dataclass(frozen=True, slots=True)
 class Finding:
     """What the check says of a place; lines and columns count from 1."""
@@ -68,6 +78,7 @@ class Findings:
 
     findings: tuple[Finding, ...]
     files: int
+    __repr__ = _brief
 
     @property
     def errors(self) -> tuple[Finding, ...]:
@@ -121,9 +132,10 @@ class Run:
     at: str
     error: str
     events: tuple[TraceEvent, ...]
-    path: PathRecord | None
+    path: PathRecord | None = field(repr=False)
     notes: tuple[str, ...]
-    _whole: tuple[RunResult, CheckedProgram, RunSetup]
+    _whole: tuple[RunResult, CheckedProgram, RunSetup] = field(repr=False)
+    __repr__ = _brief
 
     def to_dataframe(self) -> pd.DataFrame:
         """A row an event of the trace: t in µs, task, kind, at, and the fields of its kind."""
@@ -219,6 +231,7 @@ class Survey:
     files: int
     parsed: int
     record: Mapping[str, Any]
+    __repr__ = _brief
 
     def to_dataframe(self) -> pd.DataFrame:
         """A row a cluster of failures with one cause."""
@@ -274,6 +287,7 @@ class Backup:
     files: tuple[str, ...]
     routines: tuple[Routine, ...]
     points: tuple[Point, ...]
+    __repr__ = _brief
 
     def to_dataframe(self) -> pd.DataFrame:
         """A row a point: path, line, name, type, and a column a component."""

@@ -33,7 +33,9 @@ def test_a_run_has_its_ending_trace_and_path(tmp_path: Path) -> None:
     text = f"DEF a()\n{motion}\nWAIT FOR $IN[3]\n$OUT[1] = TRUE\nEND\n"
     file.write_text(text, encoding="utf-8")
     run = krl.run(file, io="t=2 IN[3]=TRUE")
-    assert ("end", 2.004, "") == (run.ending, run.seconds, run.error)
+    count = len(run.events)
+    brief = f"Run(ending='end', seconds=2.004, at='a.src:4', error='', events=<{count}>, notes=<0>)"
+    assert brief == repr(run)
     events = run.to_dataframe()
     assert [2_004_000] == events[events["kind"] == "out"]["t"].tolist()
     assert 10.0 == pytest.approx(run.path_dataframe()["q1"].iloc[-1])
