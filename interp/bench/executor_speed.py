@@ -46,6 +46,16 @@ _PATIENCE: Final = 600  # seconds for a program in another language
 #: Where the result of a kernel goes.
 _RESULT = "$OV_PRO"
 _REQUESTS = 20_000
+#: Does the work of the kernel that follows it.
+_MAIN: Final = f"""DEF KRL_BENCH()
+   DECL INT ROUND, RESULT
+   RESULT = 0
+   FOR ROUND = 1 TO {{repeats}}
+      RESULT = WORK({{amount}})
+   ENDFOR
+   {_RESULT} = RESULT
+END
+"""
 
 
 class MeasurementError(Exception):
@@ -73,7 +83,7 @@ def measure_executors(
     for kernel in kernels_in().values() if kernels is None else kernels:
         try:
             rows.append(_measured(kernel, rounds))
-        except (LinkError, OSError, subprocess.SubprocessError) as error:
+        except (LinkError, MeasurementError, OSError, subprocess.SubprocessError) as error:
             raise MeasurementError(f"{kernel.name}: {error}") from error
         on_step()
     requests = {name: _request_cost(name, rounds) for name in available()}
@@ -133,12 +143,12 @@ def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
                 repeats = _repeats(name)
                 seconds, timed = _run(programs[repeats], name, repeats)
                 start[name] = min(seconds, start.get(name, math.inf))
-                best[name] = _better(kernel, name, timed, best)
+                best[name] = _better(name, timed, best)
             for name, command in foreign.items():
-                best[name] = _better(kernel, name, _run_foreign(name, command), best)
+                best[name] = _better(name, _run_foreign(name, command), best)
     results = {name: one.result for name, one in best.items()}
     if len(set(results.values())) > 1:
-        raise MeasurementError(f"{kernel.name}: the results differ: {results}")
+        raise MeasurementError(f"the results differ: {results}")
     return {
         "name": kernel.name,
         "amount": amount,
@@ -154,10 +164,10 @@ def _repeats(name: str) -> int:
     return _REPEATS if name in _FAST else 1
 
 
-def _better(kernel: Kernel, name: str, timed: _Timed, best: Mapping[str, _Timed]) -> _Timed:
+def _better(name: str, timed: _Timed, best: Mapping[str, _Timed]) -> _Timed:
     before = best.get(name, timed)
     if before.result != timed.result:
-        raise MeasurementError(f"{kernel.name}: {name} gives {before.result}, then {timed.result}")
+        raise MeasurementError(f"{name} gives {before.result}, then {timed.result}")
     return min(before, timed, key=lambda one: one.seconds)
 
 
@@ -180,16 +190,8 @@ def _amount(kernel: Kernel) -> int:
 
 def _prepared(kernel: Kernel, amount: int, repeats: int) -> Prepared:
     """A program that does so much work so often."""
-    begin = f"""DEF KRL_BENCH()
-   DECL INT ROUND, RESULT
-   RESULT = 0
-   FOR ROUND = 1 TO {repeats}
-      RESULT = WORK({amount})
-   ENDFOR
-   {_RESULT} = RESULT
-END
-"""
-    return Prepared(load([Source(begin + kernel.krl, "krl_bench.src")], "krl_bench.src"))
+    source = _MAIN.format(repeats=repeats, amount=amount) + kernel.krl
+    return Prepared(load([Source(source, "krl_bench.src")], "krl_bench.src"))
 
 
 def _run(program: Prepared, executor: str, repeats: int) -> tuple[float, _Timed]:
@@ -207,8 +209,11 @@ def _run(program: Prepared, executor: str, repeats: int) -> tuple[float, _Timed]
             result = request.value
         request = running.advance(_REPEATS if isinstance(request, StopAdvance) else None)
     ended = time.process_time()
-    if not isinstance(request, End):
-        raise MeasurementError(f"{executor}: {request}")
+    if isinstance(request, Fail):
+        line = request.at.line - _MAIN.count("\n")
+        raise MeasurementError(f"{executor} stops at line {line}: {request.fault}")
+    if isinstance(request, Crash):
+        raise MeasurementError(f"{executor} fails: {request.reason}")
     return ready - began, _Timed((ended - ready) / repeats, result)
 
 

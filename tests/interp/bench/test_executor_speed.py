@@ -62,6 +62,15 @@ def test_results_that_differ(tmp_path: Path) -> None:
         measure_executors(list(kernels_in(tmp_path).values()), rounds=1)
 
 
+def test_kernel_that_fails(tmp_path: Path) -> None:
+    """A kernel that fails at once is named with the line and the fault."""
+    (tmp_path / "index.src").write_text(
+        SUM.format("N").replace("RETURN", "SUM = 7 / (1 - N)\nRETURN")
+    )
+    with pytest.raises(MeasurementError, match="index: tree stops at line 7: division by zero"):
+        measure_executors(list(kernels_in(tmp_path).values()), rounds=1)
+
+
 def test_amount_that_fails_at_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a kernel cannot do more, the most that it does is measured."""
     monkeypatch.setattr("interp.bench.executor_speed._LEAST", math.inf)
