@@ -67,7 +67,7 @@ def test_kernel_that_fails(tmp_path: Path) -> None:
     (tmp_path / "index.src").write_text(
         SUM.format("N").replace("RETURN", "SUM = 7 / (1 - N)\nRETURN")
     )
-    with pytest.raises(MeasurementError, match="index: tree stops at line 7: division by zero"):
+    with pytest.raises(MeasurementError, match="index: tree stops at line 8: division by zero"):
         measure_executors(list(kernels_in(tmp_path).values()), rounds=1)
 
 
