@@ -14,12 +14,12 @@ from support.files.atomic_write import atomic_path
 def write_junit(results: Sequence[CaseResult], target: Path) -> None:
     """Write the file whole or not at all. Failures are failures, all else but a pass is skipped."""
     report = JUnitXml("conformance")
-    suites: dict[str, TestSuite] = {}
+    tests: dict[str, list[TestCase]] = {}
     for one in results:
-        suite = suites.setdefault(one.case.suite, TestSuite(one.case.suite))
-        for result in one.results:
-            suite.add_testcase(_test(one, result))
-    for suite in suites.values():
+        tests.setdefault(one.case.suite, []).extend(_test(one, result) for result in one.results)
+    for name, cases in tests.items():
+        suite = TestSuite(name)
+        suite.add_testcases(cases)  # one by one, it counts all of them each time
         report.add_testsuite(suite)
     with atomic_path(target) as part:
         report.write(str(part), pretty=True)

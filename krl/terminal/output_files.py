@@ -2,14 +2,17 @@
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, Final
 
 from krl.errors import InputError
-from support.files.atomic_write import write_atomic
+from support.files.atomic_write import atomic_path
 
 _NOT_ASCII: Final = re.compile(r"[^\n\x20-\x7e]")
+#: So many pieces of the encoder, of some ten characters each, are one of ours.
+_AT_ONCE: Final = 10_000
 
 
 def check_targets(out: Path, json_file: Path | None) -> None:
@@ -37,13 +40,24 @@ def write_json(record: Mapping[str, Any], target: Path | None, indent: int | Non
     """Write ``record``, if there is a target, on one line or with so many blanks a level."""
     if target is None:
         return
-    write_atomic(target, json_text(record, indent) + "\n")
+    write_pieces(target, chain(json_pieces(record, indent), "\n"))
 
 
-def json_text(record: Any, indent: int | None = None) -> str:
-    """The record as JSON that steers no terminal: what is not printable is escaped."""
-    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
-    return _NOT_ASCII.sub(_escaped, text)
+def json_pieces(record: Any, indent: int | None = None) -> Iterator[str]:
+    """The record as JSON that steers no terminal: what is not printable is escaped.
+
+    In pieces where it is indented, so that the text of a large one is never held whole.
+    """
+    encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False, indent=indent)
+    pieces = iter([encoder.encode(record)] if indent is None else encoder.iterencode(record))
+    while piece := "".join(islice(pieces, _AT_ONCE)):
+        yield _NOT_ASCII.sub(_escaped, piece)
+
+
+def write_pieces(target: Path, pieces: Iterable[str]) -> None:
+    """Write a text that comes in pieces as UTF-8, whole or not at all."""
+    with atomic_path(target) as part, part.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(pieces)
 
 
 def _escaped(found: re.Match[str]) -> str:

@@ -192,6 +192,19 @@ def test_findings_for_github(cell: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert line.endswith(",title=KRL401::EXIT outside a loop")
 
 
+@pytest.mark.usefixtures("cell")
+def test_cases_for_junit_counted_once(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The statistics of a report are made once, not again for each of its files."""
+    from junitparser import TestSuite
+
+    counted: list[object] = []
+    monkeypatch.setattr(TestSuite, "update_statistics", lambda one: counted.append(one))
+    main(["check", "--no-cache", "--format", "junit", "cell"])
+    assert (2, 1) == (capsys.readouterr().out.count("<testcase"), len(counted))
+
+
 def test_findings_for_junit(cell: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A test case a file, failed where there is more than notes."""
     (cell / "c.src").write_text("DEF C()\nEND\n", encoding="utf-8")

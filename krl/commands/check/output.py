@@ -6,14 +6,14 @@ import re
 import sys
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
 from krl.errors import one_line
-from krl.terminal.output_files import json_text
-from support.files.atomic_write import write_atomic
+from krl.terminal.output_files import json_pieces, write_pieces
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -50,11 +50,11 @@ def write(
     if format_ is Format.TEXT and out is None:
         _print_text(kept, report, is_verbose)
         return
-    written = "".join(f"{line}\n" for line in _written(kept, report, format_, is_verbose))
+    pieces = _written(kept, report, format_, is_verbose)
     if out is None:
-        typer.echo(written, nl=False)
-        return
-    write_atomic(out, written)
+        sys.stdout.writelines(pieces)
+    else:
+        write_pieces(out, pieces)
 
 
 def _written(
@@ -63,22 +63,27 @@ def _written(
     from importlib import metadata
 
     from grammar.diagnostics.diagnostic import in_order, records
-    from grammar.diagnostics.rendering import rendered
     from grammar.diagnostics.sarif import sarif
 
     match format_:
         case Format.TEXT:
-            yield from rendered(
-                kept, lambda path, number: report.lines.get((path, number), ""), is_verbose
-            )
+            yield from (f"{line}\n" for line in _lines(kept, report, is_verbose))
         case Format.JSON:
-            yield json_text(records(kept), indent=1)
+            yield from chain(json_pieces(records(kept), indent=1), "\n")
         case Format.SARIF:
-            yield json_text(sarif(kept, metadata.version("krl-workbench")), indent=1)
+            log = sarif(kept, metadata.version("krl-workbench"))
+            yield from chain(json_pieces(log, indent=1), "\n")
         case Format.GITHUB:
-            yield from map(_github, in_order(kept))
+            yield from (f"{_github(one)}\n" for one in in_order(kept))
         case Format.JUNIT:
-            yield _junit(in_order(kept), report.paths)
+            yield f"{_junit(in_order(kept), report.paths)}\n"
+
+
+def _lines(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> Iterator[str]:
+    """The findings for people."""
+    from grammar.diagnostics.rendering import rendered
+
+    return rendered(kept, lambda path, number: report.lines.get((path, number), ""), is_verbose)
 
 
 def _said(found: "Diagnostic") -> str:
@@ -112,18 +117,20 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
     """JUnit XML: a test case a file, with a failure for each finding that is more than a note."""
     from junitparser import Failure, JUnitXml, TestCase, TestSuite
 
-    suite = TestSuite("krl check")
     by_path: dict[str, list[Failure]] = {path: [] for path in paths}
     for one in kept:
         if one.severity != "note":
             place = f"{one.region.line}:{one.region.column}"
             said = _NOT_XML.sub("\ufffd", f"{place}: {one.severity} {one.code}: {_said(one)}")
             by_path.setdefault(one.path, []).append(Failure(said, one.code))
+    cases = []
     for path, failures in by_path.items():
         folder, _, name = _NOT_XML.sub("\ufffd", path).rpartition("/")
         case = TestCase(name, folder)
         case.result = [*failures]
-        suite.add_testcase(case)
+        cases.append(case)
+    suite = TestSuite("krl check")
+    suite.add_testcases(cases)  # one by one, it counts all of them each time
     report = JUnitXml("krl check")
     report.add_testsuite(suite)
     stream = io.BytesIO()
@@ -133,7 +140,7 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
 
 def _print_text(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> None:
     """The findings on the terminal, in colours where it has any."""
-    lines = _written(kept, report, Format.TEXT, is_verbose)
+    lines = _lines(kept, report, is_verbose)
     if not (sys.stdout.isatty() or os.environ.get("FORCE_COLOR")):
         for line in lines:
             typer.echo(line)
