@@ -199,8 +199,12 @@ def test_cases_for_junit_counted_once(
     """The statistics of a report are made once, not again for each of its files."""
     from junitparser import TestSuite
 
-    counted: list[object] = []
-    monkeypatch.setattr(TestSuite, "update_statistics", lambda one: counted.append(one))
+    counted: list[TestSuite] = []
+
+    def count(suite: TestSuite) -> None:
+        counted.append(suite)
+
+    monkeypatch.setattr(TestSuite, "update_statistics", count)
     main(["check", "--no-cache", "--format", "junit", "cell"])
     assert (2, 1) == (capsys.readouterr().out.count("<testcase"), len(counted))
 
