@@ -27,11 +27,11 @@ _LINE_END = re.compile(r"\r\n|\r|\n")
 class Outline:
     """A rule and its children: outlines of rules, and kinds of tokens. Not to be changed.
 
-    ``width`` is the number of tokens in it, and ``inner`` the first outline from here inwards that
-    is more than a rule whose only child is a rule: expressions are such chains for the most part.
+    ``width`` is the number of tokens in it. Expressions are chains of rules with one child each for
+    the most part, which `inner` passes.
     """
 
-    __slots__ = ("children", "inner", "rule", "width")
+    __slots__ = ("_inner", "children", "rule", "width")
 
     def __init__(self, rule: str, children: tuple[Outline | int, ...]) -> None:
         self.rule = rule
@@ -41,7 +41,13 @@ class Outline:
             width += child.width if isinstance(child, Outline) else 1
         self.width: int = width
         only = children[0] if len(children) == 1 else None
-        self.inner: Outline = only.inner if isinstance(only, Outline) else self
+        # not itself: what refers to itself stays until garbage is collected
+        self._inner: Outline | None = only.inner if isinstance(only, Outline) else None
+
+    @property
+    def inner(self) -> Outline:
+        """The first outline from here inwards that is more than a rule whose only child is one."""
+        return self._inner or self
 
     def __repr__(self) -> str:
         return f"Outline({self.rule!r}, {self.symbols!r})"

@@ -106,8 +106,8 @@ class Project:
         self._lists: dict[str, list[Module]] = {}
         for module in self._data.values():
             self._lists.setdefault(module.name, []).append(module)
-        self._scopes: dict[Module, Scope] = {}
-        self._inner: dict[tuple[Module, RoutineTable], Scope] = {}
+        self._scopes: dict[ModuleTable, Scope] = {}
+        self._inner: dict[RoutineTable, Scope] = {}
         self._names: dict[Space, dict[str, list[Found]]] = {space: {} for space in Space}
         self._hidden: dict[Space, dict[str, Found]] = {space: {} for space in Space}
         self._gap: dict[Space, Reason] = {}
@@ -133,15 +133,16 @@ class Project:
 
     def scope(self, module: Module, routine: RoutineTable | None = None) -> Scope:
         """What is known in a file that can be read, or in one of its routines."""
+        assert module.table is not None, "nothing is known of a file that cannot be read"
+        scope = self._scopes.get(module.table)
+        if scope is None:
+            scope = self._scopes[module.table] = self._scope(module, module.table)
         if routine is None:
-            scope = self._scopes.get(module)
-            if scope is None:
-                scope = self._scopes[module] = self._scope(module)
             return scope
-        inner = self._inner.get((module, routine))
+        inner = self._inner.get(routine)
         if inner is None:
-            inner = Scope(module, routine, routine.table, self.scope(module))
-            self._inner[module, routine] = inner
+            # of the module as it was linked: the tree that a module may have is not to be kept
+            inner = self._inner[routine] = Scope(scope.module, routine, routine.table, scope)
         return inner
 
     def data_of(self, module: Module) -> Module | None:
@@ -185,15 +186,14 @@ class Project:
             return MaybeElsewhere(reason)
         return NotFound(next(filter(None, there), None))
 
-    def _scope(self, module: Module) -> Scope:
-        assert module.table is not None, "nothing is known of a file that cannot be read"
+    def _scope(self, module: Module, table: ModuleTable) -> Scope:
         outer: Outer = self._globals.near(module.folder)
         data = self.data_of(module)
         if data is not None:
             outer = self.scope(data) if data.table else PartlyRead(outer, data.words)
         if module.words:
             outer = PartlyRead(outer, module.words)
-        return Scope(module, None, module.table.table, outer, module.table.externals)
+        return Scope(module, None, table.table, outer, table.externals)
 
     def _misses(self, module: Module) -> bool:
         """Whether a module calls what nothing declares or announces."""

@@ -8,8 +8,7 @@ meets no limit.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import field
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from grammar.syntax import ast
 from grammar.syntax.walk import bodies, without_parentheses
@@ -22,36 +21,32 @@ class FlowNode:
 
     statement: ast.Statement | None = None
     is_test: bool = False
-    after: list[FlowNode] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlowGraph:
     """The ways through a routine from ``start`` to ``end``.
 
-    ``steps`` are the places of its statements in the order of the text, each with that of the
-    statement before it in the same list and that of the block it stands in.
+    ``after`` are the places that can come next. ``steps`` are the places of its statements in the
+    order of the text, each with that of the statement before it in the same list and that of the
+    block it stands in.
     """
 
     start: FlowNode
     end: FlowNode
+    after: Mapping[FlowNode, Sequence[FlowNode]]
     steps: tuple[tuple[FlowNode, FlowNode | None, FlowNode | None], ...]
 
     def reached(self) -> frozenset[FlowNode]:
-        """The places that some way from the start leads to."""
-        return reachable(self.start)
-
-
-def reachable(start: FlowNode) -> frozenset[FlowNode]:
-    """All places that some way leads to, the first one included."""
-    found = {start}
-    todo = [start]
-    while todo:
-        for step in todo.pop().after:
-            if step not in found:
-                found.add(step)
-                todo.append(step)
-    return frozenset(found)
+        """The places that some way from the start leads to, the start included."""
+        found = {self.start}
+        todo = [self.start]
+        while todo:
+            for step in self.after[todo.pop()]:
+                if step not in found:
+                    found.add(step)
+                    todo.append(step)
+        return frozenset(found)
 
 
 #: Whether one branch of a SWITCH without DEFAULT is taken in any case.
@@ -94,27 +89,34 @@ class _Builder:
         self._labels: dict[str, FlowNode] = {}
         self._jumps: list[tuple[FlowNode, str]] = []
         self._parts: list[_Part] = []
+        # beside the places, not in them: a loop would refer to itself until garbage is collected
+        self._after: dict[FlowNode, list[FlowNode]] = {}
         self._steps: list[tuple[FlowNode, FlowNode | None, FlowNode | None]] = []
 
     def build(self, routine: ast.Routine) -> FlowGraph:
-        start, end = FlowNode(), FlowNode()
+        start, end = self._place(), self._place()
         self._parts.append(_Part(routine.body, start, end, None, None))
         while self._parts:
             part = self._parts[-1]
             for statement in part.statements:
-                step = FlowNode(statement)
+                step = self._place(statement)
                 self._steps.append((step, part.before, part.inside))
-                part.at.after.append(step)
+                self._after[part.at].append(step)
                 part.at = part.before = step
                 if self._enter(part, step, statement):
                     break
             else:
-                part.at.after.append(part.behind)
+                self._after[part.at].append(part.behind)
                 self._parts.pop()
         for step, label in self._jumps:
             if label in self._labels:
-                step.after.append(self._labels[label])
-        return FlowGraph(start, end, tuple(self._steps))
+                self._after[step].append(self._labels[label])
+        return FlowGraph(start, end, self._after, tuple(self._steps))
+
+    def _place(self, statement: ast.Statement | None = None, is_test: bool = False) -> FlowNode:
+        made = FlowNode(statement, is_test)
+        self._after[made] = []
+        return made
 
     def _enter(self, part: _Part, step: FlowNode, statement: ast.Statement) -> bool:
         """Continue from a statement; returns whether a block was begun."""
@@ -123,29 +125,29 @@ class _Builder:
                 self._labels.setdefault(name.key, step)
             case ast.Goto(label=label):
                 self._jumps.append((step, label.key))
-                part.at = FlowNode()
+                part.at = self._place()
             case ast.Return():
-                part.at = FlowNode()
+                part.at = self._place()
             case ast.Exit() if part.leave is not None:
-                step.after.append(part.leave)
-                part.at = FlowNode()
+                self._after[step].append(part.leave)
+                part.at = self._place()
             case ast.If() | ast.Switch():
-                part.at = FlowNode()
+                part.at = self._place()
                 for body in reversed(self._branches(statement, step, part.at)):
                     self._parts.append(_Part(body, step, part.at, part.leave, step))
                 return True
             case ast.For(body=body) | ast.While(body=body) | ast.Loop(body=body):
-                part.at = behind = FlowNode()
+                part.at = behind = self._place()
                 if not _is_endless(statement):
-                    step.after.append(behind)
+                    self._after[step].append(behind)
                 self._parts.append(_Part(body, step, step, behind, step))
                 return True
             case ast.Repeat(body=body):
-                part.at = behind = FlowNode()
-                test = FlowNode(statement, is_test=True)
-                test.after.append(step)
+                part.at = behind = self._place()
+                test = self._place(statement, is_test=True)
+                self._after[test].append(step)
                 if not _is_endless(statement):
-                    test.after.append(behind)
+                    self._after[test].append(behind)
                 self._parts.append(_Part(body, step, test, behind, step))
                 return True
         return False
@@ -159,7 +161,7 @@ class _Builder:
         else:
             is_open = statement.default is None and not self._is_exhaustive(statement)
         if is_open:
-            step.after.append(behind)
+            self._after[step].append(behind)
         return list(bodies(statement))
 
 

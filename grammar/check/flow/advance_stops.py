@@ -119,7 +119,7 @@ class _Routine:
         seen = {motion}
         todo = [motion]
         while todo:
-            for step in todo.pop().after:
+            for step in self._ways.after[todo.pop()]:
                 if step in seen:
                     is_open = is_open or step is motion
                     continue
@@ -162,7 +162,7 @@ class _Routine:
         seen = set(todo)
         found: list[ast.Node] = []
         while todo:
-            for step in todo.pop().after:
+            for step in self._ways.after[todo.pop()]:
                 if step in seen or advances.get(step) is not None:
                     continue
                 seen.add(step)

@@ -152,7 +152,7 @@ class _DataFlow:
         todo = deque([start])
         while todo:
             node = todo.popleft()
-            for number, after in enumerate(node.after):
+            for number, after in enumerate(self._graph.after[node]):
                 value = passed(node, number, known[node])
                 before = known.get(after)
                 if before is None or value | before != before:
@@ -176,8 +176,9 @@ class _DataFlow:
                     return False
                 is_read = True
                 continue
-            todo.extend(after for after in node.after if after not in seen)
-            seen.update(node.after)
+            behind = self._graph.after[node]
+            todo.extend(after for after in behind if after not in seen)
+            seen.update(behind)
         return is_read
 
     def _is_passed(self, node: FlowNode, key: str) -> bool:

@@ -141,7 +141,7 @@ def _first_motions(context: Context, routine: RoutineBody) -> list[ast.Motion]:
     seen: set[FlowNode] = {ways.start}
     todo = [ways.start]
     while todo and len(seen) < _FARTHEST_LOOK:
-        for step in todo.pop().after:
+        for step in ways.after[todo.pop()]:
             if step in seen:
                 continue
             seen.add(step)

@@ -23,7 +23,7 @@ def shape(found: FlowGraph) -> dict[str, list[str]]:
 
     def after(step: FlowNode) -> list[str]:
         names: list[str] = []
-        for following in step.after:
+        for following in found.after[step]:
             if following is found.end:
                 names.append("end")
             elif following.statement is None:
