@@ -385,11 +385,22 @@ def _reached(
         return max(_other_end(speed, span.length * _SPARE, bounds), speed)
     # Not every speed between two that can be reached can be reached: braking hard, it may take
     # longer to ease off the brake at some speed than to stand still.
-    eased = speed + acceleration * abs(acceleration) / (2.0 * bounds.jerk)
-    within = 0.0 if fits(0.0) else eased
-    if within < 0.0 or not fits(within):
-        return None
-    return _bisected(fits, within, allowed)
+    eased = _turned_to(0.0, speed, acceleration, bounds.jerk)
+
+    def is_slower(target: float) -> bool:
+        final = _leaving(spans, place, target)
+        return target <= _turned_to(final, speed, acceleration, bounds.jerk)
+
+    # Before a blend that is entered braking the shortest way leads to the brake at once.
+    for within in (0.0, eased, _bisected(is_slower, 0.0, max(speed, allowed))):
+        if within >= 0.0 and fits(within):
+            return _bisected(fits, within, allowed)
+    return None
+
+
+def _turned_to(final: float, speed: float, acceleration: float, jerk: float) -> float:
+    """The speed at which the greatest jerk has turned an acceleration into another."""
+    return speed + (final + acceleration) * abs(final - acceleration) / (2.0 * jerk)
 
 
 def _travelled(
