@@ -8,11 +8,12 @@ that is never called, is what sets up its motions: ``BAS(#INITMOV, 0)``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
 from grammar.check.flow.advance_stop_reasons import is_known_call
+from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
@@ -32,6 +33,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
         for routine in suspects:
             if not entered.maybe_by_interrupt(routine):
                 yield from _outside(context, routine)
+            elif _is_program(routine) and not entered.maybe_by_interrupt(
+                routine, _is_called_at_hand
+            ):
+                yield from _outside(context, routine, "note", "one in a missing file may")
     yield from _first_motion(context, context.routines[0])
 
 
@@ -44,6 +49,25 @@ def _interrupting(routine: RoutineBody) -> list[ast.Brake | ast.Resume]:
         for placed in routine.statements
         if isinstance(placed.statement, ast.Brake | ast.Resume)
     ]
+
+
+def _is_called_outside(context: Context, key: str) -> bool:
+    """Whether another module calls a routine, or one that is not at hand may."""
+    return not context.project.is_complete or _is_called_at_hand(context, key)
+
+
+def _is_called_at_hand(context: Context, key: str) -> bool:
+    """Whether another module that is at hand calls a routine, or cannot be read."""
+    return any(
+        module.table is None or key in module.table.calls
+        for module in context.project.modules
+        if module.path != context.module.path
+    )
+
+
+def _is_program(routine: RoutineBody) -> bool:
+    """Whether a routine looks like a program: inline forms call GLOBAL ones and pass arguments."""
+    return not routine.node.parameters and not routine.node.is_global
 
 
 class _Entered:
@@ -69,14 +93,16 @@ class _Entered:
         if any(map(_sets_up, first.statements)) and not first.node.parameters:
             self._seen_outside.discard(first.node.name.key)  # somebody selects it
 
-    def maybe_by_interrupt(self, routine: RoutineBody) -> bool:
-        """Whether an interrupt may lead to a routine, as far as is known."""
+    def maybe_by_interrupt(
+        self, routine: RoutineBody, is_called: Callable[[Context, str], bool] = _is_called_outside
+    ) -> bool:
+        """Whether an interrupt may lead to a routine; ``is_called`` says of which others call."""
         found = {routine.node.name.key}
         todo = list(found)
         while todo:
             key = todo.pop()
             if key in self._targets or (
-                key in self._seen_outside and _is_called_outside(self._context, key)
+                key in self._seen_outside and is_called(self._context, key)
             ):
                 return True
             more = self._callers.get(key, set()) - found
@@ -85,24 +111,16 @@ class _Entered:
         return False
 
 
-def _is_called_outside(context: Context, key: str) -> bool:
-    """Whether another module calls a routine, or one that is not at hand may."""
-    if not context.project.is_complete:
-        return True
-    return any(
-        module.table is None or key in module.table.calls
-        for module in context.project.modules
-        if module.path != context.module.path
-    )
-
-
-def _outside(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+def _outside(
+    context: Context, routine: RoutineBody, severity: Severity | None = None, reason: str = ""
+) -> Iterator[Diagnostic]:
     name = routine.node.name.text
     for node in _interrupting(routine):
         word, slug = "RESUME", "resume-outside-interrupt"
         if isinstance(node, ast.Brake):
             word, slug = "BRAKE", "brake-outside-interrupt"
-        yield context.finding(slug, node, f"{word} in {name}, which no interrupt calls")
+        message = f"{word} in {name}, which no interrupt calls"
+        yield context.finding(slug, node, message, severity=severity, reason=reason)
 
 
 # -------------------------------------------------------------------------------- first motions

@@ -12,6 +12,7 @@ WORK = """DEF WORK()
 END
 """
 BAS = "DEF BAS(CMD:IN, VALUE:IN)\nDECL BAS_COMMAND CMD\nDECL REAL VALUE\nEND\n"
+NOTED = WORK.format(mark5=" ;> KRL505-", mark6=" ;> KRL506-")
 MARKED = WORK.format(mark5=" ;> KRL505?", mark6=" ;> KRL506?")
 PLAIN = WORK.format(mark5="", mark6="")
 
@@ -20,7 +21,7 @@ PLAIN = WORK.format(mark5="", mark6="")
     ("main", "is_complete", "work"),
     [
         ("WORK()", True, MARKED),
-        ("WORK()", False, PLAIN),
+        ("WORK()", False, NOTED),
         ("HALT", False, MARKED),
         ("INTERRUPT DECL 5 WHEN $IN[1] DO WORK()", True, PLAIN),
         ("INTERRUPT DECL 5 WHEN $IN[1] DO STEP_IN()", True, PLAIN),
@@ -30,6 +31,21 @@ def test_what_no_interrupt_calls(agrees: Agrees, main: str, is_complete: bool, w
     """A routine that no interrupt leads to is told, where all that calls it is known [INT-11]."""
     text = f"DEF NEG()\n{main}\nEND\n{work}DEF STEP_IN()\nWORK()\nEND\n"
     agrees(text.replace("STEP_IN", "STEPIN"), is_complete=is_complete)
+
+
+@pytest.mark.parametrize(
+    ("work", "other"),
+    [
+        (NOTED, "HALT"),
+        (PLAIN, "WORK()"),
+        ("GLOBAL " + PLAIN, "HALT"),
+        (PLAIN.replace("()", "(N :IN)", 1).replace("BRAKE", "INT N\nBRAKE"), "HALT"),
+    ],
+)
+def test_a_program_that_only_missing_files_may_call(agrees: Agrees, work: str, other: str) -> None:
+    """In a backup with gaps it is possible that an interrupt calls it, so that it is a note."""
+    files = {"NEG.src": f"DEF NEG()\n{other}\nEND\n", "WORK.src": work}
+    agrees(files, is_complete=False)
 
 
 def test_an_interrupt_of_another_module_may_call(agrees: Agrees) -> None:
