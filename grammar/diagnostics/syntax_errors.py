@@ -404,6 +404,21 @@ def _declarations(site: ErrorSite) -> _Mistake | None:
     return None
 
 
+def _constants(site: ErrorSite) -> _Mistake | None:
+    """Values in a data list that a program would have to work out."""
+    if not _is_data(site) or "=" not in site.words[: site.place]:
+        return None
+    if _is_name(site, site.place) and site.expects("INTEGER"):
+        message = f"{_shown(site)} is no constant"
+    elif site.text in ("+", "-", "*", "/"):
+        message = f"{_shown(site)} is not worked out here"
+    else:
+        return None
+    reason = "the values in a data list are numbers, texts, TRUE, FALSE, #… and {…} of these"
+    slug = "misplaced-instruction" if _is_name(site, 0) and site.word(1) in "=[." else "syntax"
+    return _Mistake(message, reason=reason, slug=slug)
+
+
 def _names(site: ErrorSite) -> _Mistake | None:
     """Names that are none, and statements where none can be."""
     text, place = site.text, site.place
@@ -558,6 +573,7 @@ _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _words,
     _ends,
     _declarations,
+    _constants,
     _gaps,
     _names,
     _prose,

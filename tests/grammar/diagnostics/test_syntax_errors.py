@@ -240,6 +240,24 @@ def test_expected_is_reported_in_words() -> None:
 
 
 @pytest.mark.parametrize(
+    ("line", "code", "message"),
+    [
+        ("N = M + 1", "KSS2039", "M is no constant"),
+        ("N[2] = 1 + 2", "KSS2039", '"+" is not worked out here'),
+        ("INT N = M", "KRL001", "M is no constant"),
+        ("REAL N = SQRT(2)", "KRL001", "SQRT is no constant"),
+        ("FRAME F = {X M,Y 0}", "KRL001", "M is no constant"),
+        ("BOOL B = TRU", "KRL001", "TRU is not a word of KRL"),
+        ("INT N = 12 M", "KRL001", ", is missing"),
+    ],
+)
+def test_a_data_list_works_nothing_out(line: str, code: str, message: str) -> None:
+    """A value that is no constant is named; a line that only assigns it is an instruction."""
+    (found,) = findings(f"DEFDAT A\n{line}\nENDDAT\n")
+    assert (code, message) == (found.code, found.message)
+
+
+@pytest.mark.parametrize(
     ("line", "message"),
     [
         ("= 5", 'no line begins with "="'),
