@@ -21,14 +21,17 @@ def collect_seldom() -> None:
 
 
 @contextmanager
-def gc_paused() -> Iterator[None]:
-    """Collect no garbage while the block runs, and behind it only where it made many objects."""
+def gc_paused(many: int = _MANY) -> Iterator[None]:
+    """Collect no garbage while the block runs, and behind it only where it made many objects.
+
+    Work that leaves little garbage in cycles can set ``many`` higher: what is alive counts too.
+    """
     was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if gc.get_count()[0] >= _MANY:  # less those that are gone; counted while it is off too
+        if gc.get_count()[0] >= many:  # less those that are gone; counted while it is off too
             gc.collect()
         if was_enabled:
             gc.enable()

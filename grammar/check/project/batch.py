@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grammar.check.project.project_check import (
+    MANY_OBJECTS,
     CheckOptions,
     Content,
     FileResult,
@@ -116,7 +117,11 @@ def check_paths(
     size = sum(sizes)
     processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
     results = []
-    with gc_paused(), ResultStore(cache, "check") as store, StickyPool(processes) as pool:
+    with (
+        gc_paused(MANY_OBJECTS),
+        ResultStore(cache, "check") as store,
+        StickyPool(processes) as pool,
+    ):
         for result in _run(iter(projects), pool, store, options):
             on_done(result.files + len(result.skipped))
             results.append(_reported(result, names))

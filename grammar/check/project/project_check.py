@@ -38,6 +38,8 @@ from support.gc_pause import gc_paused
 LARGEST = 24_000_000
 # Trees of so many bytes are kept between reading and checking; other files are read once more.
 _MOST_KEPT = 12_000_000
+#: New objects from which on a check collects garbage: some 200 MB, nine of ten of them alive.
+MANY_OBJECTS = 2_000_000
 # A longer line is not shown with its finding.
 _LONGEST_LINE = 20_000
 
@@ -257,7 +259,7 @@ def _read_all(
     looked, kept = {}, {}
     size = 0
     for index, content in part.items():
-        with gc_paused():
+        with gc_paused(MANY_OBJECTS):
             looked[index], tree = _read(content, options)
         if tree is not None:
             size += len(content.data)
@@ -321,7 +323,7 @@ def check_part(
                 index, tree = own[id(module.table)]
                 syntax = tree.reading.syntax or _again(tree.source)
                 whole = replace(module, syntax=syntax)
-                with gc_paused():
+                with gc_paused(MANY_OBJECTS):
                     checked[index] = _checked(linked, whole, tree, options)
     return checked
 
@@ -347,7 +349,7 @@ def _files(
 
 
 def _again(source: Source) -> ast.Module:
-    with gc_paused():
+    with gc_paused(MANY_OBJECTS):
         syntax = read_source(source).syntax
     assert syntax is not None, "it could be read before"
     return syntax
