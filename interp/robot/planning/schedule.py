@@ -180,10 +180,11 @@ def _better(
 def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool) -> _Speeds | None:
     allowed = _allowed(spans)
     speed, acceleration = start
+    stood = not is_strict and start == (0.0, 0.0)
     ends: list[float] = []
     over = 0.0
     for place, span in enumerate(spans):
-        found = _reached(spans, place, speed, acceleration, allowed[place])
+        found = _reached(spans, place, speed, acceleration, allowed[place], stood=stood)
         if found is None:
             return None
         if found > allowed[place] * (1.0 + 1e-6) + 1e-9:
@@ -364,11 +365,18 @@ def _into(spans: Sequence[_Span], place: int, out: float, most: float) -> float:
 
 
 def _reached(
-    spans: Sequence[_Span], place: int, speed: float, acceleration: float, allowed: float
+    spans: Sequence[_Span],
+    place: int,
+    speed: float,
+    acceleration: float,
+    allowed: float,
+    *,
+    stood: bool = False,
 ) -> float | None:
     """The speed in which a span ends: at best the allowed one, else the nearest that can be.
 
-    Lower where that can be; ``None`` where not even the acceleration can be taken back.
+    Lower where that can be; ``None`` where not even the acceleration can be taken back. An arm that
+    ``stood`` has nothing else that it could do, so more is tried for it.
     """
     span = spans[place]
     if span.is_even:
@@ -386,16 +394,16 @@ def _reached(
     # Not every speed between two that can be reached can be reached: braking hard, it may take
     # longer to ease off the brake at some speed than to stand still.
     eased = _turned_to(0.0, speed, acceleration, bounds.jerk)
+    candidates = [0.0, eased]
+    if stood:  # before a blend that is entered braking the shortest way leads to the brake at once
 
-    def is_slower(target: float) -> bool:
-        final = _leaving(spans, place, target)
-        return target <= _turned_to(final, speed, acceleration, bounds.jerk)
+        def is_slower(target: float) -> bool:
+            final = _leaving(spans, place, target)
+            return target <= _turned_to(final, speed, acceleration, bounds.jerk)
 
-    # Before a blend that is entered braking the shortest way leads to the brake at once.
-    for within in (0.0, eased, _bisected(is_slower, 0.0, max(speed, allowed))):
-        if within >= 0.0 and fits(within):
-            return _bisected(fits, within, allowed)
-    return None
+        candidates.append(_bisected(is_slower, 0.0, max(speed, allowed)))
+    within = next((one for one in candidates if one >= 0.0 and fits(one)), None)
+    return None if within is None else _bisected(fits, within, allowed)
 
 
 def _turned_to(final: float, speed: float, acceleration: float, jerk: float) -> float:
