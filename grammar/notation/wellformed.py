@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from grammar.notation.model import (
     Alternative,
@@ -52,8 +52,8 @@ def problem(grammar: Grammar) -> str | None:
     if deep:
         line = _line(grammar, names.index(deep))
         return f"{line}: tokens within {deep} are nested more than {_MOST_NESTED} deep"
-    finite = _rules_that_match(grammar, leaf=True)
-    endless = next((name for name in names if name not in finite), None)
+    lengths = _lengths(grammar.rules)
+    endless = next((name for name in names if math.isinf(lengths[name])), None)
     if endless is None:
         return None
     line = _line(grammar, names.index(endless))
@@ -113,58 +113,25 @@ def _problem(grammar: Grammar, rule: Rule, element: Element) -> str | None:
     return None
 
 
-def _rules_that_match(grammar: Grammar, *, leaf: bool) -> frozenset[str]:
-    """Names of the rules that match some finite text, or without a ``leaf`` the empty one."""
-    found: set[str] = set()
-
-    def matches(element: Element) -> bool:
-        match element:
-            case Reference(name=name) if name != "EOF":
-                return name in found
-            case Group(alternatives=alternatives):
-                return any(all(map(matches, a.elements)) for a in alternatives)
-            case Repeat(item=item, operator=operator):
-                return operator != "+" or matches(item)
-            case _:
-                return leaf
-
-    grown = True
-    while grown:
-        grown = False
-        for rule in grammar.rules:
-            if rule.name not in found and any(
-                all(map(matches, a.elements)) for a in rule.alternatives
-            ):
-                found.add(rule.name)
-                grown = True
-    return frozenset(found)
-
-
 def _left_recursion(grammar: Grammar) -> list[str] | None:
     """Names of rules on a left-recursive cycle, the first one repeated at the end, or ``None``.
 
     Lexer rules may not be recursive at all.
     """
-    nullable = _rules_that_match(grammar, leaf=False)
+    lengths = _lengths(grammar.rules)
 
     def leading(elements: tuple[Element, ...]) -> Iterator[str]:
         for element in elements:
             match element:
                 case Reference(name=name):
                     yield name
-                    if name not in nullable:
-                        return
                 case Group(alternatives=alternatives):
                     for alternative in alternatives:
                         yield from leading(alternative.elements)
-                    if not any(_may_be_empty(a.elements, nullable) for a in alternatives):
-                        return
-                case Repeat(item=item, operator=operator):
+                case Repeat(item=item):
                     yield from leading((item,))
-                    if operator == "+" and not _may_be_empty((item,), nullable):
-                        return
-                case _:
-                    return
+            if shortest_length(element, lengths):
+                return
 
     edges = {
         rule.name: {
@@ -200,26 +167,14 @@ def _referred(alternative: Alternative) -> Iterator[str]:
     return (e.name for e in walk(alternative) if isinstance(e, Reference))
 
 
-def _may_be_empty(elements: tuple[Element, ...], nullable: frozenset[str]) -> bool:
-    for element in elements:
-        match element:
-            case Reference(name=name):
-                if name not in nullable:
-                    return False
-            case Group(alternatives=alternatives):
-                if not any(_may_be_empty(a.elements, nullable) for a in alternatives):
-                    return False
-            case Repeat(item=item, operator=operator):
-                if operator == "+" and not _may_be_empty((item,), nullable):
-                    return False
-            case _:
-                return False
-    return True
-
-
 def shortest_lengths(grammar: Grammar) -> Mapping[str, float]:
     """Tokens in the shortest sentence of each parser rule; infinite where there is none."""
-    rules = [rule for rule in grammar.rules if not rule.is_lexer]
+    return _lengths(rule for rule in grammar.rules if not rule.is_lexer)
+
+
+def _lengths(rules: Iterable[Rule]) -> Mapping[str, float]:
+    """By rule its shortest length, in tokens or characters; other rules count as one token."""
+    rules = tuple(rules)
     lengths: dict[str, float] = dict.fromkeys((rule.name for rule in rules), math.inf)
     changed = True
     while changed:
