@@ -17,6 +17,7 @@ from typing import Any, Final, get_args
 from conformance.differential.runs import Prepared
 from conformance.differential.traces import Fact, place_of
 from conformance.suite.case import Case
+from grammar.motion_kinds import MOTIONS
 from grammar.semantics.operations import ARITHMETIC, BITWISE, EQUALITY, LOGICAL, ORDER
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
@@ -30,10 +31,6 @@ Counts = Counter[tuple[str, str]]
 #: What a program has to execute to reach a rule or clause, by its ID.
 Needs = Mapping[str, frozenset[tuple[str, str]]]
 
-_MOTIONS: Final = (
-    "PTP LIN CIRC PTP_REL LIN_REL CIRC_REL ASYPTP SPTP SLIN SCIRC SPL SPTP_REL SLIN_REL SCIRC_REL"
-    " SPL_REL"
-).split()
 _CRITERIA: Final = "C_PTP C_DIS C_ORI C_VEL C_SPL".split()
 _VARIANTS: Final = (
     *("IF ELSE", "FOR STEP", "SWITCH DEFAULT", "CASE of several", "RETURN value"),
@@ -54,7 +51,7 @@ def language() -> Mapping[str, tuple[str, ...]]:
     operators = ARITHMETIC | BITWISE | EQUALITY | LOGICAL | ORDER | {":", "NOT", "B_NOT"}
     return {
         "node": tuple(sorted(nodes)),
-        "variant": (*_MOTIONS, *_CRITERIA, *_VARIANTS),
+        "variant": (*MOTIONS, *_CRITERIA, *_VARIANTS),
         "operator": tuple(sorted(operators | {"sign -", "sign +"})),
         "function": tuple(BUILTINS),
         "instruction": tuple(op.name for op in Op),

@@ -19,7 +19,7 @@ from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.expected_tokens import in_words, names, statements
 from grammar.diagnostics.line_edits import BRACKETS, LineEdit, bracket, doubled, keyword, left_out
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_likely, open_blocks
-from grammar.motion_kinds import CIRCLES
+from grammar.motion_kinds import CIRCLES, MOTIONS
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 
@@ -485,10 +485,9 @@ def _motions(site: ErrorSite) -> _Mistake | None:
     return None
 
 
-_POINTS = dict.fromkeys(CIRCLES, "two points") | dict.fromkeys(
-    ("PTP", "LIN", "PTP_REL", "LIN_REL", "SPTP", "SLIN", "SPTP_REL", "SLIN_REL", "SPL", "SPL_REL"),
-    "a point",
-)
+_POINTS = {
+    kind: "two points" if kind in CIRCLES else "a point" for kind in MOTIONS if kind != "ASYPTP"
+}
 
 
 def _commas(words: Sequence[str]) -> int:

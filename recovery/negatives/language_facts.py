@@ -19,6 +19,7 @@ from importlib import resources
 from itertools import pairwise
 
 from grammar.blocks import BLOCKS, CLOSERS
+from grammar.motion_kinds import MOTIONS, PLAIN_MOTIONS
 from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
 
@@ -218,16 +219,12 @@ def _goto(line: SourceLine) -> str | None:
 
 
 def _motion(line: SourceLine) -> str | None:
-    if line.lead not in _OLD_MOTIONS and line.kinds[1:2] in (("=",), ("[",), (".",)):
+    if line.lead not in PLAIN_MOTIONS and line.kinds[1:2] in (("=",), ("[",), (".",)):
         return _assignment_or_call(line)  # a name before there were splines
     is_bare = "=" in line.kinds and "WITH" not in _words(line)
     return "a motion gives values only behind WITH" if is_bare else None
 
 
-_OLD_MOTIONS = frozenset("PTP LIN CIRC PTP_REL LIN_REL CIRC_REL".split())
-_MOTIONS = _OLD_MOTIONS | frozenset(
-    "SPL SPL_REL SPTP SLIN SCIRC SPTP_REL SLIN_REL SCIRC_REL ASYPTP".split()
-)
 _FORMS: Mapping[str, Callable[[SourceLine], str | None]] = {
     "IF": _if,
     "FOR": _for,
@@ -242,7 +239,7 @@ _FORMS: Mapping[str, Callable[[SourceLine], str | None]] = {
     "DEF": _routine,
     "DEFFCT": _routine,
     "GOTO": _goto,
-} | dict.fromkeys(_MOTIONS, _motion)
+} | dict.fromkeys(MOTIONS, _motion)
 
 
 def _shape(line: SourceLine) -> str | None:
@@ -314,7 +311,7 @@ def _blocks(program: Sequence[SourceLine]) -> Violation | None:
 
 
 # Lines that begin with such a word are statements, unless it is a name there.
-_STATEMENTS = _MOTIONS | frozenset(
+_STATEMENTS = frozenset(MOTIONS).union(
     "CONTINUE EXIT GOTO HALT INTERRUPT RESUME RETURN TRIGGER WAIT".split()
 )
 _POSITIONS = frozenset("FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())

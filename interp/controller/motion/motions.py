@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
+from grammar.motion_kinds import AXIS_MOTIONS, PLAIN_MOTIONS, SPLINE_MOTIONS
 from interp.controller.motion.positions import FramesInForce, pose_of, word_of
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
@@ -38,8 +39,7 @@ from interp.values.values import ArrayValue, StructureValue
 
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
-_KINDS: Final = frozenset({"PTP", "LIN", "CIRC", "SPTP", "SLIN", "SCIRC", "SPL"})
-_JOINT: Final = frozenset({"PTP", "SPTP"})
+_KINDS: Final = {kind.removesuffix("_REL") for kind in (*PLAIN_MOTIONS, *SPLINE_MOTIONS)}
 #: How the arm is brought to the end of a line that a program begins with.
 _BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
 
@@ -128,7 +128,7 @@ class MotionBuilder:
             raise own_fault("motion_kind")
         target = target_of(request.target)
         criteria = request.criteria
-        if self._is_first and (suffix or kind not in _JOINT or not is_complete(target)):
+        if self._is_first and (suffix or kind not in AXIS_MOTIONS or not is_complete(target)):
             if not suffix and kind in _BROUGHT:
                 kind, criteria = _BROUGHT[kind], ()
             self._refuse_start(request.at, kind)
@@ -238,7 +238,7 @@ class MotionBuilder:
 
     def _check_frames(self, snapshot: Snapshot, kind: str, target: Target) -> None:
         """A Cartesian motion needs a tool and a base [MOT-15]."""
-        if kind in _JOINT and not set("XYZABC") & set(target):
+        if kind in AXIS_MOTIONS and not set("XYZABC") & set(target):
             return
         if pose_of(snapshot["$TOOL"]) is None:
             raise message_fault(1419)
