@@ -1,17 +1,14 @@
-"""Programs made from real ones: more of them, and valid ones. For benches, never as evidence.
+"""Copies of programs, for benches that need more text than there is; never evidence.
 
-Benches need more text than there is, and text that parses long before the grammar is finished. A
-copy of a program keeps its layout, its comments and every kind of token, so that reading it is as
-much work as reading the program. Its names get a suffix and its numbers other digits, so that no
-two copies are the same and nothing remembered about one spares the reading of another. A valid
-program is a real one with other lines of the same corpus in place of those that cannot be read.
+A copy keeps the layout, the comments and every kind of token of its program, so reading it is as
+much work. Its names get a suffix and its numbers other digits: no two copies are equal, and nothing
+cached for one saves work on another.
 """
 
 from __future__ import annotations
 
 import random
 import re
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count, repeat
@@ -19,8 +16,7 @@ from pathlib import Path
 
 from grammar.bench.damage import damaged_source
 from grammar.blocks import BLOCKS
-from grammar.parser.lexer import EOF, Lexer
-from grammar.parser.recognizer import Recognizer, State
+from grammar.parser.lexer import Lexer
 from grammar.syntax.source import Source
 
 # What may hold digits or words that are no numbers and no names comes first, and stays as it is.
@@ -76,38 +72,6 @@ def templates(texts: Iterable[str], lexer: Lexer) -> Iterator[Template]:
         template = _PIECE.sub(place, text)
         if chr(_SUFFIX) in template:
             yield Template(template)
-
-
-def readable(texts: Iterable[str], recognizer: Recognizer) -> Iterator[str]:
-    """Each text made a program, where that can be done.
-
-    A line that cannot be read is replaced by the last line of the corpus that could be read in
-    the same state, led back to it, and was about as long; where there is none, nothing.
-    """
-    fitting: dict[State, dict[int, str]] = defaultdict(dict)
-    for text in texts:
-        made = _made_readable(text, recognizer, fitting)
-        if made:
-            yield made
-
-
-def _made_readable(
-    text: str, recognizer: Recognizer, fitting: dict[State, dict[int, str]]
-) -> str | None:
-    state = recognizer.start
-    lines: list[str] = []
-    for line in text.replace("\r\n", "\n").replace("\r", "\n").splitlines(keepends=True):
-        kinds = recognizer.kinds(line)[:-1]
-        after, failed = recognizer.run(state, kinds)
-        if failed is None:
-            lines.append(line)
-            if after == state and len(kinds) > 1:
-                fitting[state][len(kinds)] = line
-            state = after
-        elif known := fitting[state]:
-            lines.append(known[min(known, key=lambda length: abs(length - len(kinds)))])
-    accepted = recognizer.run(state, [EOF])[1] is None
-    return "".join(lines) if accepted else None
 
 
 def spread(texts: Iterable[str]) -> list[str]:

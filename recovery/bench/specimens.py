@@ -10,10 +10,8 @@ from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.bench.assessment import BenchMaterial, covering
 from recovery.bench.mutation import Mutant, combined, mutants
-from recovery.bench.resampling import readable
 from recovery.negatives.negatives import Negative
-from support.files.decode import decode
-from support.files.discovery import Skipped, discover, read
+from support.files.discovery import source_files
 
 
 def material_for(
@@ -21,18 +19,12 @@ def material_for(
 ) -> BenchMaterial:
     """Programs below ``roots``, half of them shown to the tool and half held out.
 
-    Where the grammar cannot read a line, a line of the corpus that it can read in that place takes
-    its stead (`recovery.bench.resampling.readable`): the grammar of the day need not be finished.
-    Shown are also the shortest programs through every part of the grammar, so that every part is
-    used. Raises `support.files.discovery.IngestError`.
+    Programs that the grammar does not read are left out. The shortest programs through every part
+    of the grammar are shown too, so that every part is used. Raises
+    `support.files.discovery.IngestError`.
     """
-    texts = []
-    for found in discover(roots):
-        data = found if isinstance(found, Skipped) else read(found)
-        source = None if isinstance(data, Skipped) else decode(data)
-        if source is not None and not isinstance(source, str):
-            texts.append(source.text)
-    programs = list(readable(texts, Recognizer(grammar)))
+    recognizer = Recognizer(grammar)
+    programs = [file.text for file in source_files(roots) if recognizer.accepts(file.text)]
     random.Random(seed).shuffle(programs)
     shown = [*programs[::2], *covering(grammar)]
     return BenchMaterial(

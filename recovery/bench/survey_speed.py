@@ -10,7 +10,7 @@ from __future__ import annotations
 import gc
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -21,10 +21,10 @@ from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.lazy_automaton import Core
 from grammar.parser.recognizer import Recognizer
-from recovery.bench.resampling import Written, readable, spread, templates, write_corpus
+from recovery.bench.resampling import Written, spread, templates, write_corpus
 from recovery.survey.survey import Survey, survey
-from support.files.decode import decode, digest
-from support.files.discovery import Found, IngestError, Skipped, discover, read
+from support.files.decode import Decoded, decode
+from support.files.discovery import Found, IngestError, discover, read, source_files
 from support.measure.isolated import call_isolated
 from support.measure.speed import MB, ROUNDS, machine, peak_mb, scaling, shares
 
@@ -105,22 +105,9 @@ def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
     return 2 * rounds + 2 + len(sizes)
 
 
-def _contents(roots: Sequence[Path]) -> Iterator[bytes]:
-    """Each content below the roots once."""
-    known: set[str] = set()
-    for found in discover(roots):
-        data = read(found) if isinstance(found, Found) else found
-        if isinstance(data, Skipped):
-            continue
-        key = digest(data)
-        if key not in known:
-            known.add(key)
-            yield data
-
-
-def _decoded(contents: Iterable[bytes]) -> list[str]:
-    sources = map(decode, contents)
-    return [source.text for source in sources if not isinstance(source, str)]
+def _texts(roots: Sequence[Path]) -> list[str]:
+    """The text of each file below the roots, each content once."""
+    return list({file.data: file.text for file in source_files(roots)}.values())
 
 
 # -------------------------------------------------------------------------------- the survey
@@ -180,9 +167,10 @@ def _phased(roots: Sequence[Path], grammar_text: str) -> dict[str, float]:
     clock = time.perf_counter
     gc.collect()
     times = [clock()]
-    contents = list(_contents(roots))
+    read_now = (read(found) for found in discover(roots) if isinstance(found, Found))
+    contents = dict.fromkeys(data for data in read_now if isinstance(data, bytes))
     times.append(clock())
-    texts = _decoded(contents)
+    texts = [one.text for one in map(decode, contents) if isinstance(one, Decoded)]
     times.append(clock())
     recognizer = Recognizer(g4.read(grammar_text))
     finder = FailureFinder(recognizer)
@@ -250,8 +238,8 @@ class _Side:
 def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> dict[str, Any]:
     """Both readers on valid texts, accept or reject, and on failing ones, all errors reported.
 
-    Valid texts are files that parse, and others made to (`recovery.bench.resampling.readable`). The
-    tables of both readers are built before the clock runs, what they learn while reading is not.
+    The tables of both readers are built before the clock runs; what they learn while reading is
+    not.
     """
     from grammar.parser import antlr_reference
 
@@ -261,14 +249,15 @@ def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> d
     recovering = _recovering_antlr()
     antlr_reference.accepts("")
     budget = seconds * ANTLR_BYTES_PER_S
-    texts = spread(_decoded(_contents(roots)))
+    texts = spread(_texts(roots))
     valid, failing = _Side(), _Side()
-    for text in list(readable(texts, Recognizer(grammar))):
-        if valid.bytes + len(text) <= budget * 2 / 3:
-            valid.compare(text, antlr_reference.accepts, recognizer.accepts)
-            valid.tokens += len(recognizer.kinds(text))
+    checker = Recognizer(grammar)  # a third one: what is compared has to be cold
     for text in texts:
-        if failing.bytes + len(text) <= budget / 3 and not recognizer.accepts(text):
+        if checker.accepts(text):
+            if valid.bytes + len(text) <= budget * 2 / 3:
+                valid.compare(text, antlr_reference.accepts, recognizer.accepts)
+                valid.tokens += len(recognizer.kinds(text))
+        elif failing.bytes + len(text) <= budget / 3:
             failing.compare(text, recovering, finder.find)
             failing.tokens += len(recognizer.kinds(text))
     return {"valid": valid.record(), "failing": failing.record()}
@@ -315,7 +304,7 @@ def synthesise(
 
     Raises `support.files.discovery.IngestError` where there is nothing to copy.
     """
-    texts = spread(_decoded(_contents(roots)))
+    texts = spread(_texts(roots))
     lexer = Recognizer(g4.read(grammar_text)).lexer
     try:
         return write_corpus(list(templates(texts, lexer)), folder, size, seed, damages)

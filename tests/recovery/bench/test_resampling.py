@@ -8,7 +8,7 @@ import pytest
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.bench.resampling import readable, spread, templates, write_corpus
+from recovery.bench.resampling import spread, templates, write_corpus
 
 PROGRAM = """&ACCESS RVP
 DEF place_box1( )
@@ -91,22 +91,3 @@ def test_spread_mixes_sizes_evenly() -> None:
     order = spread("x" * size for size in range(16))
     assert list(range(16)) == sorted(map(len, order))
     assert {0, 1, 2, 3} == {len(text) // 4 for text in order[:4]}
-
-
-def test_valid_programs_stay_as_they_are(recognizer: Recognizer) -> None:
-    """What parses is not changed."""
-    valid = "DEF a()\nx = 1\nEND\n"
-    assert [valid] == list(readable([valid], recognizer))
-
-
-def test_lines_that_cannot_be_read_are_replaced(recognizer: Recognizer) -> None:
-    """In place of a failing line stands the fitting line that is nearest in length."""
-    valid = "DEF a()\nx = 1\nx = 1\ny = (1 + 2) * 3\nEND\n"
-    failing = "DEF b()\nx = 2\nx = = =\nx = = = = = = = =\nEND\n"
-    (_, made) = readable([valid, failing], recognizer)
-    assert "DEF b()\nx = 2\nx = 1\ny = (1 + 2) * 3\nEND\n" == made
-
-
-def test_texts_that_cannot_be_made_programs_are_left_out(recognizer: Recognizer) -> None:
-    """A text whose routine never ends is no program, whatever lines it gets."""
-    assert [] == list(readable(["DEF a()\nx = 1\n"], recognizer))
