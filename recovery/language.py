@@ -13,8 +13,8 @@ from pathlib import Path
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative
 from recovery.negatives.tokens import RESERVED, line
-from support.files.decode import decode, digest
-from support.files.discovery import IngestError, Skipped, discover, read
+from support.files.decode import digest
+from support.files.discovery import IngestError, source_files
 from support.files.untrusted import read_bytes
 
 
@@ -55,12 +55,7 @@ class Language:
 
 
 def _krl_source(roots: Sequence[Path]) -> Iterable[tuple[str, str, bytes, str]]:
-    for found in discover(roots):
-        if isinstance(found, Skipped) or isinstance(data := read(found), Skipped):
-            continue
-        source = decode(data)
-        if not isinstance(source, str):
-            yield found.path, found.origin, data, source.text
+    return ((one.path, one.found.origin, one.data, one.text) for one in source_files(roots))
 
 
 KRL = Language(

@@ -26,8 +26,7 @@ from grammar.semantics.resolve import resolve
 from grammar.semantics.symbol_table import table_of
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
-from support.files.decode import decode
-from support.files.discovery import Found, IngestError, discover, read
+from support.files.discovery import Found, IngestError, Skipped, discover, read_source
 from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
 from support.measure.speed import MB, ROUNDS, machine, peak_mb, scaling, shares
@@ -175,19 +174,18 @@ def _phases(roots: Sequence[Path]) -> dict[str, float]:
     sources: dict[str, Source] = {}
     for found in discover(roots):
         with clock.during("decoding"):
-            data = read(found) if isinstance(found, Found) else b""
-            decoded = decode(data) if isinstance(data, bytes) else ""
-        if isinstance(decoded, str):
+            file = read_source(found)
+        if isinstance(file, Skipped):
             continue
         with clock.during("parsing"):
-            tree = ours.parser.parse(decoded.text)
+            tree = ours.parser.parse(file.text)
         syntax = table = None
         if isinstance(tree, Tree):
             with clock.during("building"):
                 syntax = ours.module(tree)
             with clock.during("tables"):
                 table = table_of(syntax)
-        sources[found.path] = Source(decoded.text, found.path)
+        sources[found.path] = Source(file.text, found.path)
         files.append(File(found.path, syntax, found.origin, table))
     with clock.during("linking"):
         workspace = link(files, system)

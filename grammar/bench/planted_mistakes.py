@@ -32,8 +32,7 @@ from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
 from grammar.syntax.source import Source
-from support.files.decode import decode
-from support.files.discovery import Found, IngestError, discover, read
+from support.files.discovery import IngestError, source_files
 
 # A place is drawn again so often until a kind of damage is possible there.
 _TRIES = 200
@@ -338,11 +337,8 @@ def _figures(trials: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _projects(roots: Sequence[Path]) -> Iterator[dict[str, _Program]]:
     programs: dict[str, _Program] = {}
-    for found in discover(roots):
-        data = read(found) if isinstance(found, Found) else b""
-        decoded = decode(data) if isinstance(data, bytes) else ""
-        if not isinstance(decoded, str) and isinstance(found, Found):
-            programs[found.path] = _program(Source(decoded.text, found.path), found.origin)
+    for one in source_files(roots):
+        programs[one.path] = _program(Source(one.text, one.path), one.found.origin)
     bare = [replace(program.file, syntax=None) for program in programs.values()]
     for project in link(bare).projects:
         yield {module.path: programs[module.path] for module in project.modules}

@@ -85,21 +85,18 @@ def diff(
 def _sources(root: Path) -> "list[Source]":
     """The programs below a root, with paths that count from there."""
     from grammar.syntax.source import Source
-    from support.files.decode import decode
-    from support.files.discovery import Found, IngestError, Skipped, discover, read
+    from support.files.discovery import IngestError, Skipped, discover, read_source
 
     if root.as_posix() == _NOWHERE:
         return []
     found = []
     with as_input_errors(IngestError):
-        for one in discover([root]):
-            data = read(one) if isinstance(one, Found) else one
-            decoded = data.reason if isinstance(data, Skipped) else decode(data)
-            if isinstance(decoded, str):
-                typer.echo(shown(f"left out {one.path}: {decoded}"), err=True)
+        for one in map(read_source, discover([root])):
+            if isinstance(one, Skipped):
+                typer.echo(shown(f"left out {one.path}: {one.reason}"), err=True)
                 continue
             path = one.path.removeprefix(root.as_posix()).lstrip("/") or root.name
-            found.append(Source(decoded.text, path))
+            found.append(Source(one.text, path))
     return found
 
 

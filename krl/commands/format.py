@@ -66,18 +66,17 @@ def format_programs(
     return FINDINGS if counts[_Outcome.LEFT] or counts[_Outcome.WOULD_CHANGE] else FINE
 
 
-def _format(found: "Found | Skipped", check: bool) -> _Outcome:
+def _format(candidate: "Found | Skipped", check: bool) -> _Outcome:
     """Format one file, and say on one line what is not as it should be."""
     from grammar.syntax.formatter import FormatterDefect, formatter
-    from support.files.decode import decode
-    from support.files.discovery import Skipped, read
+    from support.files.discovery import Skipped, read_source
 
-    data = found if isinstance(found, Skipped) else read(found)
-    source = data.reason if isinstance(data, Skipped) else decode(data)
-    if isinstance(found, Skipped) or isinstance(data, Skipped) or isinstance(source, str):
-        return _complain(found.path, f"skipped: {source}", _Outcome.SKIPPED)
+    file = read_source(candidate)
+    if isinstance(file, Skipped):
+        return _complain(file.path, f"skipped: {file.reason}", _Outcome.SKIPPED)
+    found = file.found
     try:
-        text = formatter().layout(source.text, found.path)
+        text = formatter().layout(file.text, found.path)
     except FormatterDefect as defect:
         return _complain(found.path, f"left alone, please report it: {defect}", _Outcome.LEFT)
     if isinstance(text, list):
@@ -85,13 +84,13 @@ def _format(found: "Found | Skipped", check: bool) -> _Outcome:
         place = f"{found.path}:{first.line}:{first.column}"
         what = first.reason or f"syntax error at {_token(first.text)}"
         return _complain(place, f"left alone: {what}", _Outcome.LEFT)
-    if text == source.text:
+    if text == file.text:
         return _Outcome.RIGHT
     if check or found.member is not None:
         typer.echo(f"would change {one_line(found.path)}")
         return _Outcome.WOULD_CHANGE
     try:
-        write_atomic(found.file, source.replaced(data, text))
+        write_atomic(found.file, file.decoded.replaced(file.data, text))
     except OSError as error:
         reason = error.strerror or type(error).__name__
         return _complain(found.path, f"not written: {reason}", _Outcome.NOT_WRITTEN)

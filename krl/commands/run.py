@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.running.run_notes import refused, run_notes
 from krl.running.run_options import (
     FileArgument,
@@ -134,10 +134,8 @@ def _check_targets(path: Path | None, video: Path | None, png: Path | None, robo
             continue
         if robot is not Robot.MUJOCO:
             raise InputError(f"{option}: only the MuJoCo arm can be filmed; say --robot mujoco")
-        try:
+        with as_input_errors(VideoError):
             check(target, suffixes)
-        except VideoError as error:
-            raise InputError(str(error)) from error
 
 
 def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None) -> "RunResult":

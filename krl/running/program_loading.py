@@ -6,7 +6,7 @@ from itertools import chain
 from pathlib import Path, PurePath, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
-from krl.errors import InputError
+from krl.errors import InputError, as_input_errors
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source
@@ -103,19 +103,13 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
     Raises `InputError` where there is no root, or one that cannot be looked into.
     """
     from grammar.syntax.source import Source
-    from support.files.decode import decode
-    from support.files.discovery import Found, IngestError, Skipped, discover, read
+    from support.files.discovery import IngestError, source_files
 
     if not roots:
         raise InputError("there is no corpus/ here: name files, folders or .zip archives")
-    try:
-        for one in discover(roots):
-            data = read(one) if isinstance(one, Found) else one
-            text = data.reason if isinstance(data, Skipped) else decode(data)
-            if not isinstance(text, str):
-                yield one.origin, Source(text.text, one.path)
-    except IngestError as error:
-        raise InputError(str(error)) from error
+    with as_input_errors(IngestError):
+        for one in source_files(roots):
+            yield one.found.origin, Source(one.text, one.path)
 
 
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
@@ -125,8 +119,14 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     Files that cannot be read are left out, but not the one that was asked for.
     """
     from grammar.syntax.source import Source
-    from support.files.decode import decode
-    from support.files.discovery import Found, IngestError, Skipped, discover, printable, read
+    from support.files.discovery import (
+        Found,
+        IngestError,
+        Skipped,
+        discover,
+        printable,
+        read_source,
+    )
 
     archive, inner = _in_archive(file)
     if archive is None and not file.is_file() and not file.is_dir():
@@ -135,11 +135,9 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         raise InputError(f"{file}: holds {_programs_in(file)}")
     root = archive or project_root(file)
     is_mixed = archive is None and not _is_project(root)
-    try:
+    with as_input_errors(IngestError):
         roots = _near(root, _Disk()) if is_mixed else [root]
         found = [one for one in discover(roots) if isinstance(one, Found)]
-    except IngestError as error:
-        raise InputError(str(error)) from error
     if archive is None:
         found = [one for one in found if one.member is None]
     paths = {one: PurePosixPath(_shown(one, root)) for one in found}
@@ -161,22 +159,20 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
         unnamed = f"{len(whole) - len(found):,} of {len(whole):,} files"
         left += [f"{unnamed} that the program does not name"] * (len(found) < len(whole))
     for one in found:
-        data = read(one)
-        decoded = data.reason if isinstance(data, Skipped) else decode(data)
-        if isinstance(decoded, str):
+        read = read_source(one)
+        if isinstance(read, Skipped):
             if one is asked:
-                raise InputError(f"{one.path}: {decoded}")
-            left.append(f"{one.path}: {decoded}")
+                raise InputError(f"{one.path}: {read.reason}")
+            left.append(f"{one.path}: {read.reason}")
             continue
-        sources.append(Source(decoded.text, _shown(one, root)))
+        sources.append(Source(read.text, _shown(one, root)))
     return sources, main, left
 
 
 def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
     """The files whose names a file has, or one of these, and data and submit of the controller."""
     from grammar.semantics.link import words_of
-    from support.files.decode import decode
-    from support.files.discovery import Skipped, read
+    from support.files.discovery import SourceFile, read_source
 
     by_name: dict[str, list[Found]] = {}
     todo = [asked]
@@ -192,9 +188,8 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
         one = todo.pop()
         if one not in named:
             named[one] = None
-            data = read(one)
-            text = data.reason if isinstance(data, Skipped) else decode(data)
-            words = frozenset[str]() if isinstance(text, str) else words_of(text.text)
+            read = read_source(one)
+            words = words_of(read.text) if isinstance(read, SourceFile) else frozenset[str]()
             todo += [other for name in words & by_name.keys() for other in by_name.pop(name)]
     return [one for one in found if one in named]
 
@@ -203,10 +198,8 @@ def _programs_in(place: Path) -> str:
     """What can be run in a folder or an archive, those that robot programmers write first."""
     from support.files.discovery import Found, IngestError, discover
 
-    try:
+    with as_input_errors(IngestError):
         paths = [one.path for one in discover([place]) if isinstance(one, Found)]
-    except IngestError as error:
-        raise InputError(str(error)) from error
     programs = sorted(
         (path for path in paths if path.lower().endswith(".src")),
         key=lambda path: ("/program/" not in path.lower(), path),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from krl.errors import InputError
+from krl.errors import InputError, as_input_errors
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.machine_data import MachineData
@@ -44,18 +44,14 @@ def robot_options(
     elif named:
         from interp.robot.simulation.robot_files import RobotFileError, read_robot
 
-        try:
+        with as_input_errors(RobotFileError):
             made = OwnRobot(file=read_robot(named[0]))
-        except RobotFileError as error:
-            raise InputError(str(error)) from error
     if scene is None:
         return made
     from interp.robot.simulation.scene import SceneError, read_scene
 
-    try:
+    with as_input_errors(SceneError):
         return OwnRobot(made.machine, made.file, read_scene(scene))
-    except SceneError as error:
-        raise InputError(str(error)) from error
 
 
 def _with_torques_beside(machine: "MachineData", path: Path) -> "MachineData":
@@ -89,10 +85,8 @@ def read_machine_file(path: Path) -> "MachineData":
     source = decode(read_bytes(path))
     if isinstance(source, str):
         raise InputError(f"{path}: not machine data: {source}")
-    try:
+    with as_input_errors(DataListError, MachineDataError):
         machine = read_machine(source.text, str(path))
-    except (DataListError, MachineDataError) as error:
-        raise InputError(str(error)) from error
     try:
         kinematics_of(machine)
     except MachineDataError as error:

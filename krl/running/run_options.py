@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
-from krl.errors import InputError, one_line
+from krl.errors import InputError, as_input_errors, one_line
 from krl.extras import ARM, expected_extras
 from krl.project_settings import settings_of
 from krl.running.program_loading import load_program
@@ -232,11 +232,9 @@ def expected_errors(robot: Robot, *needed: str) -> Iterator[None]:
     from interp.robot.simulation.scene import SceneError
     from interp.values.faults import RuntimeFailure
 
-    try:
-        with expected_extras(*(() if robot is Robot.NONE else ARM), *needed):
-            yield
-    except (RuntimeFailure, SceneError) as error:
-        raise InputError(str(error)) from error
+    arm = () if robot is Robot.NONE else ARM
+    with as_input_errors(RuntimeFailure, SceneError), expected_extras(*arm, *needed):
+        yield
 
 
 def _text(file: Path) -> str:

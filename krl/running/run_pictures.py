@@ -10,7 +10,7 @@ from interp.robot.simulation.cell import Cell
 from interp.robot.simulation.scene import Scene
 from interp.robot.simulation.video import VideoError, frame_times, write_picture, write_video
 from interp.session import RunResult, RunSetup
-from krl.errors import InputError
+from krl.errors import as_input_errors
 from krl.terminal.progress import progress_bar
 from support.files.atomic_write import atomic_path
 
@@ -25,11 +25,12 @@ def write_run_film(target: Path, done: RunResult, program: CheckedProgram, setup
         return
     moments = frame_times(arm[1])
     captions = list(_captions(done.events, program, moments))
-    try:
-        with progress_bar("filming", len(moments)) as bar, atomic_path(target) as part:
-            write_video(part, *arm, captions=captions, on_frame=bar)
-    except VideoError as error:
-        raise InputError(str(error)) from error
+    with (
+        as_input_errors(VideoError),
+        progress_bar("filming", len(moments)) as bar,
+        atomic_path(target) as part,
+    ):
+        write_video(part, *arm, captions=captions, on_frame=bar)
 
 
 def write_run_picture(target: Path, done: RunResult, setup: RunSetup) -> None:
@@ -37,11 +38,8 @@ def write_run_picture(target: Path, done: RunResult, setup: RunSetup) -> None:
     arm = _recorded_arm(done, setup)
     if arm is None:
         return
-    try:
-        with atomic_path(target) as part:
-            write_picture(part, *arm)
-    except VideoError as error:
-        raise InputError(str(error)) from error
+    with as_input_errors(VideoError), atomic_path(target) as part:
+        write_picture(part, *arm)
 
 
 def _recorded_arm(done: RunResult, setup: RunSetup) -> tuple[Cell, Any, Any] | None:

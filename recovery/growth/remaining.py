@@ -21,8 +21,8 @@ from recovery.records import (
     RemainingLineRecord,
 )
 from recovery.survey.failing_line import failures_of, source_lines
-from support.files.decode import decode, digest
-from support.files.discovery import Skipped, read
+from support.files.decode import digest
+from support.files.discovery import SourceFile, read_source
 
 _REASONS = Path(__file__).with_name("remaining.tsv")
 _EXAMPLES = 20
@@ -129,9 +129,6 @@ def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousR
 def _texts(contents: Sequence[Content]) -> Iterator[tuple[Content, str]]:
     """The contents with their texts; one that has changed since it was found is left out."""
     for content in contents:
-        data = read(content.found)
-        if isinstance(data, Skipped) or digest(data) != content.digest:
-            continue
-        source = decode(data)
-        if not isinstance(source, str):
-            yield content, source.text
+        file = read_source(content.found)
+        if isinstance(file, SourceFile) and digest(file.data) == content.digest:
+            yield content, file.text

@@ -22,7 +22,7 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.growth.inclusion import fixed_texts_added, occurs
 from recovery.survey.result_cache import key_of
-from support.files.decode import Source, decode, digest
+from support.files.decode import Decoded, decode, digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
@@ -254,8 +254,8 @@ _Result = dict[int, int] | str | Skipped
 def _perform(run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]) -> list[_Result]:
     """Read contents under a run of grammars."""
     texts = [_text(content) for content in contents]
-    results: list[_Result] = [{} if isinstance(text, Source) else text for text in texts]
-    programs = {place: text.text for place, text in enumerate(texts) if isinstance(text, Source)}
+    results: list[_Result] = [{} if isinstance(text, Decoded) else text for text in texts]
+    programs = {place: text.text for place, text in enumerate(texts) if isinstance(text, Decoded)}
     folded = {place: text.upper() for place, text in programs.items()}
     parsed: set[int] = set()
     before: Recognizer | None = None
@@ -282,7 +282,7 @@ def _added(before: Recognizer, after: Recognizer) -> frozenset[str] | None:
     return fixed_texts_added(before.network, after.network, (before.grammar, after.grammar))
 
 
-def _text(content: Content) -> Source | str | Skipped:
+def _text(content: Content) -> Decoded | str | Skipped:
     """The text of a content, why it is no KRL, or why it cannot be read any more."""
     data = read(content.found)
     if isinstance(data, Skipped):

@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from grammar.blocks import BLOCKS, CLOSERS
+from grammar.motion_kinds import MOTIONS
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, lines
 from recovery.survey.survey import Survey, survey
-from support.files.decode import decode
-from support.files.discovery import Found, Skipped, discover, read
+from support.files.discovery import source_files
 
 # What `recovery.negatives.language_facts` takes for more than a name.
 _KEYWORDS = (
@@ -26,8 +26,7 @@ _KEYWORDS = (
     | RESERVED_FIRST
     | BLOCKS.keys()
     | CLOSERS.keys()
-    | frozenset("WAIT INTERRUPT TRIGGER PTP LIN CIRC PTP_REL LIN_REL CIRC_REL".split())
-    | frozenset("SPL SPTP SLIN SCIRC SPL_REL SPTP_REL SLIN_REL SCIRC_REL ASYPTP".split())
+    | frozenset({"WAIT", "INTERRUPT", "TRIGGER", *MOTIONS})
 )
 _GENERATED = 3_000
 _SEED = 2010
@@ -105,8 +104,4 @@ class Corpora:
 
 
 def _texts(folder: Path | None) -> Iterator[str]:
-    for found in discover([folder]) if folder else ():
-        data = read(found) if isinstance(found, Found) else found
-        source = data.reason if isinstance(data, Skipped) else decode(data)
-        if not isinstance(source, str):
-            yield source.text
+    return (file.text for file in source_files([folder])) if folder else iter(())

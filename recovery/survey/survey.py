@@ -28,7 +28,7 @@ from recovery.survey.unreserved_keywords import (
     names_used,
 )
 from support.files.decode import decode, digest
-from support.files.discovery import Found, Skipped, discover, read
+from support.files.discovery import Found, Skipped, discover, read, read_source
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress
@@ -60,11 +60,10 @@ class SurveyedFile:
 
     def lines(self) -> list[str]:
         """The lines of the file, read again; empty where it has changed since the survey."""
-        data = read(self.found)
-        if isinstance(data, Skipped) or digest(data) != self.digest:
+        file = read_source(self.found)
+        if isinstance(file, Skipped) or digest(file.data) != self.digest:
             return []
-        source = decode(data)
-        return [] if isinstance(source, str) else source_lines(source.text)
+        return source_lines(file.text)
 
 
 @dataclass(frozen=True, slots=True)

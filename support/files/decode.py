@@ -20,7 +20,7 @@ _LINE_WIDTH = 400  # characters of a line that are looked at; enough to know a s
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class Decoded:
     """The text of a KRL file.
 
     `text` has its newlines as they were, and no byte order mark. `encoding` is the Python name of
@@ -46,7 +46,7 @@ def digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def decode(data: bytes) -> Source | str:
+def decode(data: bytes) -> Decoded | str:
     """Return the text of a KRL file, or in one line why `data` is not KRL text.
 
     Read as UTF-8 where that is valid, else as cp1252, else as Latin-1, because cp1252 leaves five
@@ -90,7 +90,7 @@ _MAGIC = (
 )
 
 
-def _text_of(data: bytes) -> Source | str:
+def _text_of(data: bytes) -> Decoded | str:
     """Decode `data`, or say why it is not text."""
     for mark, encoding in _WIDE:
         if data.startswith(mark):
@@ -99,7 +99,7 @@ def _text_of(data: bytes) -> Source | str:
             except UnicodeDecodeError:
                 continue
             text = text.rstrip(_PADDING)
-            return _why_binary(text.encode("utf-8")) or Source(text, encoding)
+            return _why_binary(text.encode("utf-8")) or Decoded(text, encoding)
     body = data.rstrip(_PADDING.encode("ascii"))
     if reason := _why_binary(body):
         return reason
@@ -110,8 +110,8 @@ def _text_of(data: bytes) -> Source | str:
             text = body.decode(encoding)
         except UnicodeDecodeError:
             continue
-        return Source(text, "utf-8-sig" if marked and encoding == "utf-8" else encoding)
-    return Source(body.decode("latin-1"), "latin-1")
+        return Decoded(text, "utf-8-sig" if marked and encoding == "utf-8" else encoding)
+    return Decoded(body.decode("latin-1"), "latin-1")
 
 
 def _why_binary(body: bytes) -> str | None:

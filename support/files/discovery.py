@@ -1,8 +1,8 @@
 """Discovery of KRL files in folders, files and archives, each file exactly once.
 
-`discover` says where the candidates lie and `read` fetches one, in any process; `decode` turns the
-bytes into text. Nothing is lost: what cannot be read becomes a `Skipped` with its reason. The order
-is that of sorted paths, the same on every system and for every order of the roots.
+`discover` finds the candidates; `read` fetches the bytes of one, in any process, and `read_source`
+its text too. Nothing is lost: what cannot be read becomes a `Skipped` with its reason. The order is
+that of sorted paths, the same on every system and for every order of the roots.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from pathlib import Path, PurePosixPath
 
 from support.files import archives
 from support.files.archives import ArchiveError, is_archive
+from support.files.decode import Decoded, decode
 from support.files.untrusted import open_file
 from support.lazy_dataclass import dataclass
 
@@ -64,6 +65,25 @@ class Skipped:
     origin: str
 
 
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """A candidate that holds KRL: where it lies, its bytes, and its text."""
+
+    found: Found
+    data: bytes
+    decoded: Decoded
+
+    @property
+    def path(self) -> str:
+        """See `Found.path`."""
+        return self.found.path
+
+    @property
+    def text(self) -> str:
+        """See `Decoded.text`."""
+        return self.decoded.text
+
+
 def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
     """Find the candidates below `roots`: files, folders, `.zip` archives, places inside these.
 
@@ -96,6 +116,27 @@ def read(found: Found) -> bytes | Skipped:
         return Skipped(found.path, printable(str(error)), found.origin)
     except OSError as error:
         return Skipped(found.path, f"cannot be read: {archives.why(error)}", found.origin)
+
+
+def read_source(candidate: Found | Skipped) -> SourceFile | Skipped:
+    """Return the text of a candidate, or why it has none."""
+    if isinstance(candidate, Skipped):
+        return candidate
+    data = read(candidate)
+    if isinstance(data, Skipped):
+        return data
+    decoded = decode(data)
+    if isinstance(decoded, str):
+        return Skipped(candidate.path, decoded, candidate.origin)
+    return SourceFile(candidate, data, decoded)
+
+
+def source_files(roots: Sequence[Path]) -> Iterator[SourceFile]:
+    """Every file with KRL below `roots`; the others are left out. Raises IngestError as above."""
+    for candidate in discover(roots):
+        file = read_source(candidate)
+        if isinstance(file, SourceFile):
+            yield file
 
 
 def printable(text: str) -> str:

@@ -28,28 +28,27 @@ def fix_files(
     """
     from grammar.check.project.repair import repair
     from grammar.syntax.source import Source
-    from support.files.decode import decode
-    from support.files.discovery import Found, IngestError, discover, read
+    from support.files.discovery import Found, IngestError, Skipped, discover, read_source
 
     is_changed = False
     with as_input_errors(IngestError):
         for found in discover(paths):
-            data = read(found) if isinstance(found, Found) and not leaves_out(found) else None
-            decoded = decode(data) if isinstance(data, bytes) else ""
-            if isinstance(decoded, str) or not isinstance(found, Found):
+            if not isinstance(found, Found) or leaves_out(found):
                 continue
-            assert isinstance(data, bytes)
-            done = repair(Source(decoded.text, found.path), is_wanted)
+            file = read_source(found)
+            if isinstance(file, Skipped):
+                continue
+            done = repair(Source(file.text, file.path), is_wanted)
             if not done.mended:
                 continue
             is_changed = True
             if is_shown:
-                _show(found.path, decoded.text, done.text)
+                _show(found.path, file.text, done.text)
                 continue
             if found.member is not None:
                 typer.echo(one_line(f"{found.path}: not mended: it is in an archive"), err=True)
                 continue
-            write_atomic(found.file, decoded.replaced(data, done.text))
+            write_atomic(found.file, file.decoded.replaced(file.data, done.text))
             for one in done.mended:
                 place = f"{one.path}:{one.region.line}:{one.region.column}"
                 typer.echo(one_line(f"{place}: mended {one.code}: {one.message}"), err=True)

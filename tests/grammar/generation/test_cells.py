@@ -21,7 +21,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.parser import antlr_reference
 from grammar.parser.recognizer import Recognizer
 from recovery.negatives.language_facts import violation
-from support.files.decode import Source, decode
+from support.files.decode import Decoded, decode
 
 CELLS = range(1, 9)
 
@@ -38,7 +38,7 @@ def corpus() -> Mapping[File, str]:
     for cell in CELLS:
         for file in files(seed=1, number=cell):
             source = decode(file.data)
-            assert isinstance(source, Source), file.path
+            assert isinstance(source, Decoded), file.path
             found[file] = source.text
     return found
 
@@ -68,7 +68,7 @@ def test_antlr_accepts_a_sample(cell: int) -> None:
     short = (file for file in files(seed=4, number=cell) if len(file.data) < 2_000)
     for file in islice(short, 5, 50, 5):
         source = decode(file.data)
-        assert isinstance(source, Source)
+        assert isinstance(source, Decoded)
         assert None is antlr_reference.refusal(source.text), file.path
 
 
@@ -131,7 +131,7 @@ def test_files_are_stored_in_many_ways(corpus: Mapping[File, str]) -> None:
     assert {True, False} == {b"\r\n" in one for one in data}
     assert any(b"\n" not in one for one in data)
     assert any(one.startswith(b"\xef\xbb\xbf") for one in data)
-    encodings = {source.encoding for source in map(decode, data) if isinstance(source, Source)}
+    encodings = {source.encoding for source in map(decode, data) if isinstance(source, Decoded)}
     assert {"cp1252", "utf-8"} <= encodings
     assert any(not one.endswith((b"\r", b"\n")) for one in data)
 

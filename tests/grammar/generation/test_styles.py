@@ -11,7 +11,7 @@ from grammar.generation.closed.programs import seeded
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.walk import walk
-from support.files.decode import Source, decode
+from support.files.decode import Decoded, decode
 
 #: Statements and expressions that neither style writes, each with its reason.
 LEFT_OUT: dict[str, str] = {}
@@ -23,7 +23,7 @@ def texts() -> Iterator[str]:
         yield from (text for _, text in seeded(3, number).files)
     for file in islice(files(seed=3, number=1), 60):
         source = decode(file.data)
-        assert isinstance(source, Source), file.path
+        assert isinstance(source, Decoded), file.path
         yield source.text
 
 

@@ -18,7 +18,7 @@ from recovery.negatives.generate import evenly, generate
 from recovery.negatives.language_facts import adjacent, violation
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.negatives.tokens import lines
-from support.files.decode import Source, decode
+from support.files.decode import Decoded, decode
 
 ROOT = Path(__file__).parents[3]
 
@@ -29,7 +29,7 @@ def own_programs() -> list[str]:
     sources = [
         decode(p.read_bytes()) for p in paths if p.suffix.lower() in (".src", ".dat", ".sub")
     ]
-    return [source.text for source in sources if isinstance(source, Source)]
+    return [source.text for source in sources if isinstance(source, Decoded)]
 
 
 @pytest.fixture(scope="module")

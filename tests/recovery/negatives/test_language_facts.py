@@ -8,7 +8,7 @@ import pytest
 from recovery.negatives.language_facts import adjacent, violation
 from recovery.negatives.negatives import load
 from recovery.negatives.tokens import lines
-from support.files.decode import Source, decode
+from support.files.decode import Decoded, decode
 
 CORPUS = Path(__file__).parents[3] / "corpus"
 SPELLINGS = {
@@ -36,7 +36,7 @@ def test_own_programs_break_no_fact() -> None:
     for path in (CORPUS / "programs").rglob("*"):
         if path.suffix.lower() in (".src", ".dat", ".sub"):
             source = decode(path.read_bytes())
-            assert isinstance(source, Source), path
+            assert isinstance(source, Decoded), path
             checked += 1
             if found := violation(source.text):
                 broken[path.name] = found

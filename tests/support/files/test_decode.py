@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from support.files.decode import Source, decode, digest
+from support.files.decode import Decoded, decode, digest
 
 PROGRAM = "&ACCESS RVP\r\nDEF CELL1 ( )\r\n;FOLD INI\r\n  $OUT[1]=TRUE\r\n;ENDFOLD\r\nEND\r\n"
 BOMS = {"utf-16-le": b"\xff\xfe", "utf-16-be": b"\xfe\xff"}
@@ -15,7 +15,7 @@ BOMS |= {"utf-32-le": b"\xff\xfe\0\0", "utf-32-be": b"\0\0\xfe\xff"}
 
 def text_of(data: bytes) -> str:
     source = decode(data)
-    assert isinstance(source, Source), source
+    assert isinstance(source, Decoded), source
     return source.text
 
 
@@ -41,7 +41,7 @@ def reason_of(data: bytes) -> str:
 def test_the_encoding_is_found_by_what_is_valid(data: bytes, encoding: str) -> None:
     """UTF-8 comes before cp1252, and cp1252 before Latin-1, which alone reads byte 0x81."""
     source = decode(data)
-    assert isinstance(source, Source)
+    assert isinstance(source, Decoded)
     assert encoding == source.encoding
     assert data == source.text.encode(source.encoding)
 
@@ -51,7 +51,7 @@ def test_the_encoding_is_found_by_what_is_valid(data: bytes, encoding: str) -> N
 def test_wide_text_is_read_by_its_mark(encoding: str, tail: str) -> None:
     """UTF-16 and UTF-32 with a byte order mark give back the text, without the mark."""
     text = f"{PROGRAM}; {tail}."
-    assert Source(text, encoding) == decode(BOMS[encoding] + text.encode(encoding))
+    assert Decoded(text, encoding) == decode(BOMS[encoding] + text.encode(encoding))
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
@@ -59,7 +59,7 @@ def test_wide_text_is_read_by_its_mark(encoding: str, tail: str) -> None:
 def test_utf8_round_trip(encoding: str, tail: str) -> None:
     """Whatever is written in UTF-8 is read as it was, with a byte order mark or without."""
     text = f"{PROGRAM}; {tail}."
-    assert Source(text, encoding) == decode(text.encode(encoding))
+    assert Decoded(text, encoding) == decode(text.encode(encoding))
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1"])
@@ -70,7 +70,7 @@ def test_single_byte_round_trip(encoding: str, tail: st.DataObject) -> None:
     start = f"{PROGRAM}; Ünn" + ("\x9d" if encoding == "latin-1" else "")
     allowed = [sign for sign in bytes(range(256)).decode(encoding, "ignore") if sign.isprintable()]
     text = f"{start}{tail.draw(st.text(st.sampled_from(allowed)))}."
-    assert Source(text, encoding) == decode(text.encode(encoding))
+    assert Decoded(text, encoding) == decode(text.encode(encoding))
 
 
 @given(st.binary() | st.binary().map(lambda junk: b"DEF A()\n" + junk))
@@ -112,7 +112,7 @@ def test_padding_is_dropped_from_wide_text_by_characters() -> None:
 
 def test_a_marked_file_with_foreign_bytes_is_still_read() -> None:
     """A UTF-8 mark before text that is not UTF-8 is removed, and the text read as cp1252."""
-    assert Source("DEF A() ;Ü\nEND", "cp1252") == decode(b"\xef\xbb\xbfDEF A() ;\xdc\nEND")
+    assert Decoded("DEF A() ;Ü\nEND", "cp1252") == decode(b"\xef\xbb\xbfDEF A() ;\xdc\nEND")
 
 
 def test_digest_is_sha256() -> None:
