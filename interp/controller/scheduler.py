@@ -26,7 +26,7 @@ from interp.controller.requests.waits import Waits
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
-from interp.port.requests import At, Crash, End, Fail, Request, Slice, StopAdvance
+from interp.port.requests import At, Crash, End, Fail, Request, Slice, StopAdvance, Wait
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass
@@ -213,6 +213,8 @@ class Scheduler:
                     answer = self._answer(task, task.executor.advance(task.reply))
                 elif blocked.is_ready():
                     task.blocked = None
+                    if blocked.wake is None or isinstance(blocked.request, Wait):
+                        task.busy_at = self.state.clock.now  # it waited, and polled nothing
                     self.state.trace.origin = task.name, blocked.request.at
                     answer = blocked.finish()
                     if answer is None and isinstance(blocked.request, Slice):

@@ -131,6 +131,10 @@ def test_automatic_inputs(run: Run) -> None:
     status, out, err = run("WAIT FOR $OV_PRO==50\n", "--io", "auto", "--until", "5")
     assert (1, "main.src: time after 5 s at main.src:2\n") == (status, out)
     assert err.startswith("waited for: $OV_PRO at main.src:2, 4.9")
+    slow = "PTP {A1 -160,A2 -90,A3 90,A4 0,A5 0,A6 0}\nPTP {A1 160}\n"  # takes more than a second
+    for wait in ("WAIT FOR $IN[3]", "REPEAT\nUNTIL $IN[3]"):
+        status, out, _ = run(f"{slow}{wait}\n", "--io", "auto")
+        assert (0, True) == (status, out.startswith("main.src: end after "))
     outputs = " OR ".join(f"$OUT[{number}]" for number in range(1, 6))
     _, _, err = run(f"WAIT FOR ({outputs}) AND $IN[7]\n", "--io", "auto", "--until", "5")
     assert err.startswith(
