@@ -6,29 +6,29 @@ from typing import Annotated, Final
 
 import typer
 
-#: Where each command is, in the order of the help: a function, or an app with commands of its own.
+#: Where each command is, a function or an app with commands of its own, and its line in the help.
 _COMMANDS: Final = {
-    "recover": "krl.commands.recover:recover",
-    "construct": "krl.commands.construct.app:app",
-    "check": "krl.commands.check.command:check",
-    "explain": "krl.commands.explain:explain",
-    "diff": "krl.commands.diff:diff",
-    "format": "krl.commands.format:format_programs",
-    "conform": "krl.commands.conform.command:conform",
-    "fuzz": "krl.commands.fuzz:fuzz",
-    "growth": "krl.commands.growth:growth",
-    "corpus": "krl.commands.corpus:app",
-    "bench": "krl.commands.bench.app:app",
-    "compile": "krl.commands.bytecode:compile_file",
-    "asm": "krl.commands.bytecode:assemble_file",
-    "disasm": "krl.commands.bytecode:disassemble_image",
-    "robot": "krl.commands.robot:app",
-    "run": "krl.commands.run:run",
-    "demo": "krl.commands.demo:demo",
-    "debug": "krl.commands.debug:debug",
-    "test": "krl.commands.test:run_tests",
-    "lsp": "krl.commands.lsp:lsp",
-    "nightly": "krl.commands.nightly:nightly",
+    "demo": ("krl.commands.demo:demo", "Run an example and open its page with the moving arm."),
+    "check": ("krl.commands.check.command:check", "Find mistakes in programs and backups."),
+    "explain": ("krl.commands.explain:explain", "Explain a code that `krl check` reports."),
+    "diff": ("krl.commands.diff:diff", "Compare two versions of programs."),
+    "format": ("krl.commands.format:format_programs", "Format programs."),
+    "run": ("krl.commands.run:run", "Run a program on a virtual controller and arm."),
+    "debug": ("krl.commands.debug:debug", "Run a program under a debugger."),
+    "test": ("krl.commands.test:run_tests", "Run unit tests of robot programs."),
+    "lsp": ("krl.commands.lsp:lsp", "Serve an editor (language server)."),
+    "robot": ("krl.commands.robot:app", "Status and Turn of points, by machine data."),
+    "recover": ("krl.commands.recover:recover", "Show what a grammar is missing, or grow one."),
+    "growth": ("krl.commands.growth:growth", "Replay the ledger: how the grammar grew."),
+    "construct": ("krl.commands.construct.app:app", "Add constructs, with evidence."),
+    "corpus": ("krl.commands.corpus:app", "List, fetch or generate programs."),
+    "conform": ("krl.commands.conform.command:conform", "Run conformance cases on the executors."),
+    "fuzz": ("krl.commands.fuzz:fuzz", "Compare the executors on random programs."),
+    "nightly": ("krl.commands.nightly:nightly", "Do all of this, and report what changed."),
+    "compile": ("krl.commands.bytecode:compile_file", "Compile a program to a bytecode image."),
+    "asm": ("krl.commands.bytecode:assemble_file", "Assemble bytecode from its text."),
+    "disasm": ("krl.commands.bytecode:disassemble_image", "Print the bytecode of an image."),
+    "bench": ("krl.commands.bench.app:app", "Measure the tools themselves."),
 }
 
 
@@ -45,12 +45,13 @@ def app(*words: str) -> typer.Typer:
     else:
         wanted = words[:1] if words and words[0] in _COMMANDS else _COMMANDS
     for name in wanted:
-        module, _, attribute = _COMMANDS[name].partition(":")
+        place, line = _COMMANDS[name]
+        module, _, attribute = place.partition(":")
         command = getattr(import_module(module), attribute)
         if isinstance(command, typer.Typer):
-            made.add_typer(command, name=name)
+            made.add_typer(command, name=name, short_help=line)
         else:
-            made.command(name)(command)
+            made.command(name, short_help=line)(command)
     return made
 
 
