@@ -5,7 +5,8 @@ flange of the model stands where the kinematics have it. Masses and shapes are
 those of `interp.robot.simulation.links`. What else machine data does not say is assumed:
 
 - the floor lies one reach below the foot, out of the way, with a pedestal to look at that nothing
-  touches, since the data does not say what the arm stands on.
+  touches, since the data does not say what the arm stands on. Below an arm that hangs, or stands out
+  from a wall, it lies two reaches, and the pedestal is a short piece behind the foot.
 
 Links touch one another and the floor, except for links next to one another or next but one, whose
 shapes overlap. External axes stand beside the arm and touch nothing: machine data does not say what
@@ -27,6 +28,8 @@ from interp.values.poses import IDENTITY, Pose
 FLANGE: Final = "flange"
 #: The geoms of the floor and of the pedestal that the arm stands on.
 GROUND: Final = ("floor", "pedestal")
+#: An arm whose own Z axis has less of the world's than this hangs, or stands out from a wall.
+UPRIGHT: Final = 0.7
 
 _FRICTION = 4.0  # 1/s: torque by speed, as a share of the rotor's inertia
 
@@ -62,7 +65,7 @@ def mjcf_of(machine: MachineData) -> str:
         "  <worldbody>",
         f'    <light pos="0 0 {_number(4 * reach / 1000.0)}" dir="0 0 -1" diffuse="0.5 0.5 0.5"/>',
         f'    <geom name="{GROUND[0]}" type="plane" size="0 0 0.05" material="tiles" '
-        f'pos="0 0 {_number((machine.robroot.position[2] - reach) / 1000.0)}"/>',
+        f'pos="0 0 {_number(_floor(machine) / 1000.0)}"/>',
         _pedestal(machine),
         *_nested(links, None, machine, "    "),
         "  </worldbody>",
@@ -140,12 +143,22 @@ def _geom(shape: Capsule, touches: bool) -> str:
     return f'<geom {form} size="{radius}" mass="{mass}"{contact} rgba="{shape.colour}"/>'
 
 
+def _is_upright(machine: MachineData) -> bool:
+    return machine.robroot.rows[2][2] > UPRIGHT
+
+
+def _floor(machine: MachineData) -> float:
+    """The height of the floor, in mm."""
+    return machine.robroot.position[2] - (1 if _is_upright(machine) else 2) * reach_of(machine)
+
+
 def _pedestal(machine: MachineData) -> str:
-    x, y, z = machine.robroot.position
+    x, y, _ = foot = machine.robroot.position
     reach = reach_of(machine)
+    behind = (machine.robroot @ Pose.of(z=-0.2 * reach)).position
+    start = (x, y, _floor(machine)) if _is_upright(machine) else behind
     return (
-        f'    <geom name="{GROUND[1]}" type="cylinder" '
-        f'fromto="{_metres((x, y, z - reach))} {_metres((x, y, z))}" '
+        f'    <geom name="{GROUND[1]}" type="cylinder" fromto="{_metres(start)} {_metres(foot)}" '
         f'size="{_number(0.12 * reach / 1000.0, 6)}" contype="0" conaffinity="0" rgba="{DARK}"/>'
     )
 

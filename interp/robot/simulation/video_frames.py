@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.simulation.mujoco_model import FLANGE, GROUND
+from interp.robot.simulation.mujoco_model import FLANGE, GROUND, UPRIGHT
 
 _TRAIL = 3.0  # pixels
 _PIECES = 200  # of the trail: each takes as long to draw as a part of the arm
@@ -73,21 +73,27 @@ def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
 
 
 def _foot(model: Any, data: Any, points: Points) -> Points:
-    """Where the pedestal stands, after the floor is drawn no lower than something reaches.
+    """Corners of the pedestal, after the floor is drawn no lower than something reaches.
 
-    The simulated floor is out of the arm's reach: with it in the frame the arm is small.
+    The simulated floor is out of the arm's reach: with it in the frame the arm is small. The
+    pedestal of an arm that stands on the floor ends there.
     """
     floor, pedestal = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name) for name in GROUND)
     if min(floor, pedestal) < 0:
         return np.empty((0, 3))
-    (x, y, middle), (radius, half) = model.geom_pos[pedestal], model.geom_size[pedestal, :2]
+    radius, half = model.geom_size[pedestal, :2]
+    along = -data.geom_xmat[pedestal].reshape(3, 3)[:, 2]  # Z goes to the first end of `fromto`
+    middle = model.geom_pos[pedestal]  # the body that it is on is the world
+    bottom, top = middle - half * along, middle + half * along
     others = (model.geom_bodyid == 0) & ~np.isin(np.arange(model.ngeom), (floor, pedestal))
     bottoms = data.geom_xpos[others, 2] - model.geom_rbound[others]
-    top = middle + half
-    low = max(middle - half, min((top - 2 * radius, points[:, 2].min(), *bottoms)))
+    low = min((top[2] - 2 * radius, points[:, 2].min(), *bottoms))
+    low = max(model.geom_pos[floor, 2], low)
     model.geom_pos[floor, 2] = low
-    model.geom_pos[pedestal, 2], model.geom_size[pedestal, 1] = (top + low) / 2, (top - low) / 2
-    return np.array([(x + dx, y + dy, low) for dx in (-radius, radius) for dy in (-radius, radius)])
+    if along[2] > UPRIGHT:
+        bottom[2] = low
+        middle[2], model.geom_size[pedestal, 1] = (top[2] + low) / 2, (top[2] - low) / 2
+    return bottom + radius * np.array([(dx, dy, 0.0) for dx in (-1, 1) for dy in (-1, 1)])
 
 
 def _camera(model: Any, points: Points, aspect: float) -> Any:

@@ -1,6 +1,7 @@
 """The arm as a model for MuJoCo: it stands where the kinematics say, and touches what it should."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
 from interp.robot.simulation.links import reach_of
 from interp.robot.simulation.mujoco_model import FLANGE, mjcf_of
+from interp.values.poses import Pose
 
 pytest.importorskip("mujoco")
 
@@ -125,6 +127,19 @@ def test_an_arm_in_the_open_touches_nothing() -> None:
     """At home, stretched, and upright, the links do not touch one another."""
     for axes in (HOME, (0.0,) * 6, (0.0, -90.0, 0.0, 0.0, 0.0, 0.0), (90, -45, 120, 30, -60, 0)):
         assert 0 == touching(default_machine(), axes)
+
+
+@pytest.mark.parametrize("turned", [Pose.of(z=2500.0, c=180.0), Pose.of(z=2500.0, b=90.0)])
+def test_an_arm_that_hangs(turned: Pose) -> None:
+    """From a ceiling or a wall it reaches the floor nowhere, and what holds it is behind its foot."""
+    machine = replace(default_machine(), robroot=turned)
+    model, data = loaded(machine)
+    mujoco.mj_forward(model, data)
+    holds = (turned.inverse() @ Pose.of(*data.geom("pedestal").xpos * 1000.0)).position
+    assert (0.0, 0.0) == pytest.approx(holds[:2], abs=1e-6)
+    assert holds[2] < 0.0
+    for axes in ((0.0,) * 6, (0.0, -90.0, 0.0, 0.0, 0.0, 0.0), (0.0, 45.0, 0.0, 0.0, 0.0, 0.0)):
+        assert 0 == touching(machine, axes)
 
 
 def test_what_an_arm_touches() -> None:
