@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 from importlib import import_module
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
 import typer
+from typer.core import TyperGroup
 
 #: Where each command is, a function or an app with commands of its own, and its line in the help.
 _COMMANDS: Final = {
@@ -32,9 +33,20 @@ _COMMANDS: Final = {
 }
 
 
+class _Group(TyperGroup):
+    """Commands that are listed with the whole of their first sentence."""
+
+    def format_commands(self, _ctx: Any, formatter: Any) -> None:
+        whole = formatter.width**2
+        rows = [(name, one.get_short_help_str(whole)) for name, one in self.commands.items()]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
 def app(*words: str) -> typer.Typer:
     """The command line; only what its first word asks for is loaded, as that takes time."""
     made = typer.Typer(
+        cls=_Group,
         context_settings={"help_option_names": ["-h", "--help"]},
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
@@ -49,7 +61,7 @@ def app(*words: str) -> typer.Typer:
         module, _, attribute = place.partition(":")
         command = getattr(import_module(module), attribute)
         if isinstance(command, typer.Typer):
-            made.add_typer(command, name=name, short_help=line)
+            made.add_typer(command, name=name, cls=_Group, short_help=line)
         else:
             made.command(name, short_help=line)(command)
     return made
@@ -70,7 +82,7 @@ def _krl(
         typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
-    """Recover the grammar of the KUKA Robot Language from real controller source.
+    """Check, run, debug and test programs of KUKA robots; recover the grammar of their language.
 
     Exit status: 0 fine, 1 findings, 2 wrong usage or unreadable input.
 

@@ -210,11 +210,10 @@ def changes(
     """What changed since the nightly run before, a sentence each; nothing where nothing did.
 
     ``old`` and ``new`` are the conformance records of both runs, where they are still there: they
-    have the times of events that were shifted. Of a first run everything that failed is reported.
-    What one of the runs has no record of has not changed.
+    have the times of events that were shifted. What one of them has no record of has not changed.
     """
     if before is None:
-        return ["this is the first run", *_steps({}, now), *_wrong(now)]
+        return ["this is the first run"]
     reported = [*_steps(before, now)]
     if before.get("recover") and now.get("recover"):
         reported += _survey(nested(before, "recover"), nested(now, "recover"))
@@ -224,15 +223,6 @@ def changes(
     if before.get("fuzz") and now.get("fuzz"):
         reported += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
     return [*reported, *_speeds(nested(before, "bench"), nested(now, "bench"))]
-
-
-def _wrong(now: Record) -> Iterator[str]:
-    """What would be new failures, had there been a nightly run before."""
-    for name, (verdict, _) in _by_case(nested(now, "conform")).items():
-        if verdict == "fail":
-            yield f"new failure: {name}"
-    if divergences := count(nested(now, "fuzz"), "divergences"):
-        yield f"fuzz: {divergences:,} divergence{'s' if divergences > 1 else ''}"
 
 
 def _steps(before: Record, now: Record) -> Iterator[str]:

@@ -26,9 +26,10 @@ def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> N
 
 @pytest.mark.parametrize("arguments", [[], ["-h"], ["--help"]])
 def test_help_lists_the_commands(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    """`krl` alone and `krl --help` list the commands on stdout."""
+    """`krl` alone and `krl --help` list the commands on stdout, with whole sentences."""
     assert 0 == main(arguments)
     said = capsys.readouterr().out
+    assert "..." not in said.partition("Commands:")[2]
     assert all(f"\n  {command} " in said for command in ("recover", "growth", "corpus"))
 
 

@@ -5,8 +5,8 @@ flange of the model stands where the kinematics have it. Masses and shapes are
 those of `interp.robot.simulation.links`. What else machine data does not say is assumed:
 
 - the floor lies one reach below the foot, out of the way, with a pedestal to look at that nothing
-  touches, since the data does not say what the arm stands on. Below an arm that hangs, or stands out
-  from a wall, it lies two reaches, and the pedestal is a short piece behind the foot.
+  touches, since the data does not say what the arm stands on. Below an arm that hangs, or is on a
+  wall, it lies two reaches, and the pedestal is a short piece behind the foot.
 
 Links touch one another and the floor, except for links next to one another or next but one, whose
 shapes overlap. External axes stand beside the arm and touch nothing: machine data does not say what
@@ -28,7 +28,7 @@ from interp.values.poses import IDENTITY, Pose
 FLANGE: Final = "flange"
 #: The geoms of the floor and of the pedestal that the arm stands on.
 GROUND: Final = ("floor", "pedestal")
-#: An arm whose own Z axis has less of the world's than this hangs, or stands out from a wall.
+#: An arm whose own Z axis has less of the world's than this hangs, or is on a wall.
 UPRIGHT: Final = 0.7
 
 _FRICTION = 4.0  # 1/s: torque by speed, as a share of the rotor's inertia

@@ -93,7 +93,8 @@ def _foot(model: Any, data: Any, points: Points) -> Points:
     if along[2] > UPRIGHT:
         bottom[2] = low
         middle[2], model.geom_size[pedestal, 1] = (top[2] + low) / 2, (top[2] - low) / 2
-    return bottom + radius * np.array([(dx, dy, 0.0) for dx in (-1, 1) for dy in (-1, 1)])
+    x, y, z = bottom.tolist()
+    return np.array([(x + dx, y + dy, z) for dx in (-radius, radius) for dy in (-radius, radius)])
 
 
 def _camera(model: Any, points: Points, aspect: float) -> Any:

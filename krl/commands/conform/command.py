@@ -141,7 +141,7 @@ def _expected_errors() -> Iterator[None]:
     """What is not installed, here or on workers, and workers that cannot do the work."""
     from support.parallel.workers import WorkersError
 
-    with as_input_errors(WorkersError), expected_extras(*ARM):
+    with as_input_errors(WorkersError), expected_extras():
         yield
 
 
@@ -166,6 +166,7 @@ def _conform(
     cases = _drawn(seed) if words == ["pairs"] else _cases(words)
     if list_:
         return _list(cases, json_file)
+    need(*ARM)
     executors = _chosen(executor, "executor")
     robots = _chosen(robot, "robot")
     begun = time.perf_counter()
@@ -346,6 +347,7 @@ def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> in
         raise InputError("krl conform export takes the name of an archive, FILE.zip")
     path = Path(words[0])
     check_files(path)
+    need(*ARM)
     results = _run(_cases(words[1:]), ["tree"], ["kinematic"], jobs, scheduler)
     try:
         write_export(path, results, metadata.version("krl-workbench"))

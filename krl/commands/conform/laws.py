@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from krl.errors import FINDINGS, FINE, one_line
+from krl.extras import ARM, need
 from krl.terminal.options import all_cores
 from krl.terminal.output_files import write_json
 from krl.terminal.progress import progress_bar
@@ -27,6 +28,7 @@ def check_laws(
     """Try every law, report each, and write the record; returns 1 where one was broken."""
     from conformance.metamorphic import laws, record_of, try_laws
 
+    need(*ARM)
     seed = 1
     with progress_bar("trying laws", len(laws())) as bar:
         found = try_laws(cases, programs, seed, all_cores(jobs), bar, scheduler)

@@ -131,7 +131,7 @@ def test_an_arm_in_the_open_touches_nothing() -> None:
 
 @pytest.mark.parametrize("turned", [Pose.of(z=2500.0, c=180.0), Pose.of(z=2500.0, b=90.0)])
 def test_an_arm_that_hangs(turned: Pose) -> None:
-    """From a ceiling or a wall it reaches the floor nowhere, and what holds it is behind its foot."""
+    """From ceiling or wall it reaches the floor nowhere, and what holds it is behind the foot."""
     machine = replace(default_machine(), robroot=turned)
     model, data = loaded(machine)
     mujoco.mj_forward(model, data)
