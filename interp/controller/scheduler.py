@@ -56,7 +56,8 @@ class RunOutcome:
         why = "" if self.error is None else f": {self.error}"
         number = getattr(self.error, "number", None)
         why += "" if number is None else f" (message {number})"
-        return f"{self.ending} after {self.time / 1e6:g} s{place}{why}"
+        ending = {"time": "time limit", "budget": "statement limit"}.get(self.ending, self.ending)
+        return f"{ending} after {self.time / 1e6:g} s{place}{why}"
 
 
 @dataclass(slots=True)

@@ -118,6 +118,18 @@ def _plain(sources: "Iterable[Source]") -> Iterator[str]:
 
 
 def _text(record: Record) -> Iterator[str]:
+    tables = (("points", record["points"]), ("data", record["data"]))
+    sections = [
+        _files(record),
+        *map(_routine, record["routines"]),
+        *((f"{title}:", *map(_datum, rows)) for title, rows in tables if rows),
+    ]
+    for lines in filter(None, map(tuple, sections)):
+        yield from (*lines, "")
+    yield _summary(record)
+
+
+def _files(record: Record) -> Iterator[str]:
     files = record["files"]
     for kind in ("added", "removed"):
         yield from (f"file {kind}: {path}" for path in files[kind])
@@ -129,16 +141,6 @@ def _text(record: Record) -> Iterator[str]:
         if folders[tuple(one["folders"])] == 1:
             yield f"file moved: {one['old']} -> {one['new']}"
     yield from (f"name changed throughout: {one['old']} -> {one['new']}" for one in record["names"])
-    for one in record["routines"]:
-        yield ""
-        yield from _routine(one)
-    for title, rows in (("points", record["points"]), ("data", record["data"])):
-        if rows:
-            yield ""
-            yield f"{title}:"
-        yield from (_datum(one) for one in rows)
-    yield ""
-    yield _summary(record)
 
 
 def _routine(one: Record) -> Iterator[str]:

@@ -13,6 +13,7 @@ from krl.extras import ARM, expected_extras
 from krl.running.run_options import ExecutorOption
 from support.files.atomic_write import write_atomic
 
+_NO_TEST = "no test of a robot program: test_*.toml or test_*.src"
 _PLUGIN = "krl.program_tests.pytest_plugin"
 #: What pytest says where all have passed, some have failed, and none was there.
 _PASSED, _FAILED, _NONE = 0, 1, 5
@@ -53,9 +54,10 @@ def run_tests(
     Arguments after `--` are passed to pytest, which runs the tests; `pytest PATH` collects them
     too. Exit status 0 if all pass, 1 if one fails, 2 if a file cannot be used or there is no test.
     """
-    for path in takewhile(lambda word: not word.startswith("-"), paths or ()):
-        if not Path(path.partition("::")[0]).exists():
-            raise InputError(f"{path}: no such file or folder")
+    files = [Path(word.partition("::")[0]) for word in takewhile(_is_path, paths or ())]
+    for file in files:
+        if not file.exists():
+            raise InputError(f"{file}: no such file or folder")
     # there are no asserts in KRL, and pytest would rewrite those of our own modules
     arguments = ["--assert=plain", "-o", "python_files=", "-o", "junit_suite_name=krl"]
     for option, value in (
@@ -71,6 +73,11 @@ def run_tests(
     with expected_extras("pytest", *ARM, *["xdist"] * (processes is not None)):
         import pytest
 
+        from krl.program_tests.test_files import is_test_file
+
+        for file in files:
+            if not file.is_dir() and not is_test_file(file):
+                raise InputError(f"{file}: {_NO_TEST}")
         installed = metadata.entry_points(group="pytest11")
         if all(one.value != _PLUGIN for one in installed):  # a checkout that was not installed
             arguments += ["-p", _PLUGIN]
@@ -78,8 +85,12 @@ def run_tests(
     if junit is not None and junit.is_file():
         write_atomic(junit, _in_order(junit.read_bytes()))
     if status == _NONE:
-        raise InputError("no test of a robot program there: test_*.toml or test_*.src")
+        raise InputError(_NO_TEST)
     return status if status in (_PASSED, _FAILED) else 2
+
+
+def _is_path(word: str) -> bool:
+    return not word.startswith("-")
 
 
 def _in_order(report: bytes) -> bytes:

@@ -27,7 +27,7 @@ from interp.testing.drivers import VALUES, Driver, DriverError, with_drivers
 from interp.values.faults import LinkError
 from interp.values.json_form import to_json
 from krl.errors import InputError, one_line
-from krl.program_tests.recording import compared, recording_of
+from krl.program_tests.recording import compared, record, recording_of
 from krl.program_tests.test_files import Expected, ProgramTest, TestFileError
 from krl.running.program_loading import project_root, read_sources
 from support.files.untrusted import read_text
@@ -41,11 +41,12 @@ _ROOT: Final = re.compile(r"value ([A-Za-z_]\w*)", re.IGNORECASE)
 class Outcome:
     """What became of a test: what was not as expected, and which lines it has executed.
 
-    ``failures`` are lines to be printed, none where it has passed. ``files`` gives the file behind
-    each path that ``coverage`` names.
+    ``failures`` are lines to be printed, none where it has passed, and so is what was ``recorded``
+    anew. ``files`` gives the file behind each path that ``coverage`` names.
     """
 
     failures: tuple[str, ...]
+    recorded: tuple[str, ...]
     coverage: CoverageRecord
     files: Mapping[str, str]
 
@@ -83,12 +84,15 @@ def run_test(
     units = project.program.units.values()
     lengths = {one.module.path: len(one.source.text.splitlines()) for one in units}
     failures = list(_failures(test, project.program, done, _seen(done, setup, lengths)))
-    if test.is_recorded:
-        failures += compared(test, recording_of(done, lengths), update=update)
+    recorded: tuple[str, ...] = ()
+    if test.is_recorded and update:
+        recorded = tuple(record(test, recording_of(done, lengths)))
+    elif test.is_recorded:
+        failures += compared(test, recording_of(done, lengths))
     if failures:
         failures += _stood_in(project.program, done)
     coverage = project.coverage.of(done.events, _replaced(test, project))
-    return Outcome(tuple(failures), coverage, project.files)
+    return Outcome(tuple(failures), recorded, coverage, project.files)
 
 
 def _seen(done: RunResult, setup: RunSetup, lengths: Mapping[str, int]) -> Observation:

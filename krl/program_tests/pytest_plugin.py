@@ -6,6 +6,7 @@ that run programs is imported before there is such a file.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Generator, Iterator
 from functools import cached_property
 from pathlib import Path
@@ -29,9 +30,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Sum up coverage in the process that reports, where it is asked for."""
-    if config.option.krl_cov_html is not None or config.option.krl_lcov is not None:
-        config.pluginmanager.register(_Coverage(config), "krl_coverage")
+    """Sum up, in the process that reports, what tests have executed and recorded."""
+    config.pluginmanager.register(_Summary(config), "krl_summary")
 
 
 def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> ProgramTestFile | None:
@@ -90,6 +90,7 @@ class ProgramTestItem(pytest.Item):
         super().__init__(**rest)
         self.test = test
         self.coverage: Any = None
+        self.recorded: tuple[str, ...] = ()
 
     def runtest(self) -> None:
         """Run it; what was not as expected is raised as one text."""
@@ -107,6 +108,7 @@ class ProgramTestItem(pytest.Item):
             raise _Failed(str(error)) from error
         if options.krl_cov_html is not None or options.krl_lcov is not None:
             self.coverage = {outcome.files[path]: one for path, one in outcome.coverage.items()}
+        self.recorded = outcome.recorded
         if outcome.failures:
             raise _Failed("\n".join(outcome.failures))
 
@@ -115,7 +117,7 @@ class ProgramTestItem(pytest.Item):
         from krl.errors import shown
 
         if isinstance(excinfo.value, _Failed):
-            return "\n".join(map(shown, str(excinfo.value).split("\n")))
+            return "\n".join(map(shown, _from_here(self.config, str(excinfo.value)).split("\n")))
         return super().repr_failure(excinfo)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
@@ -125,33 +127,46 @@ class ProgramTestItem(pytest.Item):
         return Path(one_line(str(self.path))), self.test.line - 1, self.name
 
 
-class _Coverage:
-    """Takes what each test has executed along with its report, and writes what all have."""
+def _from_here(config: pytest.Config, text: str) -> str:
+    """A text with paths as they are seen from where pytest was called."""
+    return text.replace(f"{config.invocation_params.dir}{os.sep}", "")
+
+
+class _Summary:
+    """Takes what each test has executed and recorded along with its report, for all to sum up."""
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
         self._records: list[Any] = []
+        self._recorded: list[str] = []
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """A report goes from the process of a test to the one that reports."""
         report = yield
         if isinstance(item, ProgramTestItem) and report.when == "call":
-            report.krl_coverage = item.coverage
+            report.krl_coverage, report.krl_recorded = item.coverage, item.recorded
         return report
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """A test has run, here or in another process."""
         if getattr(report, "krl_coverage", None):
             self._records.append(report.krl_coverage)
+        self._recorded += getattr(report, "krl_recorded", ())
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Write page and file, and name them."""
+        """Write what is asked for and name it; say what was recorded anew."""
+        from krl.errors import shown
+
+        for line in self._recorded:
+            terminalreporter.write_line(shown(_from_here(self._config, line)))
+        html, lcov = self._config.option.krl_cov_html, self._config.option.krl_lcov
+        if html is None and lcov is None:
+            return
         from krl.program_tests.coverage_files import covered_files
         from reports.programs.coverage_page import write_coverage_page, write_lcov
 
         files = covered_files(self._records)
-        html, lcov = self._config.option.krl_cov_html, self._config.option.krl_lcov
         if html is not None:
             page = write_coverage_page(files, len(self._records), html)
             terminalreporter.write_line(f"coverage: {page}")

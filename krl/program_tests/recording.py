@@ -1,14 +1,17 @@
 """Recorded runs: what a test has done once, in few lines, and how a later run differs.
 
 A recording has outputs, the points where motions end, calls, messages and how the program ended, in
-their order. It has no times: they would change with every refinement of the planner.
+their order. It has no times: they would change with every refinement of the planner. The line of
+KRL behind each of them is shown but not compared: a comment above would change it.
 """
 
 from __future__ import annotations
 
-import difflib
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from difflib import SequenceMatcher
+from pathlib import Path
+from typing import Final
 
 from interp.controller.state.trace import TraceEvent
 from interp.run_record import tip_of
@@ -16,6 +19,10 @@ from interp.session import RunResult
 from krl.program_tests.test_files import ProgramTest
 from support.files.atomic_write import write_atomic
 from support.files.untrusted import read_text
+
+#: What stands between an event and its line of KRL.
+_PLACE: Final = " ; "
+_AROUND: Final = 3
 
 
 def recording_of(done: RunResult, lengths: Mapping[str, int]) -> list[str]:
@@ -35,7 +42,7 @@ def recording_of(done: RunResult, lengths: Mapping[str, int]) -> list[str]:
         if words:
             at = event.at
             is_shown = at is not None and at.line <= lengths.get(at.file, 0)
-            lines.append(f"{words:<48} ; {event.place}" if is_shown else words)
+            lines.append(f"{words:<48}{_PLACE}{event.place}" if is_shown else words)
     return lines
 
 
@@ -55,20 +62,45 @@ def _words(event: TraceEvent, points: Mapping[int, str]) -> str:
     return ""
 
 
-def compared(test: ProgramTest, lines: list[str], *, update: bool) -> Iterator[str]:
-    """How a run differs from its recording, as a diff; with ``update`` it is recorded."""
-    stem = re.sub(r"\W+", "_", test.name).strip("_")
-    path = test.path.parent / "recorded" / f"{test.path.stem}.{stem}.txt"
-    if update:
-        path.parent.mkdir(exist_ok=True)
-        write_atomic(path, "\n".join([*lines, ""]))
-        return
+def compared(test: ProgramTest, lines: Sequence[str]) -> Iterator[str]:
+    """How a run differs from its recording, as lines to be printed; none where it does not."""
+    path = _file_of(test)
+    where = f"{test.path}:{test.line}: {test.name}"
     if not path.is_file():
-        yield f"{test.path}:{test.line}: {test.name}: not recorded yet; `krl test --update` does it"
-        return
-    before = read_text(path, "utf-8").splitlines()
-    name = f"{path.parent.name}/{path.name}"
-    diff = list(difflib.unified_diff(before, lines, name, "this run", lineterm=""))
-    if diff:
-        yield f"{test.path}:{test.line}: {test.name}: the run differs from its recording"
-        yield from (f"    {line}" for line in diff)
+        yield f"{where}: not recorded yet; `krl test --update` does it"
+    elif diff := _diff(read_text(path, "utf-8").splitlines(), lines):
+        yield f"{where}: the run differs from its recording, recorded/{path.name}"
+        yield from diff
+
+
+def record(test: ProgramTest, lines: Sequence[str]) -> Iterator[str]:
+    """Record a run; how it differs from what was recorded before, as lines to be printed."""
+    path = _file_of(test)
+    before = read_text(path, "utf-8").splitlines() if path.is_file() else []
+    path.parent.mkdir(exist_ok=True)
+    write_atomic(path, "\n".join([*lines, ""]))
+    if not before:
+        yield f"recorded {path}: {len(lines)} lines"
+    elif diff := _diff(before, lines):
+        yield f"recorded {path}: was different"
+        yield from diff
+
+
+def _file_of(test: ProgramTest) -> Path:
+    stem = re.sub(r"\W+", "_", test.name).strip("_")
+    return test.path.parent / "recorded" / f"{test.path.stem}.{stem}.txt"
+
+
+def _diff(before: Sequence[str], now: Sequence[str]) -> list[str]:
+    """What was, marked with -, and what is, with +, with some lines around."""
+    old, new = ([line.partition(_PLACE)[0].rstrip() for line in lines] for lines in (before, now))
+    diff: list[str] = []
+    for group in SequenceMatcher(None, old, new, autojunk=False).get_grouped_opcodes(_AROUND):
+        diff.append("    …" if diff else "")
+        for kind, first, last, start, end in group:
+            if kind == "equal":
+                diff += [f"      {line}" for line in now[start:end]]
+            else:
+                diff += [f"    - {line}" for line in before[first:last]]
+                diff += [f"    + {line}" for line in now[start:end]]
+    return diff[1:]

@@ -41,7 +41,7 @@ def test_the_same_is_no_difference(
 ) -> None:
     """Exit status 0, and one line."""
     assert 0 == main(["diff", states[0], states[0]])
-    assert "2 and 2 files: nothing changed" == capsys.readouterr().out.strip()
+    assert "2 and 2 files: nothing changed" == capsys.readouterr().out.rstrip()
 
 
 def test_file_that_went_is_counted(

@@ -89,7 +89,7 @@ def test_a_fault(run: Run) -> None:
 def test_time_that_is_over(run: Run) -> None:
     """Where the time is over before the program is, the status is 1 and the line tells where."""
     status, out, _ = run("WAIT FOR $IN[1]\n", "--max-time", "0.5")
-    assert (1, "main.src: time after 0.5 s at main.src:2\n") == (status, out)
+    assert (1, "main.src: time limit after 0.5 s at main.src:2\n") == (status, out)
 
 
 def test_statements_that_are_over(run: Run) -> None:
@@ -129,7 +129,7 @@ def test_automatic_inputs(run: Run) -> None:
     status, out, _ = run("HALT\nWAIT FOR $IN[3] AND NOT $IN[4]\n", "--io", "auto")
     assert (0, True) == (status, out.startswith("main.src: end after 2."))
     status, out, err = run("WAIT FOR $OV_PRO==50\n", "--io", "auto", "--until", "5")
-    assert (1, "main.src: time after 5 s at main.src:2\n") == (status, out)
+    assert (1, "main.src: time limit after 5 s at main.src:2\n") == (status, out)
     assert err.startswith("waited for: $OV_PRO at main.src:2, 4.9")
     slow = "PTP {A1 -160,A2 -90,A3 90,A4 0,A5 0,A6 0}\nPTP {A1 160}\n"  # takes more than a second
     for wait in ("WAIT FOR $IN[3]", "REPEAT\nUNTIL $IN[3]"):
@@ -193,7 +193,8 @@ def test_first_motion_is_a_line(run: Run) -> None:
 
 def test_no_time(run: Run) -> None:
     """A run of no time ends at once."""
-    assert "main.src: time after 0 s at main.src:2\n" == run("WAIT SEC 1\n", "--until", "0")[1]
+    _, out, _ = run("WAIT SEC 1\n", "--until", "0")
+    assert "main.src: time limit after 0 s at main.src:2\n" == out
 
 
 def test_submit_that_ends(run: Run, tmp_path: Path) -> None:

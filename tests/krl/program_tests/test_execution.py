@@ -158,14 +158,22 @@ def test_a_recording_is_compared_and_reported_as_a_diff(write: Write) -> None:
     tests = read_tests(path)
     unrecorded = run_test(tests[0], tests, executor=None, update=False).failures
     assert ("not recorded yet" in unrecorded[0], 1) == (True, len(unrecorded))
-    assert () == run_test(tests[0], tests, executor=None, update=True).failures
-    assert () == run_test(tests[0], tests, executor=None, update=False).failures
+    anew = run_test(tests[0], tests, executor=None, update=True)
+    assert ((), True) == (anew.failures, anew.recorded[0].endswith("lines"))
     recorded = next((path.parent / "recorded").iterdir())
-    assert "µ" not in recorded.read_text(encoding="utf-8")
+    text = recorded.read_text(encoding="utf-8")
+    assert ("work.src:" in text, "µ" in text) == (True, False)
+    recorded.write_text(text.replace("work.src:", "work.src:1"), encoding="utf-8")
+    assert () == run_test(tests[0], tests, executor=None, update=False).failures
+    assert () == run_test(tests[0], tests, executor=None, update=True).recorded
+    assert text == recorded.read_text(encoding="utf-8")
     path.write_text(head + "call = 'work(1)'\nset.count = 99\n", encoding="utf-8")
     tests = read_tests(path)
     outcome = run_test(tests[0], tests, executor=None, update=False)
     assert any("fault" in line and line.startswith("    +") for line in outcome.failures)
+    anew = run_test(tests[0], tests, executor=None, update=True)
+    assert set(anew.recorded[1:]) < set(outcome.failures)
+    assert any(line.startswith("    + fault") for line in anew.recorded)
 
 
 def test_without_a_call_a_routine_with_parameters_says_what_to_write(write: Write) -> None:

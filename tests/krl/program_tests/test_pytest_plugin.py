@@ -91,6 +91,7 @@ def test_krl_test_has_the_exit_status_of_all_commands(
     Path("work.src").write_text("DEF work()\n$OUT[1]=TRUE\nEND\n", encoding="utf-8")
     assert 2 == main(["test"])
     assert 2 == main(["test", "gone"])
+    assert 2 == main(["test", "work.src"])
     text = "[[test]]\nname = '{}'\nexpect = ['out 1 {}']\n"
     Path("test_work.toml").write_text(
         text.format("good", "TRUE") + text.format("bad", "never"), encoding="utf-8"
@@ -101,4 +102,7 @@ def test_krl_test_has_the_exit_status_of_all_commands(
     assert ["bad", "good"] == names  # whichever of them ends first
     assert 0 == main(["test", ".", "-k", "good", "--junit", "j.xml", "--", "-q"])
     assert 'testsuite name="krl"' in Path("j.xml").read_text(encoding="utf-8")
-    assert "gone: no such file or folder" in capfd.readouterr().err
+    out, err = capfd.readouterr()
+    assert "gone: no such file or folder" in err
+    assert "work.src: no test of a robot program" in err
+    assert "\ntest_work.toml:6: bad\n" in out  # as seen from here
