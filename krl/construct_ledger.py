@@ -64,7 +64,7 @@ def print_evaluation(found: "Evaluation") -> None:
             f"them newly; own {effect.own_parsed} of {effect.own_files}"
         )
         typer.echo(
-            f"  costs      negatives let in {effect.negatives}, ambiguities {effect.ambiguities}"
+            f"  costs      negatives accepted {effect.negatives}, ambiguities {effect.ambiguities}"
         )
     for why in found.refusals:
         typer.echo(f"  refused    {one_line(why)}")

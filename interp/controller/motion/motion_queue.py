@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
-from grammar.motion_kinds import WITHOUT_PATH
+from grammar.motion_kinds import AXIS_MOTIONS, WITHOUT_PATH
 from interp.controller.motion.motions import MotionBuilder, PlannedMotion
 from interp.controller.motion.output_switch import OutputSwitch
 from interp.controller.motion.positions import FramesInForce, Positions
@@ -52,7 +52,6 @@ if TYPE_CHECKING:
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
 #: The most in mm or ms that a trigger may be away from its point [TRG-03, TRG-04].
 _FARTHEST: Final = 10_000_000
-_PATHS: Final = frozenset({"LIN", "CIRC", "SLIN", "SCIRC"})
 _STATUS_BITS: Final = 7
 #: The message that a motion leads to where the arm is [MOT-11].
 _LENGTH_ZERO: Final = 3171
@@ -370,7 +369,7 @@ class MotionQueue:
         Bits 3 and 4 of the Status mean nothing [POS-06].
         """
         checks = self._state.variables.read(("$CP_STATMON",))
-        if not isinstance(checks, EnumValue) or motion.kind not in _PATHS:
+        if not isinstance(checks, EnumValue) or motion.parts or motion.kind in AXIS_MOTIONS:
             return False
         if self._state.machine is None:
             return False

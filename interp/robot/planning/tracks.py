@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from grammar.motion_kinds import AXIS_MOTIONS
 from interp.robot.arm import Motion, Settings, Target
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
@@ -90,7 +91,7 @@ class Track:
     @property
     def is_cp(self) -> bool:
         """Whether the path of the tool is what was programmed."""
-        return self.motion.kind not in {"PTP", "SPTP", "PTP_SPLINE"}
+        return self.motion.kind not in (*AXIS_MOTIONS, "PTP_SPLINE")
 
 
 class Tracks:
@@ -111,7 +112,7 @@ class Tracks:
         [INT-14]. Raises `Fault`, with 3094 for #IGNORE, which only segments of a spline block may
         have (where it is allowed is unconfirmed) [ORI-03].
         """
-        is_cp = motion.kind not in {"PTP", "SPTP"}
+        is_cp = motion.kind not in AXIS_MOTIONS
         if is_cp and motion.settings.orientation == "#IGNORE":
             raise Fault(
                 "orientation", "#IGNORE is not allowed here", number=3094, rules=("ORI-03",)

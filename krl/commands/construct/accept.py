@@ -168,7 +168,7 @@ def _evaluated(
 
     given = list({c.file: c for c in map(ledger.take, files)}.values())
     preliminary, corpora = preliminary_of(checkout_or_packaged(PRELIMINARY)), _corpora(corpus, jobs)
-    with progress_bar("weighing", len(given)) as bar:
+    with progress_bar("evaluating", len(given)) as bar:
         return prepare(given, preliminary, ledger, corpora, current, bar)
 
 

@@ -225,7 +225,7 @@ def test_an_accepted_construct_is_weighed_again_at_its_place(house: House) -> No
 
 
 @pytest.mark.usefixtures("trusting")
-def test_weighing_again_changes_nothing_that_is_right(
+def test_evaluating_again_changes_nothing_that_is_right(
     house: House, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The same construct gives the same files, and the parser is not generated again."""

@@ -100,7 +100,7 @@ def test_without_a_corpus_the_figures_stay(tmp_path: Path) -> None:
 
 
 def test_the_state_follows_the_evidence(tmp_path: Path) -> None:
-    """What is kept of weighing a proposal: evidence, the state it gives, and no effect."""
+    """What is kept of evaluating a proposal: evidence, the state it gives, and no effect."""
     evidence = written(tmp_path, o1__a=f"DEF A()\n{LOOP}END\n", o2__b=f"DEF B()\n{LOOP}END\n")
     kept = weighed(replace(STEP, evidence=Evidence()), evidence).kept
     assert ("corroborated", None, 2) == (kept.state, kept.effect, kept.evidence.origins)
