@@ -1,53 +1,31 @@
-"""Array parameters ``X[]``: left out, passed on, copied; on every executor."""
+"""Array parameters ``X[]``: left out, passed on, copied."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import pytest
 
-from conformance.differential.observation import Observed, difference, observe
+from conformance.differential.observation import Observed
 from conformance.differential.random_world import QuietWorld
 from grammar.semantics.types import Array
 from grammar.syntax.source import Source
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.program import Program
-from interp.executors import Prepared, available
-from interp.port.events import ExecutorEvent, Sink
+from interp.port.events import ExecutorEvent
 from interp.port.executor import Executor
 from interp.port.requests import DeclareInterrupt, End, Fail
-from interp.program.load import CheckedProgram, Limits, load
+from interp.program.load import load
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 
-Maker = Callable[[Sink | None], Executor]
+Make = Callable[..., Executor]
+Run = Callable[..., Observed]
 
 
-def _loaded(text: str) -> CheckedProgram:
-    return load([Source(text, "main.src")], "main.src", strict=False)
-
-
-def _makers(program: CheckedProgram) -> list[Maker]:
-    """The tree interpreter first, then the machines."""
-    prepared = Prepared(program)
-    return [partial(prepared.executor, name, Limits()) for name in available()]
-
-
-def _run(text: str) -> Observed:
-    """What all executors ask and tell; the machine in C without a trace ends in the same way."""
-    makers = _makers(_loaded(text))
-    tree, *others = [observe(make, QuietWorld(), most=500) for make in makers]
-    for other in others:
-        assert None is difference("", tree, other)
-    silent = observe(lambda _sink: makers[-1](None), QuietWorld(), most=500)
-    assert repr(tree.last) == repr(silent.last)
-    return tree
-
-
-def _assigned(text: str, name: str = "N") -> list[object]:
+def _assigned(go: Run, text: str, name: str = "N") -> list[object]:
     """The values that a variable is assigned in a program that ends well."""
-    seen = _run(text)
+    seen = go(text, strict=False)
     assert isinstance(seen.last, End), seen.last
     return [
         to_json(one.value)
@@ -56,9 +34,9 @@ def _assigned(text: str, name: str = "N") -> list[object]:
     ]
 
 
-def _fault(text: str) -> tuple[str, int]:
+def _fault(go: Run, text: str) -> tuple[str, int]:
     """The slug of the fault that ends a program, and its line."""
-    last = _run(text).last
+    last = go(text, strict=False).last
     assert isinstance(last, Fail)
     assert isinstance(last.fault, Fault), last.fault
     return last.fault.slug, last.at.line
@@ -87,11 +65,11 @@ def _q(body: str, inner: str = "") -> str:
     return _LEFT_OUT.format(body, inner)
 
 
-def test_what_was_left_out_is_passed_on() -> None:
+def test_what_was_left_out_is_passed_on(go: Run) -> None:
     """An array parameter that was left out can be left out of a call by passing it on [SCO-13]."""
-    assert [7] == _assigned(_q("r(t[])", "N=7"))
-    assert [0] == _assigned(_q("r(t[])", "N=STRLEN(t[])"))
-    assert ("uninitialised", 13) == _fault(_q("r(t[])", 't[1]="a"'))
+    assert [7] == _assigned(go, _q("r(t[])", "N=7"))
+    assert [0] == _assigned(go, _q("r(t[])", "N=STRLEN(t[])"))
+    assert ("uninitialised", 13) == _fault(go, _q("r(t[])", 't[1]="a"'))
 
 
 @pytest.mark.parametrize(
@@ -104,18 +82,18 @@ def test_what_was_left_out_is_passed_on() -> None:
     ],
 )
 def test_what_was_left_out_reads_as_the_empty_text(
-    name: str, expression: str, expected: object
+    go: Run, name: str, expression: str, expected: object
 ) -> None:
     """A function that reads a text finds none in a parameter left out [FCT-04] (unconfirmed)."""
-    assert [expected] == _assigned(_q(f"{name}={expression}"), name)
+    assert [expected] == _assigned(go, _q(f"{name}={expression}"), name)
 
 
-def test_what_was_left_out_is_copied_as_the_empty_text() -> None:
+def test_what_was_left_out_is_copied_as_the_empty_text(go: Run) -> None:
     """STRCOPY and STRADD take nothing from a parameter that was left out [FCT-04]."""
     head = 'q()\nEND\nDEF q(t[]:OUT)\nDECL CHAR t[]\nDECL CHAR s[4]\nDECL INT N\ns[]="abc"\n'
-    assert [3] == _assigned(f"DEF main()\n{head}N=STRADD(s[],t[])\nEND\n")
+    assert [3] == _assigned(go, f"DEF main()\n{head}N=STRADD(s[],t[])\nEND\n")
     assert [0] == _assigned(
-        f"DEF main()\n{head}IF STRCOPY(s[],t[]) THEN\nN=STRLEN(s[])\nENDIF\nEND\n"
+        go, f"DEF main()\n{head}IF STRCOPY(s[],t[]) THEN\nN=STRLEN(s[])\nENDIF\nEND\n"
     )
 
 
@@ -130,15 +108,15 @@ def test_what_was_left_out_is_copied_as_the_empty_text() -> None:
         'B=t[1]=="a"',
     ],
 )
-def test_what_was_left_out_cannot_be_changed(body: str) -> None:
+def test_what_was_left_out_cannot_be_changed(go: Run, body: str) -> None:
     """Nothing can be put into a parameter that was left out, nor has it elements or a size."""
-    assert ("uninitialised", 8) == _fault(_q(body))
+    assert ("uninitialised", 8) == _fault(go, _q(body))
 
 
-def test_only_texts_are_empty() -> None:
+def test_only_texts_are_empty(go: Run) -> None:
     """An array of numbers that was left out has no value for a routine of the controller."""
     text = "DEF main()\nq()\nEND\nDEF q(p[]:OUT)\nDECL INT p[]\nERR_RAISE(p[])\nEND\n"
-    assert ("uninitialised", 6) == _fault(text)
+    assert ("uninitialised", 6) == _fault(go, text)
 
 
 _HANDED = """DEF main()
@@ -158,22 +136,21 @@ END
 
 
 @pytest.mark.parametrize("given", ["A[]", ""])
-def test_actions_pass_on_what_their_routine_was_given(given: str) -> None:
+def test_actions_pass_on_what_their_routine_was_given(make: Make, given: str) -> None:
     """An action passes a parameter on, left out or not, until its routine has ended."""
-    for make in _makers(_loaded(_HANDED.format(given))):
-        executor, world = make(None), QuietWorld()
-        declared = executor.advance()
-        assert isinstance(declared, DeclareInterrupt)
-        inside = executor.advance(world.reply(declared))
-        executor.enter(declared.action)
-        assert isinstance(executor.advance(), End)
-        assert inside == executor.advance()
-        executor.advance(world.reply(inside))
-        executor.enter(declared.action)
-        gone = executor.advance()
-        assert isinstance(gone, Fail)
-        assert isinstance(gone.fault, Fault)
-        assert "uninitialised" == gone.fault.slug
+    executor, world = make(_HANDED.format(given), strict=False), QuietWorld()
+    declared = executor.advance()
+    assert isinstance(declared, DeclareInterrupt)
+    inside = executor.advance(world.reply(declared))
+    executor.enter(declared.action)
+    assert isinstance(executor.advance(), End)
+    assert inside == executor.advance()
+    executor.advance(world.reply(inside))
+    executor.enter(declared.action)
+    gone = executor.advance()
+    assert isinstance(gone, Fail)
+    assert isinstance(gone.fault, Fault)
+    assert "uninitialised" == gone.fault.slug
 
 
 # ------------------------------------------------------------------------------- copied
@@ -208,16 +185,17 @@ END
 
 def _rooms(text: str, name: str) -> list[int]:
     """The sizes of the arrays that copies of formal arrays have in the frame of a routine."""
-    program: Program = compile_program(_loaded(text)).program
+    checked = load([Source(text, "main.src")], "main.src", strict=False)
+    program: Program = compile_program(checked).program
     code = next(one for one in program.codes if one.name.upper() == name)
     found = [program.types[one.type] for one in code.locals if one.name.startswith("%")]
     return [one.sizes[0] or 0 for one in found if isinstance(one, Array)]
 
 
-def test_arrays_of_unknown_size_are_copied() -> None:
+def test_arrays_of_unknown_size_are_copied(go: Run) -> None:
     """An array passed on :IN to a routine that changes it stays as it was [SCO-06]."""
-    assert [3, 9, 5] == _assigned(_COPIED)
-    assert [3, 2, 1] * 3 == _assigned(_COPIED, "M")
+    assert [3, 9, 5] == _assigned(go, _COPIED)
+    assert [3, 2, 1] * 3 == _assigned(go, _COPIED, "M")
 
 
 def test_copies_have_room_for_the_largest() -> None:
@@ -227,7 +205,7 @@ def test_copies_have_room_for_the_largest() -> None:
     assert [7] == _rooms(_COPIED.replace("  outer(w[])\n", ""), "OUTER")
 
 
-def test_a_copy_is_made_when_the_argument_is_evaluated() -> None:
+def test_a_copy_is_made_when_the_argument_is_evaluated(go: Run) -> None:
     """What a later argument changes is not seen by the routine [SCO-06]."""
     text = (
         'DEF main()\nDECL CHAR s[3]\ns[]="abc"\nouter(s[],s[])\nEND\n'
@@ -236,10 +214,10 @@ def test_a_copy_is_made_when_the_argument_is_evaluated() -> None:
         'DEFFCT INT change(o[]:OUT)\nDECL CHAR o[]\no[]="x"\nRETURN 1\nENDFCT\n'
         "DEF inner(p[]:IN,k:IN)\nDECL CHAR p[]\nDECL INT k,N\nN=STRLEN(p[])\nEND\n"
     )
-    assert [3] == _assigned(text)
+    assert [3] == _assigned(go, text)
 
 
-def test_several_copies_in_one_call() -> None:
+def test_several_copies_in_one_call(go: Run) -> None:
     """Two copies in one call are two; more dimensions keep their sizes."""
     text = (
         "DEF main()\nDECL INT g[2,3]\ng[2,1]=5\nouter(g[,])\nEND\n"
@@ -248,7 +226,7 @@ def test_several_copies_in_one_call() -> None:
         'a[2,1]=6\nb[2,1]=7\nc[1]=8\nN=a[2,1]*100+b[2,1]*10+c[1]\nN=STRLEN("abc")\n'
         "c[3]=1\nc[4]=1\nEND\n"
     )
-    seen = _run(text)
+    seen = go(text, strict=False)
     values = [
         one.value for one in seen.steps if isinstance(one, ExecutorEvent) and one.path == ("N",)
     ]
@@ -257,10 +235,10 @@ def test_several_copies_in_one_call() -> None:
     assert "index" == getattr(seen.last.fault, "slug", None)
 
 
-def test_what_was_left_out_is_not_copied() -> None:
+def test_what_was_left_out_is_not_copied(go: Run) -> None:
     """A parameter that was left out has nothing to be copied [SCO-13]."""
     text = (
         "DEF main()\nouter()\nEND\nDEF outer(p[]:IN)\nDECL CHAR p[]\ninner(p[])\nEND\n"
         "DEF inner(p[]:IN)\nDECL CHAR p[]\nEND\n"
     )
-    assert ("uninitialised", 6) == _fault(text)
+    assert ("uninitialised", 6) == _fault(go, text)

@@ -1,17 +1,15 @@
-"""Programs on which the executors once differed, made small; on every executor."""
+"""Programs on which the executors once differed, made small."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import pytest
 
-from conformance.differential.observation import Observed, difference, observe
+from conformance.differential.observation import Observed
 from conformance.differential.random_world import QuietWorld
-from grammar.syntax.source import Source
-from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_available
-from interp.port.events import ExecutorEvent, Sink
+from interp.executors import COMPILED, EXECUTORS, is_available
+from interp.port.events import ExecutorEvent
 from interp.port.executor import Executor
 from interp.port.requests import (
     CodeHandle,
@@ -23,32 +21,20 @@ from interp.port.requests import (
     SwitchInterrupt,
     Write,
 )
-from interp.program.load import Limits, load
+from interp.program.load import Limits
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 
-Maker = Callable[[Sink | None], Executor]
+Make = Callable[..., Executor]
+Run = Callable[..., Observed]
 
 
-def _makers(main: str, *, strict: bool = True, **others: str) -> list[Maker]:
-    """Every executor of a program; ``others`` are files, ``lib_dat`` being ``lib.dat``."""
-    sources = [Source(main, "main.src")]
-    sources += [Source(text, path.replace("_", ".")) for path, text in others.items()]
-    program = load(sources, "main.src", strict=strict)
-    prepared = Prepared(program)
-    names = (*available(), *[COMPILED] * is_available(COMPILED))
-    return [partial(prepared.executor, name, Limits()) for name in names]
-
-
-def _run(main: str, *, strict: bool = True, **others: str) -> Observed:
-    """What all executors ask and report; they ask the same where they report nothing."""
-    makers = _makers(main, strict=strict, **others)
-    silent = [lambda _sink, make=make: make(None) for make in makers]
-    for some in (silent, makers[: len(available())]):
-        tree, *machines = [observe(make, QuietWorld(), most=500) for make in some]
-        for machine in machines:
-            assert None is difference("", tree, machine)
-    return tree
+@pytest.fixture(params=[*EXECUTORS, COMPILED])
+def executor_name(request: pytest.FixtureRequest) -> str:
+    """Native code too: it has differed most often."""
+    if not is_available(request.param):
+        pytest.skip("no such executor here")
+    return str(request.param)
 
 
 _LIB = "DEFDAT lib PUBLIC\nGLOBAL INT KEPT=0\nINT OWN[2]\nOWN[1]=1\nENDDAT\n"
@@ -64,9 +50,9 @@ _LIB = "DEFDAT lib PUBLIC\nGLOBAL INT KEPT=0\nINT OWN[2]\nOWN[1]=1\nENDDAT\n"
         ("NOWHERE", False),
     ],
 )
-def test_an_imported_variable_is_found_by_its_name(text: str, expected: bool) -> None:
+def test_an_imported_variable_is_found_by_its_name(go: Run, text: str, expected: bool) -> None:
     """VARSTATE knows an IMPORT that nothing else in the program names [TYP-18, ADV-05]."""
-    seen = _run(
+    seen = go(
         f'DEF main()\nBOOL B\nB=VARSTATE("{text}")==#INITIALIZED\nEND\n',
         main_dat="DEFDAT main\nIMPORT INT THEIRS IS /R1/LIB..KEPT\nENDDAT\n",
         lib_dat=_LIB,
@@ -76,9 +62,9 @@ def test_an_imported_variable_is_found_by_its_name(text: str, expected: bool) ->
     assert [expected] == told
 
 
-def test_a_function_without_return_fails_behind_a_guarded_statement() -> None:
+def test_a_function_without_return_fails_behind_a_guarded_statement(go: Run) -> None:
     """ON_ERROR_PROCEED holds for one statement, and the end of a function is none [CTL-09]."""
-    last = _run(
+    last = go(
         "DEF main()\nINT N\nN=f()\nEND\nDEFFCT INT f()\nINT K\nON_ERROR_PROCEED\nK=1\nENDFCT\n"
     ).last
     assert isinstance(last, Fail)
@@ -103,9 +89,9 @@ ENDFCT
 
 
 @pytest.mark.parametrize("before", ["", "SLIN P", "SCIRC P,P", "SLIN P WITH $TOOL=P"])
-def test_positions_of_a_spline_are_those_of_when_they_were_evaluated(before: str) -> None:
+def test_positions_of_a_spline_are_those_of_when_they_were_evaluated(go: Run, before: str) -> None:
     """What a later motion of a block changes does not move the earlier ones [SPL-01]."""
-    seen = _run(_SPLINE.format(before))
+    seen = go(_SPLINE.format(before))
     assert isinstance(seen.last, End)
     (asked,) = [one for one in seen.steps if isinstance(one, MoveSpline)]
     written = str(to_json(asked.values[0][1]))
@@ -145,22 +131,21 @@ END
     ],
 )
 def test_conditions_that_outlive_their_routine_find_no_variables(
-    condition: str, while_it_runs: bool, afterwards: bool | str
+    make: Make, condition: str, while_it_runs: bool, afterwards: bool | str
 ) -> None:
     """A signal is found, as its index did not have to be worked out; unconfirmed [INT-04]."""
-    for make in _makers(_OUTLIVED.format(condition)):
-        executor, world = make(None), QuietWorld()
-        seen: list[bool | str] = []
-        codes: list[CodeHandle] = []
-        request = executor.advance()
-        while not isinstance(request, End):
-            if isinstance(request, DeclareInterrupt):
-                codes.append(request.condition)
-            elif isinstance(request, SwitchInterrupt):
-                seen.append(_evaluated(executor, codes[0]))
-            request = executor.advance(world.reply(request))
-        seen.append(_evaluated(executor, codes[0]))
-        assert [while_it_runs, afterwards] == seen
+    executor, world = make(_OUTLIVED.format(condition)), QuietWorld()
+    seen: list[bool | str] = []
+    codes: list[CodeHandle] = []
+    request = executor.advance()
+    while not isinstance(request, End):
+        if isinstance(request, DeclareInterrupt):
+            codes.append(request.condition)
+        elif isinstance(request, SwitchInterrupt):
+            seen.append(_evaluated(executor, codes[0]))
+        request = executor.advance(world.reply(request))
+    seen.append(_evaluated(executor, codes[0]))
+    assert [while_it_runs, afterwards] == seen
 
 
 def _evaluated(executor: Executor, condition: CodeHandle) -> bool | str:
@@ -187,13 +172,9 @@ ENDFCT
 """
 
 
-@pytest.mark.parametrize("name", [*EXECUTORS, COMPILED])
-def test_conditions_are_evaluated_wherever_a_slice_ends(name: str) -> None:
+def test_conditions_are_evaluated_wherever_a_slice_ends(make: Make) -> None:
     """Also within calls whose callers have operands, which stay as they are."""
-    if not is_available(name):
-        pytest.skip("no such executor here")
-    prepared = Prepared(load([Source(_NESTED, "main.src")], "main.src"))
-    executor, evaluated, written = prepared.executor(name, Limits(per_slice=1)), 0, []
+    executor, evaluated, written = make(_NESTED, Limits(per_slice=1)), 0, []
     codes: list[CodeHandle] = []
     request = executor.advance()
     while not isinstance(request, End):
@@ -207,11 +188,11 @@ def test_conditions_are_evaluated_wherever_a_slice_ends(name: str) -> None:
     assert (10, [126]) == (evaluated, written)
 
 
-def test_chains_of_operators_have_any_length() -> None:
+def test_chains_of_operators_have_any_length(go: Run) -> None:
     """Sums, conditions and compositions of many operands are no nesting."""
     operands = (("+", "I", 3_000), (" AND ", "B", 3_000), (":", "F", 300))
     sums, conditions, poses = (sign.join([name] * count) for sign, name, count in operands)
-    seen = _run(
+    seen = go(
         "DEF main()\nINT I\nBOOL B\nFRAME F\nI=2\nB=TRUE\n"
         f"F={{X 1.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0}}\n$OV_PRO=({sums})/100\n"
         f"$OUT[1]={conditions}\nF={poses}\n$TIMER[1]=F.X\nEND\n"
@@ -220,7 +201,7 @@ def test_chains_of_operators_have_any_length() -> None:
     assert [60, True, 300] == [one.value for one in seen.steps if isinstance(one, Write)]
 
 
-def test_a_wrong_argument_of_a_predefined_function_is_one_fault() -> None:
+def test_a_wrong_argument_of_a_predefined_function_is_one_fault(go: Run) -> None:
     """Whatever is wrong with it, and whether the function reads or changes it [ARI-04]."""
     wrong = (
         *(
@@ -233,7 +214,7 @@ def test_a_wrong_argument_of_a_predefined_function_is_one_fault() -> None:
         ),
         *('B=STRTOREAL("5",N)', 'SWRITE(T[],N,N,"%d",1)', "F=INV_POS(R)", "B=STRCOPY(T[],B)"),
     )
-    seen = _run(
+    seen = go(
         "DEF main()\nINT N\nREAL R\nBOOL B\nFRAME F\nCHAR C,T[8]\n"
         'N=1\nR=1.0\nB=TRUE\nC="A"\nT[]="ABC"\n'
         + "".join(f"ON_ERROR_PROCEED\n{line}\n" for line in wrong)
@@ -246,9 +227,9 @@ def test_a_wrong_argument_of_a_predefined_function_is_one_fault() -> None:
 
 
 @pytest.mark.parametrize("last", [5, 500])
-def test_an_argument_that_is_set_twice_has_the_last_value(last: int) -> None:
+def test_an_argument_that_is_set_twice_has_the_last_value(go: Run, last: int) -> None:
     """Whatever it had before; and a system variable is written where its value stays."""
-    seen = _run(
+    seen = go(
         f"DEF main()\nDECL STATE_T S\nINT I,O\nBOOL B\nI={last}\nO=0\n$FLAG[1]=TRUE\n"
         f'SREAD("1 {last}",S,O,"%d %d",I,I)\n$OUT_C[1]=I==1\n$TIMER[1]=I\n'
         'B=STRTOBOOL("TRUE",$FLAG[1])\nEND\n'
@@ -259,9 +240,9 @@ def test_an_argument_that_is_set_twice_has_the_last_value(last: int) -> None:
 
 
 @pytest.mark.parametrize("value", ["D.E3", "V[2]", "R+D.E3"])
-def test_an_index_is_wrong_before_a_value_is_missing(value: str) -> None:
+def test_an_index_is_wrong_before_a_value_is_missing(go: Run, value: str) -> None:
     """An assignment evaluates the indices of its target first, as each executor does."""
-    seen = _run(
+    seen = go(
         f"DEF main()\nINT N\nREAL R\nN=0\nR=1.0\nON_ERROR_PROCEED\nF[N].C={value}\nEND\n",
         main_dat="DEFDAT main\nE6POS D\nREAL V[2]\nDECL FRAME F[1]\nENDDAT\n",
     )

@@ -21,9 +21,8 @@ from interp.bytecode.image.writer import write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm import executor as vm
 from interp.executors import Prepared
-from interp.port.requests import End, Fail, StopAdvance, Write
+from interp.port.requests import End, StopAdvance, Write
 from interp.program.load import Limits, load
-from interp.values.faults import Fault
 
 if TYPE_CHECKING:
     from interp.native._core import Core
@@ -109,39 +108,6 @@ def test_core_checks_what_leads_into_memory(core: type[Core]) -> None:
     with pytest.raises(IndexError):
         machine.close_frame()
     assert [1] == machine[0:1]
-
-
-_ENDLESS = """\
-bytecode 3
-code MAIN routine "m.src" 1
-  local L INT[{size}]
-begin
-  LINE 2 A
-  CALL MAIN
-A:
-  RETURN
-end
-"""
-
-
-@pytest.mark.parametrize("depth", [3, 64])
-def test_endless_recursion_ends(native: type[vm.Machine], depth: int) -> None:
-    """Calls end with a fault where the limit is, not where memory ends."""
-    verified = verify(assemble(_ENDLESS.format(size=1000)))
-    request = native(verified, "MAIN", Limits(depth=depth)).advance()
-    assert isinstance(request, Fail)
-    assert isinstance(request.fault, Fault)
-    assert ("stack", depth) == (request.fault.slug, request.at.depth)
-
-
-def test_large_frames_end(native: type[vm.Machine]) -> None:
-    """Frames that have too many cells together fault on both machines in the same call."""
-    verified = verify(assemble(_ENDLESS.format(size=100_000)))
-    for kind in (native, vm.Machine):
-        request = kind(verified, "MAIN").advance()
-        assert isinstance(request, Fail)
-        assert isinstance(request.fault, Fault)
-        assert ("stack", 9) == (request.fault.slug, request.at.depth)
 
 
 #: Programs with loops, motions, interrupts, texts and calls.

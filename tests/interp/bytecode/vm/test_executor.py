@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from grammar.semantics.types import INT, REAL, Array, Member, Structure
+from grammar.semantics.types import INT, Array
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
@@ -16,19 +16,15 @@ from interp.port.requests import (
     At,
     CodeHandle,
     Crash,
-    DeclareInterrupt,
     End,
     Fail,
     Invoke,
-    Read,
-    SetTrigger,
     Slice,
-    Wait,
     Write,
 )
 from interp.program.load import Limits
-from interp.values.faults import BudgetExhausted, Fault, LinkError, RuntimeFailure, fault
-from interp.values.values import ArrayValue, StructureValue
+from interp.values.faults import Fault, LinkError, RuntimeFailure
+from interp.values.values import ArrayValue
 
 Runner = Callable[..., list[Any]]
 Starter = Callable[..., Machine]
@@ -209,25 +205,6 @@ def test_arrays_of_more_dimensions_need_equal_sizes(run: Runner) -> None:
 # ------------------------------------------------------------------------------- requests
 
 
-def test_replies_are_converted(run: Runner) -> None:
-    """What the world gives is converted as an assignment does it; structures go into cells."""
-    point = StructureValue(Structure("POINT", (Member("X", REAL), Member("Y", REAL))), [1.0, None])
-    body = "PUSH_INT 4\nASK READ\nASK SHOW\nREF_LOCAL P POINT\nASK READ_POINT\nREF_LOCAL P POINT\n"
-    text = HEAD + routine(body + "ASK SHOW_POINT", "local P POINT")
-    requests = run(text, 7.6, None, point)
-    assert [8, point] == shown(requests)
-    assert Read(At("main.src", 2, 0), ("$ASKED", 4)) == requests[0]
-
-
-@pytest.mark.parametrize(
-    ("reply", "slug"),
-    [(None, "uninitialised"), (True, "inadmissible"), (fault("invalid"), "invalid")],
-)
-def test_replies_that_do_not_fit_fault(run: Runner, reply: Any, slug: str) -> None:
-    """No value, a wrong one, or a fault: the program stops at the statement that asked."""
-    assert slug == failed(run(HEAD + routine("PUSH_INT 4\nASK READ\nASK SHOW"), reply))
-
-
 def test_arguments_come_back(run: Runner) -> None:
     """An argument :OUT of a routine of the controller has the value that it has after the call."""
     body = (
@@ -236,14 +213,6 @@ def test_arguments_come_back(run: Runner) -> None:
     requests = run(HEAD + routine(body, "local X INT"), (None, {1: 9}))
     assert Invoke(At("main.src", 2, 0), "ERR_RAISE", (5, 1), (None, None)) == requests[0]
     assert [9] == shown(requests)
-
-
-def test_fault_ends_the_program_for_good(start: Starter) -> None:
-    """After a fault the same request comes again and again."""
-    machine = start(HEAD + routine("LOAD_DATA M.X\nASK SHOW").replace("code", "data M.X INT\ncode"))
-    first = machine.advance()
-    assert isinstance(first, Fail)
-    assert first is machine.advance()
 
 
 def test_changed_system_variables_are_written(run: Runner) -> None:
@@ -261,86 +230,15 @@ def test_changed_system_variables_are_written(run: Runner) -> None:
     assert [7] == shown(run(text, (None, {1: 7})))
 
 
-def test_what_cannot_be_run_is_reported_when_it_is_reached(run: Runner) -> None:
-    """A routine without a file, or a type that nobody knows: the program ends with the reason."""
-    text = HEAD + 'text WHY "SUB is a routine that no file has"\n'
-    requests = run(text + routine("PUSH_INT 1\nASK SHOW\nUNLINKED WHY"))
-    assert isinstance(requests[-1], Fail)
-    assert isinstance(requests[-1].fault, LinkError)
-    assert "SUB is a routine that no file has" == str(requests[-1].fault)
-
-
 def test_statements_may_go_on_at_other_lines(run: Runner) -> None:
     """A request names the line that its part of the statement stands in."""
     body = "PUSH_INT 1\nASK SHOW\nAT 5 END\nPUSH_INT 2\nASK SHOW"
     assert [2, 5, 5] == [one.at.line for one in run(HEAD + routine(body), per_slice=1)]
 
 
-def test_end_is_where_the_last_statement_was(run: Runner) -> None:
-    """The end of the program has the place of its last statement."""
-    assert [End(At("main.src", 2, 0))] == run(HEAD + routine(""))
-
-
-def test_on_error_proceed_takes_faults_of_replies(run: Runner) -> None:
-    """What the world answers with is a fault of the statement that asked [TYP-13]."""
-    body = "PROCEED\nLINE 3 L\nPUSH_INT 1\nASK READ\nASK SHOW\nL:\nLINE 4 END\nPUSH_INT 4\nASK SHOW"
-    requests = run(HEAD + routine(body), fault("invalid"))
-    assert [Write(At("main.src", 3, 0), ("$ERR", "NUMBER"), 1422), 4] == [
-        requests[1],
-        requests[2].value,
-    ]
-
-
 # ------------------------------------------------------------------------------- limits
 
 ENDLESS = HEAD + routine("L:\nLINE 3 END\nJUMP L")
-
-
-def test_endless_program_ends_with_its_budget(run: Runner) -> None:
-    """So many statements begin, and the next one does not."""
-    requests = run(ENDLESS, statements=100, per_slice=1000)
-    assert isinstance(requests[-1], Fail)
-    assert isinstance(requests[-1].fault, BudgetExhausted)
-    assert 1 == len(requests)
-
-
-@pytest.mark.parametrize(("statements", "slices"), [(10, 0), (11, 1), (20, 1), (21, 2), (35, 3)])
-def test_time_passes_after_a_slice(run: Runner, statements: int, slices: int) -> None:
-    """A slice is asked before the statement that would be one too many."""
-    requests = run(ENDLESS, statements=statements, per_slice=10)
-    found = [request for request in requests if isinstance(request, Slice)]
-    assert slices == len(found)
-
-
-def test_a_request_begins_a_slice(run: Runner) -> None:
-    """Statements are counted from the last request on, whatever it was."""
-    body = "PUSH_INT 1\nASK SHOW\n" + "".join(f"L{n}:\nLINE {n} END\n" for n in range(3, 8))
-    kinds = [type(request) for request in run(HEAD + routine(body), per_slice=4)]
-    assert [Write, Slice, End] == kinds
-    kinds = [type(request) for request in run(HEAD + routine(body), per_slice=5)]
-    assert [Write, End] == kinds
-
-
-def test_slice_is_asked_where_the_statement_is(run: Runner) -> None:
-    """The statement that has to wait is the one that the slice names."""
-    slices = run(ENDLESS, statements=5, per_slice=1)
-    assert [3, 3, 3, 3] == [request.at.line for request in slices[:-1]]
-
-
-def test_endless_recursion_ends_with_a_fault(run: Runner) -> None:
-    """Calls go as deep as the profile says [SCO-11]."""
-    text = HEAD + routine("CALL MAIN2") + routine("CALL MAIN2", name="MAIN2")
-    requests = run(text, depth=20)
-    assert "stack" == failed(requests)
-    assert 20 == requests[-1].at.depth
-
-
-def test_large_frames_end_with_a_fault(run: Runner) -> None:
-    """Frames together have no more cells than there are, however deep calls may go."""
-    text = HEAD + routine("CALL BIG") + routine("CALL BIG", "local A INT[300000]", name="BIG")
-    requests = run(text, depth=1000)
-    assert "stack" == failed(requests)
-    assert 3 == requests[-1].at.depth
 
 
 def test_program_begins_with_a_routine_without_parameters() -> None:
@@ -418,94 +316,6 @@ end
 
 def at(line: int, depth: int) -> At:
     return At("main.src", line, depth)
-
-
-def test_action_runs_within_a_statement(start: Starter) -> None:
-    """What is interrupted goes on as if nothing had been, but for what the action changed."""
-    machine = start(INTERRUPTED)
-    declared = machine.advance()
-    assert isinstance(declared, DeclareInterrupt)
-    machine.advance()
-    second = machine.advance(10)
-    assert Read(at(13, 1), ("$ASKED", 1)) == second
-    machine.enter(declared.action)
-    assert Wait(at(2, 2), 1.0) == machine.advance()
-    assert 2 == machine.depth
-    assert End(at(12, 1)) == machine.advance()
-    assert second == machine.advance()
-    assert Write(at(13, 1), ("$SHOWN",), 10 + 20 + 105) == machine.advance(20)
-
-
-def test_actions_may_be_entered_one_on_top_of_the_other(start: Starter) -> None:
-    """The last one runs first, then the one before, then the request is asked again."""
-    machine = start(INTERRUPTED)
-    declared: Any = machine.advance()
-    asked = machine.advance()
-    machine.enter(declared.action)
-    machine.enter(declared.action)
-    kinds = [type(machine.advance()) for _ in range(5)]
-    assert [Wait, End, Wait, End, Read] == kinds
-    assert asked == machine._open.request
-    machine.advance(1)
-    assert 207 == machine.advance(1).value  # type: ignore[union-attr]
-
-
-def test_condition_is_evaluated_without_a_request(start: Starter) -> None:
-    """It sees the variables of the routine that declared it, and reads the world at once."""
-    machine = start(INTERRUPTED)
-    declared: Any = machine.advance()
-    machine.advance()
-    paths = []
-
-    def read(path: Any) -> int:
-        paths.append(path)
-        return len(paths) + 3
-
-    assert [False, True, False] == [machine.evaluate(declared.condition, read) for _ in range(3)]
-    assert [("$ASKED", 7)] * 3 == paths
-    with pytest.raises(Fault, match="cannot be assigned"):
-        machine.evaluate(declared.condition, lambda _path: True)
-    assert (1, 0) == (machine.depth, len(machine._state.stack))
-    assert isinstance(machine.advance(1), Read)
-
-
-def test_resume_goes_on_behind_the_call(start: Starter) -> None:
-    """All routines below the level are left, those in the middle of a request too [INT-10]."""
-    machine = start(INTERRUPTED)
-    declared: Any = machine.advance()
-    machine.advance()
-    machine.enter(declared.action)
-    assert isinstance(machine.advance(), Wait)
-    machine.unwind(0)
-    assert 0 == machine.depth
-    assert Write(at(3, 0), ("$SHOWN",), 3) == machine.advance()
-    assert isinstance(machine.advance(), End)
-
-
-def test_resume_leaves_the_action_but_not_its_level(start: Starter) -> None:
-    """What the action interrupted in the level itself is not asked again."""
-    machine = start(INTERRUPTED)
-    declared: Any = machine.advance()
-    machine.advance()
-    machine.enter(declared.action)
-    machine.advance()
-    machine.unwind(1)
-    assert Write(at(14, 1), ("$SHOWN",), 14) == machine.advance()
-
-
-def test_action_outlives_no_variable(start: Starter) -> None:
-    """An action that uses a variable of a routine that has ended faults."""
-    machine = start(INTERRUPTED.replace("ASK DECLARE", "ASK TRIGGER"))
-    trigger = machine.advance()
-    assert isinstance(trigger, SetTrigger)
-    for reply in (None, 1, 1, None):
-        last = machine.advance(reply)
-    assert isinstance(machine.advance(), Write)
-    assert isinstance(last, Write)
-    machine.enter(trigger.action)
-    requests = [machine.advance()]
-    assert "uninitialised" == failed(requests)
-    assert at(12, 0) == requests[-1].at
 
 
 CALLING = INTERRUPTED.replace(

@@ -5,14 +5,18 @@ from typing import Any
 
 import pytest
 
+from grammar.semantics.predefined import System
 from grammar.syntax.source import Source
-from interp.port.requests import End, Invoke, Read, Write
+from interp.port.events import Recorder
+from interp.port.executor import Executor
+from interp.port.requests import End, Fail, Invoke, Read, Write
 from interp.program.load import Limits, load
-from interp.tree import TreeExecutor, system_values
-from interp.values.faults import LinkError, fault
+from interp.tree import system_values
+from interp.values.faults import Fault, LinkError, fault
+from interp.values.values import StructureValue, empty
 
+Make = Callable[..., Executor]
 Run = Callable[..., Any]
-Make = Callable[..., TreeExecutor]
 
 
 def body(text: str, declarations: str) -> str:
@@ -33,6 +37,33 @@ def test_error_of_the_world_is_noted(make: Make) -> None:
     assert isinstance(written, Write)
     assert ("$ERR", "NUMBER") == written.path
     assert isinstance(executor.advance(), End)
+
+
+@pytest.mark.parametrize(
+    ("reply", "slug"),
+    [(None, "uninitialised"), (True, "inadmissible"), (fault("invalid"), "invalid")],
+)
+def test_replies_that_do_not_fit_fault(make: Make, reply: Any, slug: str) -> None:
+    """No value, a wrong one, or a fault: the program stops at the statement that asked."""
+    executor = make(body("I=$OV_PRO", "INT I"))
+    executor.advance()
+    failed = executor.advance(reply)
+    assert isinstance(failed, Fail)
+    assert isinstance(failed.fault, Fault)
+    assert (slug, 3) == (failed.fault.slug, failed.at.line)
+
+
+def test_replies_are_converted(make: Make) -> None:
+    """A reply is converted as an assignment does it; a structure may lack values."""
+    recorder = Recorder()
+    executor = make(body("I=$OV_PRO\nF=$TOOL", "INT I\nFRAME F"), None, recorder)
+    executor.advance()
+    executor.advance(7.6)
+    tool = empty(System.load().types["FRAME"])
+    assert isinstance(tool, StructureValue)
+    tool.set("X", 1.0)
+    assert isinstance(executor.advance(tool), End)
+    assert [8, tool] == [one.value for one in recorder.events if one.kind == "assign"]
 
 
 def test_full_stack_is_noted(go: Run) -> None:
@@ -102,9 +133,9 @@ def test_errors_are_link_errors() -> None:
         load([], "main.src")
     program = load([Source("DEF main(A:IN)\nINT A\nEND\n", "main.src")], "main.src")
     with pytest.raises(LinkError, match="parameters"):
-        TreeExecutor(program)
+        program.start()
     with pytest.raises(LinkError, match="no routine"):
-        TreeExecutor(program, "other")
+        program.start("other")
 
 
 def test_deep_blocks_are_refused() -> None:

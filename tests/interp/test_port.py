@@ -7,6 +7,7 @@ import pytest
 
 from interp.port import requests
 from interp.port.events import Recorder
+from interp.port.executor import Executor
 from interp.port.requests import (
     CodeHandle,
     DeclareInterrupt,
@@ -26,11 +27,10 @@ from interp.port.requests import (
     Wait,
     Write,
 )
-from interp.tree import TreeExecutor
 from interp.values.faults import Fault, fault
 
+Make = Callable[..., Executor]
 Run = Callable[..., Any]
-Make = Callable[..., TreeExecutor]
 
 INTERRUPT = (
     "DEF main()\nINT I\nI=1\nINTERRUPT DECL 3 WHEN $IN[1]==TRUE DO Stop(I)\n"
@@ -68,7 +68,7 @@ def test_wait_for_polls(make: Make) -> None:
 
 def interrupted(
     make: Make, recorder: Recorder | None = None
-) -> tuple[TreeExecutor, DeclareInterrupt, Halt]:
+) -> tuple[Executor, DeclareInterrupt, Halt]:
     """A program that halts in a routine, with its interrupt declared."""
     executor = make(INTERRUPT, None, recorder)
     declared = executor.advance()
@@ -89,6 +89,9 @@ def test_condition_is_evaluated(make: Make) -> None:
 
     with pytest.raises(Fault):
         executor.evaluate(declared.condition, unreadable)
+    with pytest.raises(Fault):
+        executor.evaluate(declared.condition, lambda _path: None)
+    assert 1 == executor.depth
 
 
 def test_enter_asks_again(make: Make) -> None:
@@ -103,6 +106,47 @@ def test_enter_asks_again(make: Make) -> None:
     again = executor.advance()
     assert (Halt, 10) == (type(again), again.at.line)
     assert isinstance(executor.advance(), End)
+
+
+_EXPRESSION = """DEF main()
+INT X
+X=5
+INTERRUPT DECL 3 WHEN $IN[7] DO Add(X)
+$OV_PRO=$OV_APPL+$OV_APPL+X
+END
+DEF Add(A:OUT)
+INT A
+A=A+100
+WAIT SEC 1
+END
+"""
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_action_runs_within_an_expression(make: Make, times: int) -> None:
+    """Operands stay, the open request is asked again, and what the action changed is seen."""
+    executor = make(_EXPRESSION)
+    declared, _ = executor.advance(), executor.advance()
+    assert isinstance(declared, DeclareInterrupt)
+    second = executor.advance(10)
+    assert isinstance(second, Read)
+    for _ in range(times):
+        executor.enter(declared.action)
+    assert [Wait, End] * times == [type(executor.advance()) for _ in range(2 * times)]
+    assert second == executor.advance()
+    written = executor.advance(20)
+    assert isinstance(written, Write)
+    assert 10 + 20 + 5 + 100 * times == written.value
+
+
+def test_unwind_to_the_level_of_the_request(make: Make) -> None:
+    """RESUME to the routine that was interrupted continues behind its statement."""
+    executor, declared, _ = interrupted(make)
+    executor.enter(declared.action)
+    assert [Wait, Resume] == [type(executor.advance()), type(executor.advance())]
+    executor.unwind(1)
+    halted = executor.advance()
+    assert (Halt, 10, 1) == (type(halted), halted.at.line, executor.depth)
 
 
 def test_unwind(make: Make) -> None:

@@ -6,14 +6,13 @@ from typing import Any
 import pytest
 
 from interp.port.events import ExecutorEvent
+from interp.port.executor import Executor
 from interp.port.requests import End, Fail, Halt, Slice
 from interp.program.load import Limits
-from interp.tree import TreeExecutor
-from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 
+Make = Callable[..., Executor]
 Run = Callable[..., Any]
-Make = Callable[..., TreeExecutor]
 
 
 def body(text: str, declarations: str = "INT I,J,N") -> str:
@@ -59,46 +58,34 @@ def test_unknown_routine(go: Run) -> None:
     assert [1] == ran.values("I")
 
 
-def test_budget(go: Run) -> None:
+@pytest.mark.parametrize(
+    "loop", ["LOOP\nENDLOOP", "WHILE TRUE\nENDWHILE", "REPEAT\nUNTIL FALSE", "A:\nGOTO A"]
+)
+@pytest.mark.parametrize(("statements", "slices"), [(10, 0), (11, 1), (20, 1), (21, 2), (35, 3)])
+def test_budget(go: Run, loop: str, statements: int, slices: int) -> None:
     """An endless program ends with its budget, and lets time pass on the way."""
-    for loop in ("LOOP\nENDLOOP", "WHILE TRUE\nENDWHILE", "REPEAT\nUNTIL FALSE", "A:\nGOTO A"):
-        ran = go(body(loop), Limits(statements=100, per_slice=30))
-        assert isinstance(ran.last.fault, BudgetExhausted), loop
-        assert 3 == len(ran.asked(Slice)), loop
-        assert 100 == len(ran.events_of("line")), loop
+    ran = go(body(loop), Limits(statements=statements, per_slice=10))
+    assert isinstance(ran.last.fault, BudgetExhausted)
+    assert slices == len(ran.asked(Slice))
+    assert statements == len(ran.events_of("line"))
 
 
-def test_rounds_that_change_nothing(go: Run, make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They count as begun without being run, and all requests come where they did."""
-    limits, begin, begun = Limits(statements=1_000, per_slice=301), ProgramState.begin, list[int]()
-
-    def counted(run: ProgramState, frame: Frame, line: int) -> Steps[None]:
-        begun.append(line)
-        return begin(run, frame, line)
-
-    monkeypatch.setattr(ProgramState, "begin", counted)
-    for loop in ("LOOP\nJ=0\nENDLOOP", "WHILE I<1\nENDWHILE", "A:\nI=0\nGOTO A"):
-        slow = [one.at for one in go(body(f"I=0\n{loop}"), limits).asked(Slice)]
-        begun.clear()
-        quick = make(body(f"I=0\n{loop}"), limits)
-        asked = [quick.advance(None).at for _ in slow]
-        assert isinstance(quick.advance(None), Fail), loop
-        assert (slow, 1_000, True) == (asked, quick.begun, len(begun) < 100), loop
+@pytest.mark.parametrize(("per_slice", "kinds"), [(4, [Halt, Slice, End]), (5, [Halt, End])])
+def test_a_request_begins_a_slice(go: Run, per_slice: int, kinds: list[type]) -> None:
+    """Statements are counted from the last request on; a slice names the one that waits."""
+    ran = go(body("HALT\n" + "I=1\n" * 5), Limits(per_slice=per_slice))
+    asked = [one for one in ran.steps if not isinstance(one, ExecutorEvent)]
+    assert kinds == [type(one) for one in asked]
+    assert [8] * (len(kinds) - 2) == [one.at.line for one in ran.asked(Slice)]
 
 
-def test_rounds_that_change_something(make: Make) -> None:
-    """A loop whose variables change is run to its end."""
-    for change in ("J=1-J\nI=I+J", "I=I+F()"):
-        text = body(f"I=0\nJ=0\nREPEAT\n{change}\nUNTIL I>3")
-        executor = make(text + "DEFFCT INT F()\nRETURN 1\nENDFCT\n", Limits(statements=200))
-        assert isinstance(executor.advance(), End | Fail), change
-        assert executor.begun < 200, change
-
-
-def test_ended_stays_ended(make: Make) -> None:
+@pytest.mark.parametrize(("text", "kind"), [("I=1", End), ("I=J", Fail)])
+def test_ended_stays_ended(make: Make, text: str, kind: type) -> None:
     """An executor that has ended returns the same request again."""
-    executor = make(body("I=1"))
-    assert executor.advance() is executor.advance()
+    executor = make(body(text))
+    last = executor.advance()
+    assert isinstance(last, kind)
+    assert last is executor.advance()
 
 
 def test_fault_is_no_traceback(go: Run) -> None:
