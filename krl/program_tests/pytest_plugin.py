@@ -156,10 +156,11 @@ class _Summary:
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Write what is asked for and name it; say what was recorded anew."""
-        from krl.errors import shown
+        if self._recorded:
+            from krl.errors import shown
 
-        for line in self._recorded:
-            terminalreporter.write_line(shown(_from_here(self._config, line)))
+            for line in self._recorded:
+                terminalreporter.write_line(shown(_from_here(self._config, line)))
         html, lcov = self._config.option.krl_cov_html, self._config.option.krl_lcov
         if html is None and lcov is None:
             return
