@@ -84,7 +84,7 @@ def run_case(
             results.append(Result(setup.executor, setup.robot, "skipped", lacking, (), 0.0))
             continue
         begun = time.perf_counter()
-        seen = _seen(see, case, setup, most)
+        seen = observed_within(case, setup, most, see)
         checks = _checks(case, seen)
         listed = known.reason(case.name, setup.executor, setup.robot)
         verdict, reason = verdict_of(checks, listed)
@@ -121,8 +121,10 @@ def _end_computing(_signal: int, _frame: object) -> NoReturn:
     raise _ComputingOver
 
 
-def _seen(see: Observe, case: Case, setup: Setup, most: float) -> Observation:
-    """What was seen; an exception is a defect of ours and no reason to lose the other cases."""
+def observed_within(
+    case: Case, setup: Setup, most: float = _COMPUTING, see: Observe = observe
+) -> Observation:
+    """What was seen of a case in so many seconds of computing; an exception is a crash."""
     try:
         with _computing_at_most(most):
             return see(case, setup)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
-import sys
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
-from types import FrameType
+from itertools import compress, count
 from typing import Any, Final
 
 import numpy as np
@@ -19,7 +17,8 @@ from conformance.evaluation.execution import Setup
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.mutants import modules
+from conformance.sensitivity.mutants import InvalidMutant, load, modules, recoded, tree_of
+from conformance.sensitivity.mutation_operators import span
 from conformance.suite.case import Case
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import in_shares
@@ -32,9 +31,10 @@ NOTHING_KEPT: Final = ResultStore(None, "")
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What a case runs: lines by module, negative in lambdas, and how many in all, one by one.
+    """What a case runs: the first lines of statements by module, negative in lambdas.
 
-    ``cost`` is that number. ``seen`` tells what was seen of it from anything else (`seen_digest`).
+    ``cost`` is the number of events and set-points, which it takes time to come to. ``seen`` tells
+    what was seen of it from anything else (`seen_digest`).
     """
 
     case: Case
@@ -92,52 +92,110 @@ def _reach_of_row(case: Case, row: Mapping[str, Any]) -> Reach | None:
 
 
 def _reached(cases: Sequence[Case], setup: Setup) -> list[Reach | None]:
-    return [_reach(case, setup) for case in cases]
+    with _marked() as marks:
+        return [_reach(case, setup, marks) for case in cases]
 
 
-def _reach(case: Case, setup: Setup) -> Reach | None:
-    with _counted() as counts:
-        (result,) = run_case(case, [setup], KnownFailures()).results
-    if result.verdict != "pass" or result.observation is None:
+def _reach(case: Case, setup: Setup, marks: Mapping[str, _Marks]) -> Reach | None:
+    for one in marks.values():
+        one.clear()
+    (result,) = run_case(case, [setup], KnownFailures()).results
+    seen = result.observation
+    if result.verdict != "pass" or seen is None:
         return None
-    lines: dict[str, set[int]] = {}
-    for file, line in counts:
-        lines.setdefault(_modules_by_file()[file], set()).add(line)
-    reached = {name: frozenset(one) for name, one in lines.items()}
-    return Reach(case, reached, counts.total(), seen_digest(result.observation))
+    lines = {module: one.lines() for module, one in marks.items() if one.lines()}
+    rows = 0 if seen.path is None else len(seen.path.times)
+    return Reach(case, lines, len(seen.events) + rows, seen_digest(seen))
 
 
 def seen_digest(seen: Observation) -> str:
-    """SHA-256 of all events, the ending, and the path to a ten-millionth of a degree."""
-    found = hashlib.sha256(repr((seen.events, seen.ending)).encode())
-    if seen.path is not None:
-        found.update((np.round(seen.path.axes, 7) + 0.0).tobytes())
+    """SHA-256 of all that is evaluated; the path to a ten-millionth of a degree or mm."""
+    found = hashlib.sha256(repr((seen.events, seen.ending, seen.note)).encode())
+    if (path := seen.path) is not None:
+        found.update(repr((path.placements, path.motions)).encode())
+        for rows in (path.times, path.axes, path.points):
+            found.update((np.round(rows, 7) + 0.0).tobytes())
     return found.hexdigest()
 
 
+# ------------------------------------------------------------------------------- marked lines
+
+#: The global variables of a module in which its functions and its lambdas mark their lines.
+_MARKS: Final = ("__reached_lines__", "__reached_lambdas__")
+
+
+@dataclass(frozen=True, slots=True)
+class _Marks:
+    """A byte for each line of a module where functions run it, and one where lambdas do.
+
+    ``lasts`` are the last lines of statements by their first ones, of lambdas by these negative.
+    """
+
+    functions: bytearray
+    lambdas: bytearray
+    lasts: Mapping[int, int]
+
+    def clear(self) -> None:
+        """No line was run."""
+        for one in (self.functions, self.lambdas):
+            one[:] = bytes(len(one))
+
+    def lines(self) -> frozenset[int]:
+        """The lines of the statements that were run, negative for lambdas."""
+        return frozenset(
+            sign * line
+            for sign, marks in ((1, self.functions), (-1, self.lambdas))
+            for first in compress(count(), marks)
+            for line in range(first, self.lasts[sign * first] + 1)
+        )
+
+
 @contextmanager
-def _counted() -> Iterator[Counter[tuple[str, int]]]:
-    """How often each line of the modules is run within the context."""
-    counts: Counter[tuple[str, int]] = Counter()
-    files = _modules_by_file()
+def _marked() -> Iterator[Mapping[str, _Marks]]:
+    """Have each statement and lambda of the modules mark its line, within the context.
 
-    def on_line(frame: FrameType, event: str, _argument: Any) -> Any:
-        if event == "line":
-            sign = -1 if frame.f_code.co_name == "<lambda>" else 1
-            counts[frame.f_code.co_filename, sign * frame.f_lineno] += 1
-        return on_line
-
-    def on_call(frame: FrameType, _event: str, _argument: Any) -> Any:
-        return on_line if frame.f_code.co_filename in files else None
-
-    before = sys.gettrace()
-    sys.settrace(on_call)
+    That takes a tenth of the time of a trace function.
+    """
+    load()
+    undo: list[Callable[[], None]] = []
+    found = {}
+    for name in modules():
+        module, tree = import_module(name), tree_of(name)
+        lasts: dict[int, int] = {}
+        _add_marks(tree, lasts)
+        size = max(lasts.values(), default=0) + 1
+        found[name] = _Marks(bytearray(size), bytearray(size), lasts)
+        vars(module).update(zip(_MARKS, (found[name].functions, found[name].lambdas), strict=True))
+        with suppress(InvalidMutant):  # it has no functions
+            undo += recoded(module, tree)
     try:
-        yield counts
+        yield found
     finally:
-        sys.settrace(before)
+        for one in undo:
+            one()
 
 
-@cache
-def _modules_by_file() -> Mapping[str, str]:
-    return {str(import_module(name).__file__): name for name in modules()}
+def _add_marks(tree: ast.Module, lasts: dict[int, int]) -> None:
+    """Put a mark into each lambda and before each statement of a function that is no docstring."""
+    nodes = list(ast.walk(tree))
+    within = {
+        id(each) for one in nodes if isinstance(one, ast.FunctionDef) for each in ast.walk(one)
+    }
+    for node in nodes:
+        if isinstance(node, ast.Lambda):
+            lasts[-node.lineno] = node.end_lineno or node.lineno
+            mark = f"{_MARKS[1]}.__setitem__({node.lineno}, 1)"
+            node.body = ast.BoolOp(ast.Or(), [ast.parse(mark, mode="eval").body, node.body])
+        elif id(node) in within:
+            for part in ("body", "orelse", "finalbody"):
+                if isinstance(rows := getattr(node, part, None), list):
+                    lasts.update(map(span, rows))
+                    setattr(node, part, [each for row in rows for each in _after_mark(row)])
+    ast.fix_missing_locations(tree)
+
+
+def _after_mark(row: ast.stmt) -> list[ast.stmt]:
+    """A statement, behind its mark where it is no docstring."""
+    if isinstance(row, ast.Expr) and isinstance(row.value, ast.Constant):
+        return [row]
+    return [*ast.parse(f"{_MARKS[0]}[{row.lineno}] = 1").body, row]

@@ -23,9 +23,10 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any, Final, Literal, NoReturn
 
-from conformance.evaluation.execution import Setup, missing
+from conformance.evaluation.execution import Setup, missing, observe
+from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.runner import Result, run_case
+from conformance.runner import Result, observed_within, run_case
 from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, reach_of, seen_digest
 from conformance.sensitivity.mutants import (
     InvalidMutant,
@@ -343,20 +344,23 @@ def _trials(mutant: Mutant, cases: _Candidates) -> Iterator[Trial]:
 def _noticed(reach: Reach, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
     """How a case notices the mutant that is in place, why, and the digest of what was seen.
 
-    Where nothing else is seen than without it, the other executor has nothing to differ from.
+    Where nothing else is seen than without it, nothing is evaluated, and the other executor has
+    nothing to differ from.
     """
     case = reach.case
-    results = run_case(case, setups[:1], KnownFailures(), most=_SECONDS).results
-    first = results[0].observation
-    if len(setups) > 1 and (first is None or seen_digest(first) != reach.seen):
-        results = run_case(case, setups, KnownFailures(), most=_SECONDS).results
-    seen = results[0].observation
-    digest = seen_digest(seen) if seen else ""
+    first = observed_within(case, setups[0], _SECONDS)
+    digest = seen_digest(first)
+    if digest == reach.seen:
+        return None, "", digest
+
+    def see(case: Case, setup: Setup) -> Observation:
+        return first if setup is setups[0] else observe(case, setup)
+
+    results = run_case(case, setups, KnownFailures(), see, most=_SECONDS).results
     bad = sorted((one for one in results if one.verdict not in ("pass", "skipped")), key=_grave)
     if bad:
         return ("red" if bad[0].verdict == "fail" else "soft"), bad[0].reason, digest
-    is_seen = any(one.verdict == "pass" for one in results)
-    if is_seen:
+    if any(one.verdict == "pass" for one in results):
         return None, "", digest
     return ("red" if case.may_fail else "soft"), "it was skipped", digest
 

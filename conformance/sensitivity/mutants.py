@@ -197,7 +197,7 @@ def named(name: str) -> Mutant:
     is_known = module in _every_module() and number.isdigit()
     if not is_known or int(number) >= len(_changed(module)):
         raise KeyError(name)
-    tree = _tree(module)
+    tree = tree_of(module)
     one = _change(tree, int(number))
     package = next((each for each in PACKAGES if module in _modules(each)), "")
     source = _text(module).splitlines()[one.line - 1].strip()
@@ -221,7 +221,7 @@ def of_line(file: str, line: int) -> list[Mutant]:
     module = file.removesuffix(".py").replace("/", ".")
     if module not in _every_module():
         return []
-    found = enumerate(changes(_tree(module)))
+    found = enumerate(changes(tree_of(module)))
     return [named(f"{module}:{number}") for number, one in found if one.line == line]
 
 
@@ -243,7 +243,7 @@ def uses_of(mutant: Mutant) -> Mapping[str, frozenset[int]]:
     return {
         module: frozenset(
             one.lineno
-            for function in ast.walk(_tree(module))
+            for function in ast.walk(tree_of(module))
             if isinstance(function, ast.FunctionDef | ast.Lambda)
             for one in ast.walk(function)
             if isinstance(one, ast.Name) and one.id == mutant.function
@@ -257,7 +257,7 @@ def around(mutant: Mutant) -> Mapping[str, frozenset[int]]:
     """The lines of its function, and of what its statement names: functions, methods, classes."""
     first, last = sorted(map(abs, mutant.lines))
     words = {mutant.function.rpartition(".")[2]}
-    for node in ast.walk(_tree(mutant.module)):
+    for node in ast.walk(tree_of(mutant.module)):
         if isinstance(node, ast.Name | ast.Attribute) and first <= node.lineno <= last:
             words.add(node.id if isinstance(node, ast.Name) else node.attr)
     found: dict[str, set[int]] = {}
@@ -272,7 +272,7 @@ def cited(mutant: Mutant) -> frozenset[str]:
     found = set()
     for module, lines in around(mutant).items():
         rows = _text(module).splitlines()
-        text = [ast.get_docstring(_tree(module)) or "", *(rows[number - 1] for number in lines)]
+        text = [ast.get_docstring(tree_of(module)) or "", *(rows[number - 1] for number in lines)]
         found.update(_RULE.findall("\n".join(text)))
     return frozenset(found)
 
@@ -283,7 +283,7 @@ def _functions_of_modules() -> Sequence[tuple[str, str, range]]:
     return [
         (module, node.name, range(node.lineno, (node.end_lineno or node.lineno) + 1))
         for module in modules()
-        for node in ast.walk(_tree(module))
+        for node in ast.walk(tree_of(module))
         if isinstance(node, ast.FunctionDef | ast.ClassDef)
     ]
 
@@ -310,14 +310,15 @@ def _text(module: str) -> str:
     return Path(str(import_module(module).__file__)).read_text(encoding="utf-8")
 
 
-def _tree(module: str) -> ast.Module:
+def tree_of(module: str) -> ast.Module:
+    """The syntax tree of a module, made anew, so that it can be changed."""
     return ast.parse(_text(module))
 
 
 @cache
 def _changed(module: str) -> tuple[str, ...]:
     """The function that each mutant of a module changes, by its number."""
-    return tuple(one.function for one in changes(_tree(module)))
+    return tuple(one.function for one in changes(tree_of(module)))
 
 
 def _change(tree: ast.Module, number: int) -> Change:
@@ -334,10 +335,10 @@ def put_in_place(mutant: Mutant) -> Iterator[None]:
     Raises `InvalidMutant` where this cannot be done.
     """
     module = import_module(mutant.module)
-    tree = _tree(mutant.module)
+    tree = tree_of(mutant.module)
     change = _change(tree, mutant.number)
     change.make()
-    undo = _reassigned(module, change) if change.assignment else _recoded(module, tree)
+    undo = _reassigned(module, change) if change.assignment else recoded(module, tree)
     _forget()
     try:
         yield
@@ -366,8 +367,12 @@ def _reassigned(module: ModuleType, change: Change) -> list[Callable[[], None]]:
     return undo
 
 
-def _recoded(module: ModuleType, tree: ast.Module) -> Sequence[Callable[[], None]]:
-    """Exchange the code of the functions that are no longer the same."""
+def recoded(module: ModuleType, tree: ast.Module) -> Sequence[Callable[[], None]]:
+    """Exchange the code of the functions that a tree has otherwise; returns what undoes it.
+
+    Functions, comprehensions and lambdas are to begin where they did. Raises `InvalidMutant` where
+    none is another, or one has other variables of the functions around it.
+    """
     path = str(module.__file__)
     original = compile(_text(module.__name__), path, "exec", dont_inherit=True)
     mutated = compile(tree, path, "exec", dont_inherit=True)

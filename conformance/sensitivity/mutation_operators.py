@@ -183,7 +183,7 @@ def _is_real(node: ast.AST | None, reals: Collection[str]) -> bool:
 
 
 def _of_value(statement: ast.Assign | ast.AnnAssign, name: str) -> Iterator[Change]:
-    scope = _Scope((name,), _span(statement), statement)
+    scope = _Scope((name,), span(statement), statement)
     assert statement.value is not None, "only those with a value come here"
     yield from _of_place(statement, "value", None, statement.value, scope)
 
@@ -214,7 +214,7 @@ def _of_statement(
         or (not node.orelse and all(map(_is_own_mistake, node.body)))
     ):
         return
-    inner = replace(scope, lines=_span(node), assignment=None)
+    inner = replace(scope, lines=span(node), assignment=None)
     if _is_droppable(node):
         yield _change("statement", parent, name, index, node, ast.Pass(), inner)
     yield from _of_parts(node, inner)
@@ -349,7 +349,7 @@ def _parts(target: ast.expr) -> list[ast.expr]:
     return [*target.elts] if isinstance(target, ast.Tuple) else [target]
 
 
-def _span(node: ast.stmt) -> tuple[int, int]:
+def span(node: ast.stmt) -> tuple[int, int]:
     """First and last line of a statement, without the statements within it."""
     if isinstance(node, _COMPOUND):
         first = min(
