@@ -189,7 +189,8 @@ def _programmed_share(program: Sequence[Motion], arm: PlannedArm, override: floa
     shares = [0.0]
     for leg in arm.path():
         section = leg.section
-        u, speeds, _ = leg.at(np.linspace(leg.begins, leg.ends, 17))
+        states = [leg.state(time) for time in np.linspace(leg.begins, leg.ends, 17).tolist()]
+        u, speeds = np.array([(one.u, one.speed) for one in states]).T
         if section.number == program[0].number:
             continue
         if section.curve.pose_path is not None:

@@ -173,12 +173,10 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Set-points at ``n`` times: axes, their speeds and accelerations, each of shape (n, axes)."""
+    """Set-points at ``n`` times, of shape (n, axes)."""
 
     times: npt.NDArray[np.int64]
     axes: npt.NDArray[np.float64]
-    speeds: npt.NDArray[np.float64]
-    accelerations: npt.NDArray[np.float64]
 
 
 class Arm(Protocol):

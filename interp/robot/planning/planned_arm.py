@@ -261,9 +261,9 @@ class PlannedArm:
         leg = self._timeline.leg_at(seconds)
         if leg is None or seconds >= leg.ends:
             return 0.0
-        u, speed, _ = leg.at(np.array([seconds]))
-        tangent = tool_tangents(leg.section.curve, u)
-        return float(np.linalg.norm(tangent)) * abs(float(speed[0])) / 1000.0
+        state = leg.state(seconds)
+        tangent = tool_tangents(leg.section.curve, np.array([state.u]))
+        return float(np.linalg.norm(tangent)) * state.speed / 1000.0
 
     def distances(self, time: int) -> tuple[float, float]:
         """See `interp.robot.arm.Arm.distances`; 0 and 0 where no motion is on."""

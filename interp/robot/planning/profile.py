@@ -75,21 +75,18 @@ class SpeedProfile:
     def _columns(self) -> Array:
         return np.array(self.knots).T
 
-    def at(self, times: Array) -> tuple[Array, Array, Array]:
-        """Position, speed and acceleration; before the start and behind the end as there."""
+    def at(self, times: Array) -> Array:
+        """Positions; before the start and behind the end as there."""
         clipped = np.minimum(np.maximum(times, 0.0), self.duration)
         starts, positions, speeds, accelerations, jerks = self._columns
         place = np.searchsorted(starts, clipped, side="right") - 1
         dt = clipped - starts[place]
-        jerk, acceleration, speed = jerks[place], accelerations[place], speeds[place]
-        return (
-            positions[place] + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
-            speed + dt * (acceleration + dt * jerk / 2),
-            acceleration + dt * jerk,
-        )
+        bends = accelerations[place] / 2 + dt * jerks[place] / 6
+        found: Array = positions[place] + dt * (speeds[place] + dt * bends)
+        return found
 
     def state(self, time: float) -> tuple[float, float, float]:
-        """`at` for a single time."""
+        """Position, speed and acceleration at a time, as `at`."""
         clipped = min(max(time, 0.0), self.duration)
         start, position, speed, acceleration, jerk = self.knots[0]
         for knot in self.knots[1:]:

@@ -85,11 +85,10 @@ class Leg:
     begins: float
     ends: float
 
-    def at(self, times: Array) -> tuple[Array, Array, Array]:
-        """u, u̇ and ü at times."""
-        size = self.stretch.size
-        position, speed, acceleration = self.profile.at(np.minimum(times, self.ends) - self.begins)
-        return self.stretch.start + position / size, speed / size, acceleration / size
+    def at(self, times: Array) -> Array:
+        """Parameters u at times."""
+        position = self.profile.at(np.minimum(times, self.ends) - self.begins)
+        return self.stretch.start + position / self.stretch.size
 
     def state(self, time: float) -> PathState:
         """The state at a time."""
@@ -180,28 +179,23 @@ class Timeline:
         leg = self.leg_at(time)
         if leg is None:
             return self.start
-        axes: Array = leg.section.curve.axes(leg.at(np.array([time]))[0])[0]
+        axes: Array = leg.section.curve.axes(leg.at(np.array([time])))[0]
         return axes
 
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
         """Set-points at rising times in µs."""
         seconds: Array = np.asarray(times, dtype=np.float64) * MICROSECOND
         axes = np.empty((len(times), len(self.start)))
-        speeds, accelerations = np.zeros_like(axes), np.zeros_like(axes)
         places = np.searchsorted(np.array(self._begins), seconds, side="right") - 1
         axes[places < 0] = self.start
         for curve, wanted, parts in self._grouped(places, seconds):
-            u, speed, acceleration = (np.concatenate(column) for column in zip(*parts, strict=True))
-            first, second, _ = curve.rates(u)
-            axes[wanted] = curve.axes(u)
-            speeds[wanted] = first * speed[:, None]
-            accelerations[wanted] = second * speed[:, None] ** 2 + first * acceleration[:, None]
-        return Samples(times, axes, speeds, accelerations)
+            axes[wanted] = curve.axes(np.concatenate(parts))
+        return Samples(times, axes)
 
     def _grouped(
         self, places: npt.NDArray[np.intp], seconds: Array
-    ) -> Iterator[tuple[Curve, slice, list[tuple[Array, Array, Array]]]]:
-        """Samples by curve: its slice of the times, and what its legs have there."""
+    ) -> Iterator[tuple[Curve, slice, list[Array]]]:
+        """Samples by curve: its slice of the times, and the parameters on its legs there."""
         first = int(np.searchsorted(places, 0))
         while first < len(places):
             curve = self.legs[places[first]].section.curve
@@ -209,10 +203,7 @@ class Timeline:
             while first < len(places) and self.legs[places[first]].section.curve is curve:
                 leg = self.legs[places[first]]
                 behind = int(np.searchsorted(places, places[first], side="right"))
-                u, speed, acceleration = leg.at(seconds[first:behind])
-                standing = seconds[first:behind] >= leg.ends
-                speed[standing] = acceleration[standing] = 0.0
-                parts.append((u, speed, acceleration))
+                parts.append(leg.at(seconds[first:behind]))
                 first = behind
             yield curve, slice(start, first), parts
 

@@ -189,7 +189,7 @@ class SecondArm:
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
         """Nothing is known of them."""
         zeros = np.zeros((len(times), 6))
-        return Samples(times, zeros, zeros, zeros)
+        return Samples(times, zeros)
 
     def override(self, now: int, percent: float) -> None:
         """The path clock goes slower."""

@@ -80,7 +80,7 @@ class PacedArm:
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
         """It stands."""
         still = np.zeros((len(times), 6))
-        return Samples(times, still, still, still)
+        return Samples(times, still)
 
     def override(self, now: int, percent: float) -> None:
         """Only noted."""

@@ -96,7 +96,7 @@ def torques(loads: dict[str, Load], axes: Sequence[float] = HOME) -> Array:
     robot.carry(loads)
     rows = np.tile(axes, (3, 1))
     times = 1_000 * np.arange(1, 4, dtype=np.int64)
-    found: Array = robot.follow(Samples(times, rows, rows * 0, rows * 0)).torques[-1]
+    found: Array = robot.follow(Samples(times, rows)).torques[-1]
     return found
 
 

@@ -35,7 +35,7 @@ HOME = (0.0, -70.0, 100.0, 0.0, 30.0, 0.0)
 def samples_of(axes: Array, start: int = 0) -> Samples:
     """Set-points 1 ms apart; the robot looks at their places only."""
     times = start + 1_000 * np.arange(1, len(axes) + 1, dtype=np.int64)
-    return Samples(times, axes, np.zeros_like(axes), np.zeros_like(axes))
+    return Samples(times, axes)
 
 
 def smooth(count: int) -> Array:

@@ -128,7 +128,7 @@ def test_an_arm_without_heavy_rotors_stands(cobot: RobotFile) -> None:
     robot.stand(home.tolist())
     rows = np.tile(home, (500, 1))
     times = 1_000 * np.arange(1, 501, dtype=np.int64)
-    measured = robot.follow(Samples(times, rows, rows * 0, rows * 0)).axes
+    measured = robot.follow(Samples(times, rows)).axes
     assert np.abs(measured - home).max() < 1e-6
 
 

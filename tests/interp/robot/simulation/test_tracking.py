@@ -36,7 +36,7 @@ class Turning:
         self.asked.append(len(times))
         axes = np.tile(START, (len(times), 1))
         axes[:, 0] = times / 1_000.0
-        return Samples(times, axes, np.zeros_like(axes), np.zeros_like(axes))
+        return Samples(times, axes)
 
 
 class Lagging(KinematicRobot):
