@@ -31,10 +31,13 @@ class Violation:
 
 def violations(seen: Observation) -> Iterator[Violation]:
     """The first violation of each law in a run whose events are all known."""
-    for law in (_in_time, _changes, _levels, _motions, _ahead):
+    for law in (_in_time, _changes, _levels, _motions, _ahead, _faults, _ends):
         found = next(law(seen.events), None)
         if found is not None:
             yield found
+    is_told = any(one.kind == "end" and one.task == "robot" for one in seen.events)
+    if seen.ending == "end" and not is_told:
+        yield Violation(None, "the end of the program is an event", "none")
 
 
 def _in_time(events: Sequence[Event]) -> Iterator[Violation]:
@@ -124,3 +127,25 @@ def _ahead(events: Sequence[Event]) -> Iterator[Violation]:
                 yield Violation(one, law, actual, "ADV-01")
         elif one.kind == "motion_start" and isinstance(number, int):
             started = number
+
+
+def _faults(events: Sequence[Event]) -> Iterator[Violation]:
+    """The message of a fault that has a number is shown before, at the same place and time."""
+    shown: set[tuple[object, ...]] = set()
+    for one in events:
+        number = one.fields.get("number")
+        key = one.task, one.file, one.line, one.time, number
+        if one.kind == "message":
+            shown.add(key)
+        elif one.kind == "fault" and number is not None and key not in shown:
+            yield Violation(one, "the message of a fault is shown", str(number))
+
+
+def _ends(events: Sequence[Event]) -> Iterator[Violation]:
+    """A program ends or fails once, and begins no further statement."""
+    over: set[str] = set()
+    for one in events:
+        if one.kind in ("line", "end", "fault") and one.task in over:
+            yield Violation(one, "a program that is over does nothing more", one.kind)
+        if one.kind in ("end", "fault"):
+            over.add(one.task)

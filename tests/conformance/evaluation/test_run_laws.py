@@ -46,9 +46,26 @@ PLANNED = [motion("planned", number) for number in range(1, 8)]
         (PLANNED[:6], []),
         (PLANNED, ["at most 5 motions are planned ahead"]),
         ([motion("start", 1), event("brake"), motion("start", 2)], []),
+        ([event("message", number=1444), event("fault", number=1444)], []),
+        ([event("fault", number=None)], []),
+        ([event("fault", number=1444)], ["the message of a fault is shown"]),
+        (
+            [event("message", number=1422), event("fault", number=1444)],
+            ["the message of a fault is shown"],
+        ),
+        ([event("end"), out(value=True)], []),
+        ([event("end"), event("line")], ["a program that is over does nothing more"]),
+        ([event("end"), event("end")], ["a program that is over does nothing more"]),
     ],
 )
 def test_a_law_is_broken_by_what_breaks_it(events: list[Event], laws: list[str]) -> None:
     """The violations of a trace are those of the laws that it breaks."""
-    found = [one.law for one in violations(Observation(events=tuple(events), ending="end"))]
+    found = [one.law for one in violations(Observation(events=tuple(events)))]
     assert laws == found
+
+
+def test_a_program_that_has_ended_says_so() -> None:
+    """A run that was over by the end of its program has the event."""
+    for events, laws in (((event("end"),), []), ((), ["the end of the program is an event"])):
+        found = [one.law for one in violations(Observation(events=events, ending="end"))]
+        assert laws == found
