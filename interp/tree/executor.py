@@ -179,7 +179,6 @@ class TreeExecutor:
         """
         while self._run.depth > depth or self._stack[-1].interrupted is not None:
             active = self._stack.pop()
-            active.steps.close()
             self._left(active)
             below = active.interrupted
             self._resumed_at_end = (below.final or below.resumed_at_end) if below else None
@@ -312,7 +311,6 @@ class TreeExecutor:
         self._run.guard = active.interrupted.guard
         self._open, self._is_asked = active.interrupted.request, False
         self._resumed = active.interrupted.resumed
-        self._final = active.interrupted.final
         self._resumed_at_end = active.interrupted.resumed_at_end
         return end
 

@@ -6,7 +6,7 @@ advance run is data (`grammar.semantics.predefined`) [ADV-04, ADV-07].
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from grammar.semantics.predefined import PredefinedFunction, System
@@ -27,6 +27,7 @@ from interp.controller.state.predefined_values import empty_structure
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path
+from interp.robot.arm import Target
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault
@@ -246,7 +247,7 @@ class PredefinedRoutines:
         from interp.robot.kinematics.targets import turn_of
 
         target = target_of(known(request.arguments[0]))
-        axes = [target.get(name, 0.0) for name in _AXES]
+        axes = _all_of(target, _AXES)
         kinematics, placement = self._kinematics()
         flange = Pose.from_matrix(kinematics.forward(axes).tolist())
         status = int(kinematics.status(axes))
@@ -261,9 +262,9 @@ class PredefinedRoutines:
         target = target_of(known(request.arguments[0]))
         start = target_of(known(request.arguments[1]))
         kinematics, placement = self._kinematics()
-        point = Pose.of(*(target.get(name, 0.0) for name in "XYZABC"))
+        point = Pose.of(*_all_of(target, "XYZABC"))
         externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
-        origin = [start.get(name, 0.0) for name in _AXES]
+        origin = _all_of(start, _AXES)
         status, turn = target.get("S"), target.get("T")
         try:
             found = solve(
@@ -343,6 +344,13 @@ def _int(request: Invoke, place: int) -> int:
     found = converted(known(request.arguments[place]), INT)
     assert isinstance(found, int), "converted"
     return found
+
+
+def _all_of(target: Target, names: Sequence[str]) -> list[float]:
+    """These components of a position; faults ``uninitialised`` where one has no value [TYP-13]."""
+    if not target.keys() >= set(names):
+        raise fault("uninitialised")
+    return [target[name] for name in names]
 
 
 def _filled(text: str, parameters: Any) -> str:

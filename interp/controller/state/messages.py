@@ -92,8 +92,7 @@ class Messages:
         self, at: At | None, number: int, kind: str = "notification", task: TaskName = "robot"
     ) -> None:
         """Show a message of the catalogue."""
-        found = System.load().message(number)
-        self.post(task, at, number, "" if found is None else found.text, kind)
+        self.post(task, at, number, str(message_fault(number)), kind)
 
     def show(self, task: TaskName, at: At, kind: str, number: int, text: str) -> int:
         """Show a message or a DIALOGUE of a program; returns its handle.

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Final
 
 from interp.controller.state.clock import Clock, TimedAction
@@ -94,10 +95,7 @@ class Signals:
         self.put(("$OUT", number), level)
         end = self._clock.tick_after(round(tenths * 1_000_000))
 
-        def over() -> None:
-            del self._pulses[number]
-            self.put(("$OUT", number), not level)
-
+        over = partial(self.put, ("$OUT", number), not level)  # which ends the pulse
         self._pulses[number] = level, self._later(end, over)
 
     @contextmanager

@@ -1,4 +1,4 @@
-"""The timers, and date and time, on the virtual clock.
+"""The timers, and date and time [TIM-07], on the virtual clock.
 
 A timer counts milliseconds in steps of the interpolation cycle [TIM-05]. At the start all of them
 stand at 0 with their flags FALSE [TIM-02]; a flag follows its timer from the moment on that this is
@@ -64,7 +64,7 @@ class Timers:
             case "$TIMER_STOP", bool():
                 timer.base = self._value(timer)
                 timer.since = None if value else tick
-                if not value and timer.flag is False and timer.base == 0:
+                if not value:
                     timer.flag = None
             case "$TIMER_FLAG", bool():
                 timer.flag, timer.was_below = value, self._value(timer) < 0
