@@ -83,9 +83,9 @@ class _Checked:
                 if module.path in wanted:
                     self.findings[module.path] = self._findings(project, module)
 
-    def _file(self, path: str) -> tuple[ModuleTable | None, Source]:
+    def _file(self, path: str) -> tuple[ModuleTable | None, Callable[[], Source]]:
         program = self.programs[path]
-        return program.file.table, program.source
+        return program.file.table, lambda: program.source
 
     def _spelling(self) -> Spelling:
         programs = self.programs

@@ -145,6 +145,15 @@ class Project:
             inner = self._inner[routine] = Scope(scope.module, routine, routine.table, scope)
         return inner
 
+    def forget(self) -> None:
+        """Give up all that was looked up: scopes and what they found refer to one another.
+
+        Otherwise they stay until garbage is collected, which has to go through them.
+        """
+        for scope in (*self._scopes.values(), *self._inner.values()):
+            scope.forget()
+        self._globals.forget()
+
     def data_of(self, module: Module) -> Module | None:
         """The data list that belongs to a program, readable or not."""
         return None if module.suffix == ".dat" else self._data.get(_place(module))

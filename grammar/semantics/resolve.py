@@ -19,10 +19,10 @@ from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotF
 from grammar.semantics.symbols import Kind, TypeSymbol
 from grammar.syntax import ast
 from grammar.syntax.references import PLANS, Space
-from support.lazy_dataclass import dataclass
+from support.lazy_dataclass import dataclass, node
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Use:
     """A name that has no declaration in the project, where it stands, and what is known of it.
 

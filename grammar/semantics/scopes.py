@@ -32,7 +32,7 @@ from grammar.semantics.symbols import (
 from grammar.semantics.types import SCALARS, Array, Enumeration, Scalar, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from support.lazy_dataclass import dataclass
+from support.lazy_dataclass import dataclass, node
 
 #: Among the words of a file: its end is missing, so that it may have declared any name.
 REST = "*"
@@ -88,7 +88,7 @@ class Reason(Enum):
     SYSTEM = "the controller may know it: system variables and packages differ between releases"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class Found:
     """The symbol that a name means, and the scope that declares it.
 
@@ -179,6 +179,10 @@ class Scope:
         if isinstance(answer, Found):
             self._memory[space, key] = answer
         return answer
+
+    def forget(self) -> None:
+        """Give up what was found, which refers to this scope in turn."""
+        self._memory.clear()
 
     def own(self, space: Space, key: str) -> Found | None:
         """The symbol of that name if this very scope declares it."""
@@ -319,12 +323,20 @@ class Globals:
     without a reason is known completely. ``unread`` are the words of files that cannot be read.
     """
 
-    names: Mapping[Space, Mapping[str, Sequence[Found]]]
-    hidden: Mapping[Space, Mapping[str, Found]]
+    names: Mapping[Space, dict[str, list[Found]]]
+    hidden: Mapping[Space, dict[str, Found]]
     gap: Mapping[Space, Reason]
     unread: Mapping[Space, frozenset[str]]
     system: SystemScope
     _copies: dict[tuple[Space, str], Mapping[str, Answer]] = field(default_factory=dict)
+
+    def forget(self) -> None:
+        """Give up all names, whose scopes refer to these in turn."""
+        for names in self.names.values():
+            names.clear()
+        for hidden in self.hidden.values():
+            hidden.clear()
+        self._copies.clear()
 
     def near(self, folder: str) -> Outer:
         """These names as the files of a folder see them."""

@@ -17,22 +17,11 @@ any number of terms (`grammar.syntax.walk.left_chain`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar, dataclass_transform
+from typing import TypeVar
 
-from support.lazy_dataclass import dataclass
+from support.lazy_dataclass import node
 
 Span = tuple[int, int]
-
-_Class = TypeVar("_Class")
-
-
-@dataclass_transform(eq_default=False, frozen_default=True)
-def node(kind: type[_Class]) -> type[_Class]:
-    """A class of nodes, frozen for the type checker alone: half of reading a file is making them.
-
-    A dataclass that is frozen at run time takes three times as long to make.
-    """
-    return dataclass(slots=True, eq=False)(kind)
 
 
 @node

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
@@ -22,8 +22,10 @@ from pathlib import PurePosixPath
 _LINE_END = re.compile(r"\r\n|\r|\n")
 # A string that is not closed ends nowhere: its quotation mark is a token alone.
 _COMMENT = re.compile(r'"[^"\r\n]*"|&[^\r\n]*|(;[^\r\n]*)')
-_FOLD = re.compile(r";[ \t]*FOLD(?:[ \t]+|(?=;)|$)(.*)", re.IGNORECASE | re.ASCII | re.DOTALL)
-_ENDFOLD = re.compile(r";[ \t]*ENDFOLD\b", re.IGNORECASE | re.ASCII)
+# FOLD and the title of a fold, or ENDFOLD.
+_MARK = re.compile(
+    r";[ \t]*(?:FOLD(?:[ \t]+|(?=;)|$)(.*)|ENDFOLD\b)", re.IGNORECASE | re.ASCII | re.DOTALL
+)
 _PARAMETERS = re.compile(r";[ \t]*%\{")
 _PARAMETER_LINE = re.compile(r";[ \t]*PARAMS[ \t]", re.IGNORECASE | re.ASCII)
 
@@ -136,17 +138,24 @@ class Source:
         return tuple(sorted(self._folds(), key=lambda fold: fold.first))
 
     @cached_property
-    def stray_fold_ends(self) -> tuple[int, ...]:
-        """The lines of all ``;ENDFOLD`` that close nothing."""
-        depth, found = 0, []
-        for comment in self.comments:
-            if comment.is_alone and _FOLD.match(comment.text):
-                depth += 1
-            elif comment.is_alone and _ENDFOLD.match(comment.text):
-                if not depth:
-                    found.append(comment.line)
-                depth = max(0, depth - 1)
-        return tuple(found)
+    def unbalanced_folds(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """The lines of all ``;FOLD`` that are never closed, of all ``;ENDFOLD`` that close none."""
+        opened, stray = [], []
+        for comment, title in self._fold_marks:
+            if title is not None:
+                opened.append(comment.line)
+            elif opened:
+                opened.pop()
+            else:
+                stray.append(comment.line)
+        return tuple(opened), tuple(stray)
+
+    @cached_property
+    def _fold_marks(self) -> Sequence[tuple[Comment, str | None]]:
+        """The comments that begin a fold, with its title, and those that end one."""
+        alone = [comment for comment in self.comments if comment.is_alone]
+        found = [(comment, _MARK.match(comment.text)) for comment in alone]
+        return [(comment, mark[1]) for comment, mark in found if mark]
 
     def _folds(self) -> Iterator[Fold]:
         opened: list[tuple[Comment, str]] = []
@@ -160,12 +169,10 @@ class Source:
             parameters = f"{hidden}{more}" if mark or more else None
             return Fold(shown.strip(), comment.line, last, level, parameters)
 
-        for comment in self.comments:
-            if not comment.is_alone:
-                continue
-            if found := _FOLD.match(comment.text):
-                opened.append((comment, found.group(1)))
-            elif opened and _ENDFOLD.match(comment.text):
+        for comment, title in self._fold_marks:
+            if title is not None:
+                opened.append((comment, title))
+            elif opened:
                 yield fold(comment.line)
         while opened:
             yield fold(None)

@@ -101,13 +101,17 @@ def left_chain(node: ast.Binary) -> list[ast.Binary]:
 
 def without_parentheses(node: ast.Expression) -> ast.Expression:
     """What stands in the parentheses."""
-    while isinstance(node, ast.Parenthesised):
+    while type(node) is ast.Parenthesised:
         node = node.inner
     return node
 
 
+#: The kinds of node that say a place in memory.
+PLACES = frozenset({ast.Variable, ast.Subscript, ast.Member})
+
+
 def root_variable(node: ast.Expression) -> ast.Variable | None:
     """What indices and components are taken of: the variable ``a`` of ``a.b[1].c``."""
-    while isinstance(node, ast.Subscript | ast.Member):
+    while type(node) is ast.Subscript or type(node) is ast.Member:
         node = node.base
-    return node if isinstance(node, ast.Variable) else None
+    return node if type(node) is ast.Variable else None

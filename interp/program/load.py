@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 
 from grammar.check.analysis.context import placed
@@ -326,7 +326,11 @@ def _checked(
         project, stand_ins = with_returns(whole.project), tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}
     units = _units(project, sources, check_module if strict else typed_module)
-    files = {unit.module.path: (unit.module.table, unit.source) for unit in units.values()}
+    texts = {unit.module.path: unit.source for unit in units.values()}
+    files = {
+        unit.module.path: (unit.module.table, partial(texts.__getitem__, unit.module.path))
+        for unit in units.values()
+    }
     findings = [unit.checked.findings for unit in units.values()]
     spelling = spelling_of(unit.source for unit in units.values())
     for one in check_project(findings, files.__getitem__, spelling) if strict else ():

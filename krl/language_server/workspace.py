@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from grammar.check.analysis.spelling import spelling_of
@@ -229,8 +230,12 @@ class OpenProject:
         """The findings of a project, or those of a file alone until all others were asked."""
         paths = [module.path for module in project.modules]
         if all(one in self._judged for one in paths):
-            files = {one.path: (one.table, self._files[one.path].source) for one in project.modules}
-            spelling = spelling_of(source for _, source in files.values())
+            sources = {path: self._files[path].source for path in paths}
+            files = {
+                one.path: (one.table, partial(sources.__getitem__, one.path))
+                for one in project.modules
+            }
+            spelling = spelling_of(sources.values())
             return check_project((self._judged[one].findings for one in paths), files.get, spelling)
         return self._judged[path].findings.diagnostics
 

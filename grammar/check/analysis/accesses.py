@@ -12,9 +12,10 @@ from enum import Enum
 from typing import Any
 
 from grammar.check.analysis.context import Context
-from grammar.semantics.symbols import RoutineSymbol
+from grammar.semantics.scopes import Found
+from grammar.semantics.symbols import ParameterSymbol, RoutineSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import BODIES, LEAVES, children, left_chain
+from grammar.syntax.walk import BODIES, LEAVES, PLACES, children, left_chain
 
 
 class Use(Enum):
@@ -118,13 +119,13 @@ def calls_of(node: ast.Node) -> Iterator[ast.Call]:
 def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Access]) -> None:
     """The variable that something is part of, behind what its indices read."""
     whole = node
-    while isinstance(node, ast.Subscript | ast.Member):
-        if isinstance(node, ast.Subscript):
+    while type(node) is ast.Subscript or type(node) is ast.Member:
+        if type(node) is ast.Subscript:
             for index in node.indices:
                 if index is not None:
                     _add(context, index, found)
         node = node.base
-    if isinstance(node, ast.Variable):
+    if type(node) is ast.Variable:
         found.append(Access(node.name, use, whole))
     else:
         _add(context, node, found)
@@ -132,17 +133,25 @@ def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Acc
 
 def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
     """The arguments: those passed :IN are read, of all others it is unknown."""
-    called = context.found(node.name)
-    symbol = called.symbol if called else None
-    known = symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
+    known = called_parameters(context.found(node.name))
     for index, argument in enumerate(node.arguments):
         if argument is None:
             continue
         _add(context, argument, found)
-        is_read = index < len(known) and known[index].mode == "IN"
-        is_place = isinstance(argument, ast.Variable | ast.Subscript | ast.Member)
-        if is_place and not is_read and found[-1].place is argument:
+        if is_passed_on(argument, index, known) and found[-1].place is argument:
             found[-1] = Access(found[-1].name, Use.PASSED, argument)
+
+
+def called_parameters(called: Found | None) -> Sequence[ParameterSymbol]:
+    """The parameters of what is called; none where they are unknown."""
+    symbol = called.symbol if called else None
+    return symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
+
+
+def is_passed_on(argument: ast.Expression, index: int, known: Sequence[ParameterSymbol]) -> bool:
+    """Whether a call may change the ``index``-th argument, given the ``known`` parameters."""
+    is_read = index < len(known) and known[index].mode == "IN"
+    return type(argument) in PLACES and not is_read
 
 
 _RULES: Mapping[type[Any], Callable[[Context, Any, list[Access]], object]] = {

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import Any
 
+from grammar.check.analysis.control_flow_graph import FlowGraph, flow_graph
 from grammar.check.analysis.name_suggestions import NameSuggestions
 from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.diagnostics.codes import Severity, code, of_message
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.semantics.link import Project
 from grammar.semantics.predefined import System
-from grammar.semantics.resolve import Resolution
+from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.rules import is_confirmed
 from grammar.semantics.scopes import Found, Module, Scope
 from grammar.semantics.symbols import ModuleTable, RoutineTable
 from grammar.semantics.types import Enumeration, Type, Verdict
 from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
+from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from grammar.syntax.walk import BODIES, bodies
-from support.lazy_dataclass import dataclass
+from support.lazy_dataclass import dataclass, node
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class PlacedStatement:
     """A statement and the one that it stands in: a block, SWITCH or spline block."""
 
@@ -38,7 +40,7 @@ class PlacedStatement:
         return self.inside is not None and isinstance(self.inside.statement, ast.SplineBlock)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class RoutineBody:
     """A routine with its table and scope.
 
@@ -50,6 +52,11 @@ class RoutineBody:
     table: RoutineTable
     scope: Scope
     statements: tuple[PlacedStatement, ...]
+
+    @cached_property
+    def ways(self) -> FlowGraph:
+        """The ways through it; conditions count as open."""
+        return flow_graph(self.node)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +110,23 @@ class Context:
     def scope(self) -> Scope:
         """What is known at the first level of the file."""
         return self.project.scope(self.module)
+
+    @cached_property
+    def open_uses(self) -> Mapping[tuple[Space | None, str], Sequence[Use]]:
+        """The uses that lead to no declaration, by space and name in upper case."""
+        found: dict[tuple[Space | None, str], list[Use]] = {}
+        for use in self.resolution.open_uses:
+            found.setdefault((use.space, use.name.key), []).append(use)
+        return found
+
+    @cached_property
+    def used(self) -> frozenset[Found]:
+        """What some name in the file means that does not declare it."""
+        answers = self.resolution.answers.items()
+        places = [(answer, name) for name, answer in answers if type(answer) is Found]
+        # of several places the one that declares it is not both the first and the last
+        ends = (*dict(places).items(), *dict(reversed(places)).items())
+        return frozenset(found for found, name in ends if found.symbol.span != name.span)
 
     @cached_property
     def spelling(self) -> Spelling:

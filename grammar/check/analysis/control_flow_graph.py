@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from grammar.syntax import ast
 from grammar.syntax.walk import bodies, without_parentheses
-from support.lazy_dataclass import dataclass
+from support.lazy_dataclass import dataclass, node
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@node
 class FlowNode:
     """A place in a routine: where its statement begins, or UNTIL of a REPEAT if ``is_test``."""
 
@@ -56,6 +56,13 @@ IsExhaustive = Callable[[ast.Switch], bool]
 def flow_graph(routine: ast.Routine, is_exhaustive: IsExhaustive = lambda _: False) -> FlowGraph:
     """The ways through a routine. A GOTO to a label that is not there leads nowhere."""
     return _Builder(is_exhaustive).build(routine)
+
+
+#: Behind these something else may come than the next statement.
+_TURNING = frozenset((
+    ast.Label, ast.Goto, ast.Return, ast.Exit,
+    ast.If, ast.Switch, ast.For, ast.While, ast.Loop, ast.Repeat,
+))  # fmt: skip
 
 
 class _Part:
@@ -103,7 +110,7 @@ class _Builder:
                 self._steps.append((step, part.before, part.inside))
                 self._after[part.at].append(step)
                 part.at = part.before = step
-                if self._enter(part, step, statement):
+                if type(statement) in _TURNING and self._enter(part, step, statement):
                     break
             else:
                 self._after[part.at].append(part.behind)

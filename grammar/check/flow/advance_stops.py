@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, RoutineBody
-from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
+from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.check.analysis.statement_heads import head, line_of
 from grammar.check.flow.advance_stop_reasons import AdvanceStop, is_known_call, stop_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
@@ -49,7 +49,7 @@ class _Routine:
         self._statements = [placed.statement for placed in routine.statements]
         self._continues = [node for node in self._statements if isinstance(node, ast.Continue)]
         self._spent = {line_of(context.source, node) + 1 for node in self._continues}
-        self._ways = flow_graph(routine.node)
+        self._ways = routine.ways
         self._known: dict[tuple[ast.Node, bool], AdvanceStop | None] = {}
 
     def notes(self) -> Iterator[Diagnostic]:

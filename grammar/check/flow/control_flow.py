@@ -16,7 +16,7 @@ from grammar.syntax import ast
 
 # Guessing costs time for each label, and one who has so many wrong has something else in mind.
 _MOST_GUESSES = 20
-_LOOPS = ast.For | ast.While | ast.Repeat | ast.Loop
+_LOOPS = frozenset({ast.For, ast.While, ast.Repeat, ast.Loop})
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -54,11 +54,9 @@ def _finding(
 
 
 def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    is_in_loop: dict[PlacedStatement | None, bool] = {None: False}
     for placed in routine.statements:
-        statement, around = placed.statement, is_in_loop[placed.inside]
-        is_in_loop[placed] = around or isinstance(statement, _LOOPS)
-        if isinstance(statement, ast.Exit) and not around:
+        statement = placed.statement
+        if type(statement) is ast.Exit and not _is_in_loop(placed):
             reason = ""
             if placed.inside is not None:
                 block = "SWITCH" if isinstance(placed.inside.statement, ast.Switch) else "IF"
@@ -71,6 +69,13 @@ def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
                 "CTL-02",
                 reason=reason,
             )
+
+
+def _is_in_loop(placed: PlacedStatement) -> bool:
+    around = placed.inside
+    while around is not None and type(around.statement) not in _LOOPS:
+        around = around.inside
+    return around is not None
 
 
 # ------------------------------------------------------------------------------- GOTO and labels
@@ -199,8 +204,14 @@ def _is_exhaustive(context: Context, switch: ast.Switch) -> bool:
     return True
 
 
+#: Behind all other statements the next one comes, or one in a block of theirs.
+_LEAVING = frozenset({ast.Goto, ast.Return, ast.Exit, *_LOOPS})
+
+
 def _never_reached(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    ways = flow_graph(routine.node)
+    if not any(type(placed.statement) in _LEAVING for placed in routine.statements):
+        return
+    ways = routine.ways
     reached = ways.reached()
     for step, before, inside in ways.steps:
         if step in reached or isinstance(step.statement, ast.Label | ast.Definition):

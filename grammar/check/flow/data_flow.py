@@ -11,12 +11,11 @@ import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 from grammar.check.analysis.accesses import Access, Use, accesses, calls_of
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
-from grammar.check.analysis.control_flow_graph import FlowGraph, FlowNode, flow_graph
+from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.symbols import Kind
@@ -86,7 +85,7 @@ class _DataFlow:
         self._routine = routine
         unread = context.module.words or frozenset()
         symbols = routine.table.table.spaces[Space.VALUE].values()
-        asked = _names_in_texts(context, routine)
+        asked = _names_in_texts(context, routine) if symbols else ()
         followed = {
             one.key: one
             for one in symbols
@@ -99,10 +98,6 @@ class _DataFlow:
             key for key, one in followed.items() if one.kind is Kind.VARIABLE
         )
         self._accesses: dict[FlowNode, Sequence[Access]] = {}
-
-    @cached_property
-    def _graph(self) -> FlowGraph:
-        return flow_graph(self._routine.node)
 
     def _of(self, node: FlowNode) -> Sequence[Access]:
         """The accesses at a place: of REPEAT, the condition stands at its end."""
@@ -147,12 +142,12 @@ class _DataFlow:
 
         ``passed`` says what a place hands on of what reaches it, by the number of the way on.
         """
-        start = self._graph.start
+        start = self._routine.ways.start
         known = {start: first}
         todo = deque([start])
         while todo:
             node = todo.popleft()
-            for number, after in enumerate(self._graph.after[node]):
+            for number, after in enumerate(self._routine.ways.after[node]):
                 value = passed(node, number, known[node])
                 before = known.get(after)
                 if before is None or value | before != before:
@@ -162,7 +157,7 @@ class _DataFlow:
 
     def is_needed(self, key: str) -> bool:
         """Whether no way leads to the end without reading a parameter."""
-        start, end = self._graph.start, self._graph.end
+        start, end = self._routine.ways.start, self._routine.ways.end
         seen = {start}
         todo = [start]
         is_read = False
@@ -176,7 +171,7 @@ class _DataFlow:
                     return False
                 is_read = True
                 continue
-            behind = self._graph.after[node]
+            behind = self._routine.ways.after[node]
             todo.extend(after for after in behind if after not in seen)
             seen.update(behind)
         return is_read
@@ -269,6 +264,8 @@ class _DataFlow:
 
     def unused(self) -> Iterator[Diagnostic]:
         """Variables and parameters that nothing reads; notes."""
+        if not self.variables and not self.parameters:
+            return
         used: set[str] = set()
         written: set[str] = set()
         for placed in self._routine.statements:
@@ -337,7 +334,7 @@ def _counters(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
             continue
         around = placed.inside
         while around is not None:
-            if isinstance(around.statement, ast.For) and around.statement.counter.key == name.key:
+            if type(around.statement) is ast.For and around.statement.counter.key == name.key:
                 line = context.source.place(around.statement.span[0])[0]
                 message = f"{name.text} counts the loop of line {line} and is changed inside it"
                 yield context.finding("counter-changed", place, message)

@@ -11,8 +11,9 @@ import operator
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
+from typing import Any
 
-from grammar.check.analysis.accesses import Use, accesses, parts_of
+from grammar.check.analysis.accesses import accesses, called_parameters, is_passed_on
 from grammar.check.analysis.constant_folding import constant, integer_of
 from grammar.check.analysis.context import Context
 from grammar.check.flow.data_flow import needed_parameters
@@ -20,7 +21,7 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
 from grammar.syntax import ast
-from grammar.syntax.walk import left_chain, without_parentheses
+from grammar.syntax.walk import left_chain, root_variable, without_parentheses
 from support.lazy_dataclass import dataclass
 
 
@@ -126,9 +127,14 @@ class _Collector:
         context = self._context
         for routine in context.routines:
             for placed in routine.statements:
-                self._statement(placed.statement)
-                if not isinstance(placed.statement, ast.Definition):
-                    self._accesses(placed.statement)
+                rule = _RULES.get(type(placed.statement))
+                if rule is not None:
+                    rule(self, placed.statement)
+        for node in context.types if context.routines else ():
+            if type(node) is ast.Call:
+                self._call(node)
+            elif type(node) is ast.Binary and node.operator in ("==", "<>"):
+                self._literal(node.left, node.right)
         needed = {
             (context.module.path, routine.node.name.key): indices
             for routine in context.routines
@@ -150,53 +156,64 @@ class _Collector:
         source = self._context.source
         return Place(source.path, Region.of(source, node.span), what)
 
-    def _statement(self, node: ast.Node) -> None:
-        match node:
-            case ast.InterruptDeclaration(number=number):
-                known = integer_of(self._context, number)
-                if known is not None and 1 <= known <= 128:  # others are reported there
-                    self._interrupts.append(self._place(number, str(known)))
-            case ast.InterruptSwitch(action="ON" | "ENABLE", number=number):
-                known = None if number is None else integer_of(self._context, number)
-                self._on.add("" if known is None else str(known))
-            case ast.WaitFor(condition=condition):
-                self._wait(condition)
+    # ----------------------------------------------------------------------- statements
 
-    def _accesses(self, node: ast.Node) -> None:
-        for inner in _assignments(node):
-            self._assigned(inner)
+    def interrupt(self, node: ast.InterruptDeclaration) -> None:
+        """An interrupt with a number that it can have, and what its action may do later."""
+        known = integer_of(self._context, node.number)
+        if known is not None and 1 <= known <= 128:  # others are reported there
+            self._interrupts.append(self._place(node.number, str(known)))
+        self._later(node)
+
+    def trigger(self, node: ast.Trigger) -> None:
+        """What the action of a trigger does, and may do later."""
+        self._later(node)
+        if isinstance(node.action, ast.Assignment):
+            self._assigned(node.action)
+
+    def switch(self, node: ast.InterruptSwitch) -> None:
+        """Which interrupts are switched on."""
+        if node.action in ("ON", "ENABLE"):
+            known = None if node.number is None else integer_of(self._context, node.number)
+            self._on.add("" if known is None else str(known))
+
+    def loop(self, node: ast.For) -> None:
+        """FOR changes its counter."""
+        self._changed.add(node.counter.key)
+
+    def assignment(self, node: ast.Assignment) -> None:
+        """What is assigned, and beside which literal an undeclared variable stands."""
+        if key := self._key(node.target):
+            self._changed.add(key)
+        self._assigned(node)
+        self._literal(node.target, node.value)
+
+    def values(self, nodes: Iterable[ast.Assignment]) -> None:
+        """What stands behind WITH."""
+        for node in nodes:
+            self.assignment(node)
+
+    def _later(self, node: ast.Trigger | ast.InterruptDeclaration) -> None:
         for access in accesses(self._context, node):
-            if access.use is not Use.READ:
-                key = self._key(access.place) if access.place is not None else access.name.key
-                self._changed.add(key)
-                if access.use is Use.PASSED:
-                    self._reset.add(key)
-        for part in parts_of(node):
-            if isinstance(part, ast.Call):
-                self._call(part)
-            elif isinstance(part, ast.Assignment):
-                self._literal(part.target, part.value)
-            elif isinstance(part, ast.Binary) and part.operator in ("==", "<>"):
-                self._literal(part.left, part.right)
+            key = self._key(access.place) if access.place is not None else access.name.key
+            self._changed.add(key)
+            self._reset.add(key)
+        if isinstance(node.action, ast.Assignment):
+            self._literal(node.action.target, node.action.value)
 
     def _literal(self, variable: ast.Expression, value: ast.Expression) -> None:
         """Note what an undeclared variable, or a component of one, stands beside."""
-        if isinstance(variable, ast.Subscript):
+        if type(variable) is ast.Subscript:
             return  # letters may be given by their codes
-        path: list[str] = []
-        while isinstance(variable, ast.Member | ast.Subscript):
-            if isinstance(variable, ast.Member):
-                path.insert(0, variable.name.text)
-            variable = variable.base
-        if not isinstance(variable, ast.Variable):
-            return
-        name = variable.name
         value = without_parentheses(value)
-        if isinstance(value, ast.Unary) and value.operator in "+-":
+        if type(value) is ast.Unary and value.operator in "+-":
             value = value.operand
         kind = _KINDS.get(type(value))
-        if kind is not None and self._context.found(name) is None and not name.key.startswith("$"):
-            shown = ".".join((name.text, *path))
+        root = root_variable(variable)
+        if kind is None or root is None or root.name.text.startswith("$"):
+            return
+        if self._context.found(root.name) is None:
+            shown = ".".join((root.name.text, *_members(variable)))
             self._literals.append((shown.upper(), kind, self._place(value, shown)))
 
     # --------------------------------------------------------------------------- keys
@@ -204,18 +221,18 @@ class _Collector:
     def _key(self, node: ast.Expression) -> str:
         """What is accessed: a name, ``$OUT[5]``, or the output that a signal stands for."""
         node = without_parentheses(node)
-        if isinstance(node, ast.Subscript) and isinstance(node.base, ast.Variable):
-            index = integer_of(self._context, node.indices[0]) if node.indices else None
-            if index is not None and node.base.name.key in _PROGRAMS_OWN:
-                return f"{node.base.name.key}[{index}]"
-            return node.base.name.key
-        while isinstance(node, ast.Subscript | ast.Member):
-            node = node.base
-        if not isinstance(node, ast.Variable):
+        root = root_variable(node)
+        if root is None:
             return ""
-        found = self._context.found(node.name)
-        if found is None or not isinstance(found.symbol, SignalSymbol):
-            return node.name.key
+        key = root.name.key
+        if type(node) is ast.Subscript and node.base is root:
+            if key not in _PROGRAMS_OWN or not node.indices:
+                return key
+            index = integer_of(self._context, node.indices[0])
+            return key if index is None else f"{key}[{index}]"
+        found = self._context.found(root.name)
+        if found is None or type(found.symbol) is not SignalSymbol:
+            return key
         first = found.symbol.first
         return _written_key(first) if found.symbol.last is None else "$OUT"
 
@@ -223,8 +240,7 @@ class _Collector:
 
     def _assigned(self, node: ast.Assignment) -> None:
         key = self._key(node.target).replace("$OUT_C", "$OUT")
-        value = constant(self._context, node.value)
-        if value is not True:
+        if constant(self._context, node.value) is not True:
             self._reset.add(key)
         elif key.startswith("$OUT[") and key not in self._outputs:
             shown = self._context.source.text[slice(*node.target.span)]
@@ -232,12 +248,12 @@ class _Collector:
 
     # --------------------------------------------------------------------------- waiting
 
-    def _wait(self, condition: ast.Expression) -> None:
+    def wait(self, node: ast.WaitFor) -> None:
         """A condition that flags alone fulfil, and that is not fulfilled while these are FALSE."""
         keys: set[str] = set()
-        if self._with_flags_off(condition, keys) is False and keys:
+        if self._with_flags_off(node.condition, keys) is False and keys:
             shown = ", ".join(sorted(keys))
-            self._waits.append((self._place(condition, shown), frozenset(keys)))
+            self._waits.append((self._place(node.condition, shown), frozenset(keys)))
 
     def _with_flags_off(self, node: ast.Expression, keys: set[str]) -> bool | None:
         """The value of a condition while all flags are FALSE; ``keys`` gets those that it asks."""
@@ -265,10 +281,15 @@ class _Collector:
     # --------------------------------------------------------------------------- calls
 
     def _call(self, node: ast.Call) -> None:
-        for argument in node.arguments:
-            if argument is not None:
-                self._reset.add(self._key(argument))  # PULSE, and what a routine may do with it
         found = self._context.found(node.name)
+        known = called_parameters(found)
+        for index, argument in enumerate(node.arguments):
+            if argument is None:
+                continue
+            key = self._key(argument)
+            self._reset.add(key)  # PULSE, and what a routine may do with it
+            if key and is_passed_on(argument, index, known):
+                self._changed.add(key)
         if found is None or found.module is None or not isinstance(found.symbol, RoutineSymbol):
             return
         if found.symbol.kind is Kind.EXTERNAL:
@@ -281,6 +302,16 @@ class _Collector:
                 self._left_out.append(LeftOut(source.path, region, routine, index, parameter.name))
 
 
+def _members(node: ast.Expression) -> list[str]:
+    """The names behind the points of ``a.b[1].c``."""
+    found: list[str] = []
+    while isinstance(node, ast.Member | ast.Subscript):
+        if isinstance(node, ast.Member):
+            found.insert(0, node.name.text)
+        node = node.base
+    return found
+
+
 def _written_key(node: ast.Expression) -> str:
     """The output or flag that a signal stands for."""
     match node:
@@ -291,17 +322,17 @@ def _written_key(node: ast.Expression) -> str:
     return "$OUT"
 
 
-def _assignments(node: ast.Node) -> Iterator[ast.Assignment]:
-    """What a statement assigns, now or later."""
-    match node:
-        case ast.Assignment():
-            yield node
-        case ast.Trigger(action=ast.Assignment() as action):
-            yield action
-        case ast.Motion(values=values) | ast.SplineBlock(values=values):
-            yield from values
-        case ast.SignalOn(assignment=assignment):
-            yield assignment
+_RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
+    ast.Assignment: _Collector.assignment,
+    ast.For: _Collector.loop,
+    ast.InterruptDeclaration: _Collector.interrupt,
+    ast.InterruptSwitch: _Collector.switch,
+    ast.Motion: lambda collector, node: collector.values(node.values),
+    ast.SignalOn: lambda collector, node: collector.assignment(node.assignment),
+    ast.SplineBlock: lambda collector, node: collector.values(node.values),
+    ast.Trigger: _Collector.trigger,
+    ast.WaitFor: _Collector.wait,
+}
 
 
 # ------------------------------------------------------------------------------------- a project

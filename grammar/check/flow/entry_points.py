@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
-from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
+from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.check.flow.advance_stop_reasons import is_known_call
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
@@ -154,7 +154,7 @@ def _sets_up(placed: PlacedStatement) -> bool:
 
 def _first_motions(context: Context, routine: RoutineBody) -> list[ast.Motion]:
     """The motions that may be the first, in the order of the text; none where calls may move."""
-    ways = flow_graph(routine.node)
+    ways = routine.ways
     found: list[ast.Motion] = []
     seen: set[FlowNode] = {ways.start}
     todo = [ways.start]

@@ -38,7 +38,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
                     yield from _duration(context, duration)
                 case ast.Trigger() as trigger:
                     yield from _trigger(context, trigger)
-                case ast.Assignment() as assignment:
+                case ast.Assignment(target=ast.Subscript()) as assignment:
                     yield from _cyclical_flag(context, assignment)
         yield from _before_ptp(context, routine)
 
@@ -124,7 +124,7 @@ def _before_ptp(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     inside = None
     for placed in routine.statements:
         statement = placed.statement
-        if placed.inside is not inside or isinstance(statement, _ELSEWHERE):
+        if placed.inside is not inside or type(statement) in _ELSEWHERE:
             waiting, inside = [], placed.inside
         if isinstance(statement, ast.Trigger) and statement.place_kind == "PATH":
             waiting.append(statement)
@@ -138,10 +138,10 @@ def _before_ptp(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
 
 
 #: Behind these the next motion may be one that stands elsewhere.
-_ELSEWHERE = (
-    ast.Goto | ast.Label | ast.Return | ast.Exit | ast.CallStatement | ast.If | ast.Switch
-    | ast.For | ast.While | ast.Repeat | ast.Loop | ast.SplineBlock | ast.EmilyMotion
-)  # fmt: skip
+_ELSEWHERE = frozenset((
+    ast.Goto, ast.Label, ast.Return, ast.Exit, ast.CallStatement, ast.If, ast.Switch,
+    ast.For, ast.While, ast.Repeat, ast.Loop, ast.SplineBlock, ast.EmilyMotion,
+))  # fmt: skip
 
 
 # --------------------------------------------------------------------------------- cyclical flags

@@ -49,13 +49,12 @@ def check(context: Context) -> Iterator[Diagnostic]:
             count,
             is_certain=False,
         )
-    for use in context.resolution.open_uses:
-        if use.space is None or use.space is Space.LABEL or not isinstance(use.answer, NotFound):
+    for (space, key), some in context.open_uses.items():
+        if space is None or space is Space.LABEL or (space, key) in reported:
             continue
-        key = use.space, use.name.key
-        if key not in reported:
-            reported.add(key)
-            yield _unknown(context, use)
+        unknown = next((use for use in some if isinstance(use.answer, NotFound)), None)
+        if unknown is not None:
+            yield _unknown(context, unknown)
     yield from _near_system_names(context)
     if lacks_data_list(context.project, context.module, context.resolution):
         message = f"{context.module.name} may have a data list, which is missing"
@@ -68,11 +67,8 @@ def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]
     That is what nothing uses, while a name one slip away is used and not declared: several times,
     or once and likelier spelt as it is meant.
     """
-    uses: dict[str, list[Use]] = {}
-    for use in context.resolution.open_uses:
-        if use.space is Space.VALUE and not isinstance(use.answer, Found):
-            uses.setdefault(use.name.key, []).append(use)
-    uses = {key: some for key, some in uses.items() if key[0] != "$"}
+    open_ = context.open_uses.items()
+    uses = {key: some for (space, key), some in open_ if space is Space.VALUE and key[0] != "$"}
     if not uses or context.module.words:  # what cannot be read may use it
         return {}
     unused = _unused(context, _own_tables(context))
@@ -93,7 +89,7 @@ def _own_tables(context: Context) -> tuple[Table, ...]:
 
 def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
     """The variables of some tables that the file does not use, by their names in upper case."""
-    used = {found.symbol for found in _used(context)}
+    used = {found.symbol for found in context.used}
     return {
         symbol.key: symbol
         for table in tables
@@ -102,19 +98,13 @@ def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
     }
 
 
-def _used(context: Context) -> Iterator[Found]:
-    for name, answer in context.resolution.answers.items():
-        if isinstance(answer, Found) and answer.symbol.span != name.span:
-            yield answer
-
-
 def uses(context: Context) -> frozenset[str]:
     """The names in upper case that a file uses and some file declares, or that cannot be read.
 
     Constants of enumerations are among them with a #.
     """
     constants = {f"#{node.name.key}" for node in context.types if type(node) is ast.EnumConstant}
-    declared = {found.symbol.key for found in _used(context) if found.module}
+    declared = {found.symbol.key for found in context.used if found.module}
     return frozenset(declared | constants | uses_of_unread(context.module.words or ()))
 
 
@@ -236,13 +226,11 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
     """The names in a file that other files may declare, in the order of their first places."""
     open_: dict[tuple[Space, str], list[Use]] = {}
     slips = _slipped_declarations(context)
-    for use in context.resolution.open_uses:
-        if use.space is Space.VALUE and use.name.key in slips:
+    for (space, key), some in context.open_uses.items():
+        if space is None or space is Space.LABEL or (space is Space.VALUE and key in slips):
             continue
-        if use.space is None or use.space is Space.LABEL:
-            continue
-        if _may_be_elsewhere(use):
-            open_.setdefault((use.space, use.name.key), []).append(use)
+        if uses := list(filter(_may_be_elsewhere, some)):
+            open_[space, key] = uses
     own = cache(partial(_own_typos, context))
     prefixes = _prefixes(context) if open_ else frozenset()
     data = context.project.data_of(context.module) if open_ else None
@@ -272,17 +260,17 @@ def _constants(context: Context) -> Iterator[UnresolvedName]:
 
 def _members(context: Context) -> Iterator[UnresolvedName]:
     """The components of structures that are unknown, or of which more may exist than are known."""
-    open_ = [
-        use.name
-        for use in context.resolution.open_uses
-        if use.space is None and isinstance(use.answer, MaybeElsewhere)
-    ]
+    unknown: dict[str, list[ast.Name]] = {}
+    for name in context.resolution.unknown_members:
+        unknown.setdefault(name.key, []).append(name)
+    open_ = (
+        [use.name for use in some if isinstance(use.answer, MaybeElsewhere)]
+        for (space, _), some in context.open_uses.items()
+        if space is None
+    )
     path = context.source.path
-    for names, known in ((context.resolution.unknown_members, None), (open_, _open_components())):
-        places: dict[str, list[ast.Name]] = {}
-        for name in names:
-            places.setdefault(name.key, []).append(name)
-        for some in places.values():
+    for places, known in ((unknown.values(), None), (open_, _open_components())):
+        for some in filter(None, places):
             first = some[0]
             near = known.meant(first.text) if known else ()
             region = Region.of(context.source, first.span)

@@ -21,8 +21,9 @@ from grammar.semantics.symbols import ModuleTable, TypeSymbol
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 
-#: The table and the text of a file of the project, by its path; ``None`` where it is gone.
-FileOf = Callable[[str], tuple[ModuleTable | None, Source] | None]
+#: The table of a file of the project, by its path, and what gives its text, which few findings
+#: need; ``None`` where it is gone.
+FileOf = Callable[[str], tuple[ModuleTable | None, Callable[[], Source]] | None]
 #: Identifies a name: its space, its name in upper case.
 _Called = tuple[Space | None, str]
 
@@ -77,7 +78,7 @@ class Declared:
         symbol = table.table.find(self.space, self.key)
         if self.constant and isinstance(symbol, TypeSymbol):
             symbol = symbol.members.get(self.constant)
-        return Region.of(file[1], symbol.span) if symbol else None
+        return Region.of(file[1](), symbol.span) if symbol else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +158,7 @@ def misspelt_declarations(
                 yield diagnose(
                     "unused",
                     path,
-                    Region.of(source, symbol.span),
+                    Region.of(source(), symbol.span),
                     f"{symbol.name} is declared and never used",
                     reason=f"{meant} is written elsewhere",
                     severity="warning",

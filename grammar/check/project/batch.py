@@ -276,7 +276,7 @@ class _Project:
             lines |= {(content.path, number): line for number, line in (one.lines or {}).items()}
             its = by_path.pop(content.path, [])  # of two with one path, together with the first
             if late := {diagnostic.region.line for diagnostic in its} - (one.lines or {}).keys():
-                source = content.source
+                source = content.source()
                 lines |= {(content.path, number): source.line(number) for number in late}
             found += apply_suppressions(content.path, its, one.comments, self.options.wanted_codes)
         kept = frozenset(

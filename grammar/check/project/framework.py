@@ -7,6 +7,7 @@ statements. `Findings` of a file can be pickled and kept; those of its project a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 
 from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
@@ -157,7 +158,8 @@ def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[D
     found: list[Diagnostic] = []
     for project in workspace.projects:
         read = [module for module in project.modules if module.syntax is not None]
-        files = {module.path: (module.table, source_of(module)) for module in read}
-        findings = (check_module(project, one, files[one.path][1]).findings for one in read)
-        found += check_project(findings, files.get, spelling_of(one for _, one in files.values()))
+        sources = {module.path: source_of(module) for module in read}
+        files = {one.path: (one.table, partial(sources.__getitem__, one.path)) for one in read}
+        findings = (check_module(project, one, sources[one.path]).findings for one in read)
+        found += check_project(findings, files.get, spelling_of(sources.values()))
     return in_order(found)

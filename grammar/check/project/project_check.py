@@ -8,9 +8,9 @@ again, and is checked again only where what it rests on has changed (`dependenci
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 
 from grammar.check.analysis.context import Context
 from grammar.check.analysis.spelling import Spelling
@@ -79,7 +79,6 @@ class Content:
     data: bytes
     is_unread: bool = False
 
-    @property
     def source(self) -> Source:
         """The text of a file that is known to have one."""
         decoded = decode(self.data)
@@ -174,8 +173,11 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
     indices = {contents[index].path: index for index in reversed(range(len(contents)))}
 
     @cache
-    def file(path: str) -> tuple[ModuleTable | None, Source]:
-        return files[indices[path]].read.table, contents[indices[path]].source
+    def source(path: str) -> Source:
+        return contents[indices[path]].source()
+
+    def file(path: str) -> tuple[ModuleTable | None, Callable[[], Source]]:
+        return files[indices[path]].read.table, partial(source, path)
 
     given = {path: files[index].read.contribution for path, index in indices.items()}
     spelling = Spelling(lambda: [(path, one.words) for path, one in given.items() if one])
@@ -221,6 +223,7 @@ def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list
         given = [looked[index].contribution for index in members]
         for index, needed in zip(members, needs_of(project, given), strict=True):
             found[index] = needed
+        project.forget()
     return found
 
 
@@ -325,6 +328,7 @@ def check_part(
                 whole = replace(module, syntax=syntax)
                 with gc_paused(MANY_OBJECTS):
                     checked[index] = _checked(linked, whole, tree, options)
+        linked.forget()
     return checked
 
 

@@ -36,5 +36,6 @@ _UNCLOSED = ";FOLD without ;ENDFOLD"
 
 
 def _unbalanced(source: Source) -> Iterator[tuple[int, str]]:
-    yield from ((fold.first, _UNCLOSED) for fold in source.folds if fold.last is None)
-    yield from ((line, ";ENDFOLD without ;FOLD") for line in source.stray_fold_ends)
+    unclosed, stray = source.unbalanced_folds
+    yield from ((line, _UNCLOSED) for line in unclosed)
+    yield from ((line, ";ENDFOLD without ;FOLD") for line in stray)

@@ -15,35 +15,40 @@ from grammar.syntax.walk import root_variable
 def assign(checker: TypeChecker, node: ast.Assignment) -> None:
     """Check an assignment in a routine."""
     to = checker.infer_target(node.target)
-    _check_writable(checker, node.target)
+    root = root_variable(node.target)
+    variable = None if root is None else _system_variable(checker, root)
+    if root is not None:
+        _check_writable(checker, node.target, root, variable)
     checker.check(to, node.value)
-    variable = _system_variable(checker, node.target)
     if variable is not None and variable.limits is not None:
         _check_limits(checker, variable, variable.limits, node)
     elif variable is not None:
         check_motion_limit(checker, node)
 
 
-def _system_variable(checker: TypeChecker, node: ast.Expression) -> SystemVariable | None:
-    """What is known of the variable of the controller that an expression is part of."""
-    root = root_variable(node)
-    if root is not None and root.name.text.startswith("$"):
+def _system_variable(checker: TypeChecker, root: ast.Variable) -> SystemVariable | None:
+    """What is known of a variable, if it is one of the controller."""
+    if root.name.text.startswith("$"):
         return checker.context.system.variables.get(root.name.key)
     return None
 
 
-def _check_writable(checker: TypeChecker, node: ast.Expression) -> None:
-    root = root_variable(node)
-    symbol = checker.root_symbol(node)
+def _check_writable(
+    checker: TypeChecker,
+    node: ast.Expression,
+    root: ast.Variable,
+    variable: SystemVariable | None,
+) -> None:
+    found = checker.context.found(root.name)
+    symbol = found.symbol if found else None
     if symbol is not None and symbol.kind is Kind.CONSTANT:
         checker.report("write-protected", node, f"{symbol.name} is a constant", rules=("TYP-07",))
         return
-    if isinstance(symbol, SignalSymbol) and root and side_of(checker.context, root) == "inputs":
+    if isinstance(symbol, SignalSymbol) and side_of(checker.context, root) == "inputs":
         # No source says so of signals, and one public archive does it.
         message = f"{symbol.name} is an input, which cannot be written"
         checker.report("write-protected", node, message, is_unconfirmed=True)
         return
-    variable = _system_variable(checker, node)
     if variable is not None and variable.access == "read":
         message = f"{variable.name} cannot be written"
         checker.report("write-protected", node, message, is_unconfirmed=variable.access_unconfirmed)

@@ -93,7 +93,7 @@ def test_findings_can_be_kept(checked: Check) -> None:
     kept = pickle.loads(pickle.dumps(made.findings))
     assert made.findings == kept
     file = Source(text, "NEG.src")
-    known = made.module.table, file
+    known = made.module.table, lambda: file
 
     def found(findings: Findings) -> list[Diagnostic]:
         return check_project([findings], lambda _: known, spelling_of([file]))
