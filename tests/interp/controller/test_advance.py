@@ -56,17 +56,6 @@ def test_does_not_stop(go: Go, line: str) -> None:
     assert [] == ran.messages()
 
 
-def test_output_in_step_is_read(go: Go) -> None:
-    """Read, $OUT_C is what the output has [ADV-11]."""
-    text = "DEF main()\nBOOL B\n$OUT[3]=TRUE\nB=$OUT_C[3]\nWAIT FOR $OUT_C[3]\nEND\n"
-    assert True is go(text).last("B")
-
-
-def test_output_in_step_without_motion(go: Go) -> None:
-    """Where nothing is on its way $OUT_C acts at once [ADV-11]."""
-    assert [(0.0, 1, True)] == go("DEF main()\n$OUT_C[1]=TRUE\nEND\n").outputs()
-
-
 def test_frames_at_the_start(go: Go) -> None:
     """A profile says whether there are any before a program sets them [MOT-15]."""
     profile = Profile.load()
@@ -110,8 +99,3 @@ def test_proceed_takes_a_fault_of_the_controller(go: Go) -> None:
     )
     assert "end" == ran.outcome.ending
     assert (1447, 6, 4, True, 0) == tuple(ran.last(name) for name in "NLIBM")
-
-
-def test_message_of_a_motion(go: Go) -> None:
-    """What planning has to say without stopping is a message [MOT-11]."""
-    assert [3171] == go(program("PTP {A1 1,A6 99}")).messages()

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 Go = Callable[..., Any]
 
 HOME = "PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\n"
@@ -20,17 +18,6 @@ ONCE = program(
 )
 
 
-def test_all_at_once(go: Go) -> None:
-    """Without a number all declared interrupts are meant [INT-07]."""
-    text = program(
-        "INTERRUPT DECL 11 WHEN $IN[1] DO COUNT()\nINTERRUPT DECL 12 WHEN $IN[2] DO COUNT()\n"
-        "INTERRUPT ON\nWAIT SEC 0.5\nINTERRUPT OFF\nWAIT SEC 0.5\n",
-        "DEF COUNT()\nEND\n",
-    )
-    ran = go(text, "t=0.1 IN[1]=TRUE\nt=0.2 IN[2]=TRUE\nt=0.6 IN[1]=FALSE\nt=0.7 IN[1]=TRUE")
-    assert [0.108, 0.204] == ran.times("interrupt_enter")
-
-
 def test_unknown_number(go: Go) -> None:
     """Only what is declared is switched on; what is not there may be switched off [INT-07]."""
     assert "interrupt_unknown" == go(program("INTERRUPT ON 7\n")).outcome.error.slug
@@ -41,17 +28,6 @@ BRAKING = program(
     "INTERRUPT DECL 10 WHEN $IN[1] DO STOPS()\nINTERRUPT ON 10\n" + HOME + "PTP {A1 100}\n",
     "DEF STOPS()\nBRAKE\nWAIT SEC 0.5\nEND\n",
 )
-
-
-def test_brake(go: Go) -> None:
-    """BRAKE stops the arm on its path; when the routine ends it goes on [INT-09]."""
-    ran = go(BRAKING, "t=1.5 IN[1]=TRUE")
-    assert [1.5] == ran.times("brake", mode=None)
-    assert ["brake", "proceed"] == ran.arm.calls
-    # Stands at 1.51, waits half a second to the next tick, and has half a second left.
-    assert [2.016] == ran.times("interrupt_leave")
-    assert [1.0, 2.516] == ran.times("motion_end")
-    assert 50.0 == ran.value("$AXIS_RET", "A1")
 
 
 def test_brake_where_nothing_moves(go: Go) -> None:
@@ -67,15 +43,6 @@ NESTED_MOTIONS = program(
     "INTERRUPT ON\n" + HOME + "PTP {A1 100}\n",
     "DEF STOPS()\nBRAKE\nWAIT SEC 0.5\nEND\nDEF MOVES()\nPTP {A1 -30}\nEND\n",
 )
-
-
-def test_motion_in_a_routine_above_a_braked_one(go: Go) -> None:
-    """Whoever has moved the arm, the routine that braked takes it back [INT-09]."""
-    ran = go(NESTED_MOTIONS, "t=1.5 IN[1]=TRUE\nt=1.6 IN[2]=TRUE")
-    started = [(one.fields["motion"], one.time / 1e6) for one in ran.events_of("motion_start")]
-    assert [(1, 0.0), (2, 1.0), (3, 1.608), (4, 2.608)] == started
-    assert [4.108] == ran.times("motion_end", motion=2)
-    assert 100.0 == ran.arm.position(ran.outcome.time).axes[0]
 
 
 def test_brake_of_a_routine_that_moves(go: Go) -> None:
@@ -110,12 +77,6 @@ def test_motion_in_a_routine_without_brake(go: Go) -> None:
     assert [(3.0, 1, True)] == ran.outputs()
 
 
-def test_positions(go: Go) -> None:
-    """$AXIS_INT is where the event came [INT-15]."""
-    ran = go(BRAKING, "t=1.25 IN[1]=TRUE")
-    assert pytest.approx(26.0) == ran.value("$AXIS_INT", "A1")  # the tick behind it is at 1.26 s
-
-
 SEARCH = program(
     "INTERRUPT DECL 10 WHEN $IN[1] DO FOUND()\n" + HOME + "INTERRUPT ON 10\nSEARCH()\n"
     "INTERRUPT OFF 10\nI=I+1\nPTP {A1 5}\n",
@@ -142,19 +103,6 @@ def test_resume_without_brake(go: Go) -> None:
 def test_resume_only_in_interrupts(go: Go) -> None:
     """Elsewhere RESUME is a fault [INT-11]."""
     assert "resume_place" == go(program("RESUME\n")).outcome.error.slug
-
-
-def test_resume_from_a_nested_interrupt(go: Go) -> None:
-    """RESUME ends all routines above the declaring level, nested ones too [INT-10]."""
-    text = SEARCH.replace(
-        "INTERRUPT ON 10\n",
-        "INTERRUPT ON 10\nINTERRUPT DECL 20 WHEN $IN[2] DO SLOW()\nINTERRUPT ON 20\n",
-    )
-    text += "DEF SLOW()\nWAIT SEC 0.9\n$OUT[7]=TRUE\nEND\n"
-    ran = go(text, "t=1.2 IN[2]=TRUE\nt=1.5 IN[1]=TRUE")
-    assert [10, 20] == [one.fields["priority"] for one in ran.events_of("interrupt_leave")]
-    assert [] == ran.outputs()
-    assert 1 == ran.last("I")
 
 
 def test_interrupt_behind_the_last_line(go: Go) -> None:

@@ -28,17 +28,6 @@ def test_slices(go: Go, every: int, passes: int) -> None:
     assert passes == ran.last("I")
 
 
-def test_state(go: Go) -> None:
-    """$PRO_STATE0 is its state [SUB-08]."""
-    text = (
-        "DEF main()\nBOOL B\nB=$PRO_STATE0==#P_ACTIVE\nWAIT SEC 0.1\nB=$PRO_STATE0==#P_END\nEND\n"
-    )
-    ran = go(text, files=sub("COUNT=1\n"), submit="SPS")
-    assert [True, True] == [
-        one.fields["value"] for one in ran.events_of("assign") if one.task == "robot"
-    ]
-
-
 def test_is_not_stopped_by_halt(go: Go) -> None:
     """It goes on while the robot's program halts [SUB-01]."""
     files = sub("LOOP\nCOUNT=COUNT+1\nWAIT SEC 0.1\nENDLOOP\n")

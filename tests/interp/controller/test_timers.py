@@ -12,17 +12,6 @@ def program(body: str) -> str:
     return f"DEF main()\nINT I\nBOOL B\nREAL X\n{body}END\n"
 
 
-def test_flag_is_written(go: Go) -> None:
-    """A flag that a program resets stays so until its timer passes zero from below [TIM-04]."""
-    body = (
-        "$TIMER[1]=5\n$TIMER_STOP[1]=FALSE\nB=$TIMER_FLAG[1]\nX=1\n$TIMER_FLAG[1]=FALSE\n"
-        "WAIT SEC 0.1\nB=$TIMER_FLAG[1]\n$TIMER[1]=-100\n$TIMER_FLAG[1]=FALSE\nWAIT SEC 0.2\n"
-        "B=$TIMER_FLAG[1]\n"
-    )
-    told = go(program(body)).events_of("assign")
-    assert [True, False, True] == [one.fields["value"] for one in told if one.fields["name"] == "B"]
-
-
 def test_date(go: Go) -> None:
     """$DATE is the profile's start and the virtual time since [TIM-05]."""
     text = program("WAIT SEC 61.5\nI=$DATE.HOUR*10000+$DATE.MIN*100+$DATE.SEC\nX=$DATE.YEAR\n")
@@ -108,14 +97,6 @@ def test_home(go: Go) -> None:
     )
     told = [one.fields["value"] for one in ran.events_of("assign") if one.fields["name"] == "B"]
     assert [False, False, False, True, True, True] == told
-
-
-def test_interface_of_the_plc(go: Go) -> None:
-    """$I_O_ACTCONF tells that the PLC has its say, as in mode #EX."""
-    body = program("B=$I_O_ACTCONF\nB=$EXT\n")
-    assert [False] * 2 == [one.fields["value"] for one in go(body).events_of("assign")]
-    ran = go(body, "t=0 MODE_OP=#EX")
-    assert [True] * 2 == [one.fields["value"] for one in ran.events_of("assign")]
 
 
 def test_states(go: Go) -> None:
