@@ -1,7 +1,7 @@
 """Linter of cases: defects beyond the format, and rules without a case.
 
-A case states one fact: it has a title of its own, the shortest program that shows it, and
-names that carry over to a controller.
+A case states one fact. It has its own title, the shortest program that shows the fact, and names
+that a controller accepts.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Coverage:
         ]
 
     def count(self, *, hard: bool) -> tuple[int, int]:
-        """Of how many rules there is a case, and how many there are; hard ones only, or all."""
+        """How many rules have a case, and how many rules there are; only hard ones, or all."""
         counted = [rule for rule in registry().values() if rule.may_fail or not hard]
         return sum(bool(self.cases[rule.id]) for rule in counted), len(counted)
 

@@ -1,7 +1,7 @@
 """Description of a language for recovery; everything else comes from grammar and corpus.
 
-Which token a name is, which one ends a line, what is a comment and which words are reserved the
-lexer of the grammar says.
+The lexer of the grammar says which token is a name, which one ends a line, what is a comment, and
+which words are reserved.
 """
 
 from __future__ import annotations

@@ -132,7 +132,7 @@ LINE_LOOP_COST = 2
 NOT_BEGUN_COST = 2
 #: Elements that an edit leaves out, tokens that it inserts ahead of a failure. Not measured.
 MOST_SKIPPED = 3
-#: Tokens after the failure at which the grammar may go on. Bound.
+#: Tokens after the failure at which the grammar may continue. Bound.
 LONGEST_RUN = 24
 #: Places at which the rest of the line can be read, the nearest ones. Not measured.
 MOST_RESUMPTIONS = 3

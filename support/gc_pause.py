@@ -1,7 +1,7 @@
-"""Garbage collection held back during work that makes many objects and little garbage.
+"""Garbage collection delayed during work that makes many objects and little garbage.
 
-A syntax tree of a megabyte is half a million objects, none of them garbage before the whole tree
-is: going through them again and again takes 40 % of the time of a check.
+A syntax tree of a megabyte has half a million objects, and none is garbage before the whole tree
+is. Visiting them again and again takes 40 % of the time of a check.
 """
 
 from __future__ import annotations

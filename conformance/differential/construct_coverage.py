@@ -1,10 +1,9 @@
-"""Coverage of language constructs: those on lines that were executed.
+"""Coverage of language constructs on executed lines.
 
-Counted are kinds of nodes and their variants, operators, predefined functions, system variables,
-and the instructions that lines were compiled to. `language` lists what there is of most, so that
-what never occurred can be reported. A program reaches a rule, or a clause of one, when it executes
-all that every conformance case of it uses (`needs`); that it does what the rule says is another
-matter.
+It counts kinds of nodes and their variants, operators, predefined functions, system variables, and
+the instructions of executed lines. `language` lists all that can occur of most kinds, so that what
+never occurred can be reported. A program reaches a rule or clause when it executes everything that
+all conformance cases of it use (`needs`); this does not show that it obeys the rule.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ class _Search:
         self._most = most
 
     def _takes(self, files: Files) -> bool:
-        """Whether to go on with these files instead."""
+        """Whether to continue with these files instead."""
         if self.tried >= self._most or files == self.files:
             return False
         self.tried += 1

@@ -178,7 +178,7 @@ def _joint(one: Expectation, part: _Part) -> Evaluated:
 
 
 def _distance(part: _Part, point: Array) -> float:
-    """How near the tool comes to a point while the motion, and the blend behind it, goes on."""
+    """How near the tool comes to a point while the motion, and the blend behind it, continues."""
     if part.is_whole:
         stretches = [_refined(part, rows) for rows in part.stretches()]
         return min(float(nearest(points[:-1], points[1:], point).min()) for points in stretches)

@@ -110,7 +110,7 @@ def between(
     """Rows at other times, by the cubic through the four samples around each; the ends are kept.
 
     ``rows`` is of shape (n, columns), the result of shape (moments, columns), or (columns,) for one
-    moment. The last cubic goes on for ``after`` µs.
+    moment. The last cubic continues for ``after`` µs.
     """
     last = times[-1] + after
     wanted = np.clip(np.atleast_1d(np.asarray(moments, dtype=np.float64)), times[0], last)

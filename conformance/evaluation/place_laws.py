@@ -1,7 +1,7 @@
-"""Laws about where blends begin and end and triggers switch, as docs/motion.md says.
+"""Laws about where blends begin and end and where triggers switch, as docs/motion.md says.
 
-Ways are those that were programmed, from point to point, not those that were gone: what a blend
-takes of both follows from targets, criteria and machine data alone.
+The ways are the programmed ones, from point to point, not the executed ones: the share of a blend
+follows from targets, criteria and machine data alone.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from interp.robot.kinematics.placement import IpoMode
 
 _SHARES: Final = np.linspace(0.0, 1.0, 501)[:, None]
 _POINT: Final = ("X", "Y", "Z")
-#: mm and degrees by which a zone may be off.
+#: Tolerance of a zone, in mm and degrees.
 _NEAR_MM, _NEAR_DEGREES = 0.05, 0.01
-#: µs that times may be off: they are rounded, and so are the ends of motions.
+#: Tolerance of times in µs: they are rounded, and so are the ends of motions.
 _NEAR_TIME: Final = 3
-#: At most so much of a way is blended.
+#: The largest share of a way that a blend takes.
 _HALF: Final = 0.5
 
 

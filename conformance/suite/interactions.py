@@ -341,7 +341,7 @@ def _way(row: Row, *, is_left: bool) -> Iterator[str]:
     last = "3" if blends else "2"
     for text in _BEHIND[row["behind"]]:
         shown = text.replace("LAST", last)
-        if row["act"] == "halt":  # it stands for half a second, and the arm goes on
+        if row["act"] == "halt":  # it stands for half a second, and the arm continues
             shown = shown.replace(" at end", " after end")
         yield f"  {text.partition(' ;>')[0] if is_left else shown}"
     if is_left:

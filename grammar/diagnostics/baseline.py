@@ -1,4 +1,4 @@
-"""Findings that a team knows of and lives with: only what is new is to be reported.
+"""Baselines: the findings that a team knows already, so that only new ones are reported.
 
 A finding is known by its file, its code and the text of its line, blanks aside, so that lines may
 come and go above it. Of the same finding on several lines of the same text as many are known as

@@ -1,4 +1,4 @@
-"""Findings as values: where, how grave, what, why, and what would mend it.
+"""Findings as values: place, severity, message, reason, fix.
 
 The front end raises nothing for a bad program, it returns these. They are ordered here and become
 records for JSON; `grammar.diagnostics.rendering` makes text of them and `grammar.diagnostics.sarif`

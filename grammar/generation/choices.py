@@ -1,7 +1,7 @@
-"""Decisions: everything a generated program holds follows from `Choices.below` alone.
+"""Random decisions: a generated program follows from the results of `Choices.below` alone.
 
-A smaller number stands for a simpler decision wherever there is one, so that a test that draws the
-numbers itself can shrink a program.
+A smaller number means a simpler decision, so that a test that draws the numbers itself can shrink a
+program.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Choices(ABC):
         return low + self.below(high - low + 1)
 
     def chance(self, percent: int) -> bool:
-        """Whether something happens that does in so many of a hundred cases."""
+        """Whether something happens that has this probability."""
         return self.below(100) >= 100 - percent
 
     def pick(self, items: Sequence[_T]) -> _T:
@@ -48,14 +48,14 @@ class Choices(ABC):
         return items[self.below(len(items))]
 
     def weighted(self, weighted: Weighted[_T]) -> _T:
-        """One of them, by its weight; of one alone there is nothing to decide."""
+        """One of them, by its weight; a single one is returned without a decision."""
         limits = weighted.limits
         if len(limits) == 1:
             return weighted.items[0]
         return weighted.items[bisect(limits, self.below(limits[-1]))]
 
     def few(self, items: Sequence[_T], count: int) -> Sequence[_T]:
-        """As many different ones, or all there are, in the order they are given."""
+        """``count`` different ones, or all if there are no more, in their order."""
         if count >= len(items):
             return items
         left = list(range(len(items)))
@@ -86,7 +86,7 @@ class SeededChoices(Choices):
         return low + int(self._real() * (high - low + 1))
 
     def chance(self, percent: int) -> bool:
-        """Whether something happens that does in so many of a hundred cases."""
+        """Whether something happens that has this probability."""
         return self._real() * 100 >= 100 - percent
 
     def pick(self, items: Sequence[_T]) -> _T:

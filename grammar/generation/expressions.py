@@ -1,7 +1,7 @@
 """Expressions of a type that is asked for, from what a place can name: operators, places, calls.
 
 Relations bind weakest in KRL and stand in parentheses where they are operands [ARI-05, ARI-06].
-Numbers of closed programs are kept small as a rule, so that most go on; now and then one is not.
+Numbers of closed programs are kept small as a rule, so that most continue; now and then one is not.
 """
 
 from __future__ import annotations

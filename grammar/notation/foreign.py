@@ -89,7 +89,7 @@ def _spelt(alternative: Alternative, letters: Mapping[str, str]) -> str:
 
 
 def _without_ends(grammar: Grammar) -> str:
-    """Tokens that may end with the file may end anywhere: the longest match goes on as before."""
+    """Tokens that may end with the file may end anywhere: the longest match continues as before."""
     return _spliced(
         grammar,
         {

@@ -18,7 +18,7 @@ from grammar.notation.model import (
     walk,
 )
 
-# Words that ANTLR's own language keeps for itself, so no rule can be called so.
+# Reserved words of ANTLR, which no rule may have as its name.
 _RESERVED = frozenset(
     "catch channels finally fragment grammar import lexer locals mode options parser "
     "private protected public returns throws tokens".split()

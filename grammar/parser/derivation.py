@@ -152,7 +152,7 @@ class _Rules:
 
 
 def _merged(moves: Sequence[tuple[str, list[_Move]]]) -> list[int]:
-    """For each position the first one that can go on in the same ways, in the same order."""
+    """For each position the first one that can continue in the same ways, in the same order."""
     same = list(range(len(moves)))
     while True:
         known: dict[object, int] = {}

@@ -1,6 +1,6 @@
 """All failures of a file, not only the first.
 
-KRL is a language of lines, so reading goes on with the next line after a failure. The question is
+KRL is a language of lines, so reading continues with the next line after a failure. The question is
 in which state. Three guesses, the first that lets the next line be read wins:
 
 1. the line was meant as the grammar has it, but for some tokens: the state after the line without
@@ -31,7 +31,7 @@ from support.lazy_dataclass import dataclass
 
 # A failing line is tried again without 1, 2, 3 … tokens; on enormous lines only so far.
 _LONGEST_GAP = 64
-# How many lines that say something decide where reading goes on.
+# How many lines that say something decide where reading continues.
 _LINES_AHEAD = 4
 _MOST_REMEMBERED = 50_000
 _LINE_END = re.compile(r"\r\n|\r|\n")

@@ -29,7 +29,7 @@ _LONGEST_REMEMBERED = 1_000
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """The first token at which no program can go on, and the recogniser's state before it.
+    """The first token at which no program can continue, and the recogniser's state before it.
 
     ``line`` and ``column`` count from 1, ``offset`` from 0; ``text`` is the token as written, empty
     at the end of the file. `grammar.parser.failures` finds all failures of a file.

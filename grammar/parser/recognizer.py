@@ -1,4 +1,4 @@
-"""The recogniser: is this a program, and if not, at which token can no program go on?
+"""The recogniser: whether a text is a program, and at which token it stops being one.
 
 The grammar is simulated as a transition network (`grammar.parser.network`) with all its readings at
 once: the automaton of `grammar.parser.lazy_automaton`, where a core is the set of all

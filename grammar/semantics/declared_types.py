@@ -1,8 +1,7 @@
 """The types of what files declare, as values of `grammar.semantics.types`.
 
-A declaration names its type in the place where it stands, so that is where the name is looked up.
-What is not known, a type of a package that is not at hand or a size known only at run time, is
-`UNKNOWN` or ``None`` and fits everywhere.
+The name of a type is looked up in the scope of its declaration. What is unknown, such as a type of
+a missing package or a size known only at run time, is `UNKNOWN` or ``None`` and fits everywhere.
 """
 
 from __future__ import annotations

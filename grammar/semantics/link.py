@@ -1,4 +1,4 @@
-"""From many files to projects: which files belong together, and who sees what of whom.
+"""Linking: which files form a project, and which names of others each file sees.
 
 `link` takes the files of a call, from folders, archives or one by one, and makes a `Workspace` of
 `Project`s. A project is what one controller holds: a folder with R1 or STEU in it, as every backup

@@ -99,7 +99,7 @@ class Builder:
         at = end = 0  # the next token, and where the last one ended that was no line end
         while True:
             pieces = frame.pieces
-            for child in frame.children:  # goes on where it was left
+            for child in frame.children:  # continues where it was left
                 if not isinstance(child, Outline):
                     end = ends[at]
                     pieces.append(_Piece(names[child], lexemes[at], starts[at], end))

@@ -58,7 +58,7 @@ _TEXTS = {"str", "str | None", "tuple[str, ...]", "int", "bool"}
 
 
 def _below(kind: type[ast.Node]) -> tuple[str, ...]:
-    """The fields of a kind of node with nodes to go on with."""
+    """The fields of a kind of node with nodes to continue with."""
     left_out = _LEFT_OUT.get(kind, set()) | {"span", _NAMES.get(kind, ("",))[0]}
     return tuple(
         field.name
@@ -68,7 +68,7 @@ def _below(kind: type[ast.Node]) -> tuple[str, ...]:
 
 
 #: For each kind of node that is no leaf: the field of its name with the space to look it up in, and
-#: the fields to go on with, each a node, ``None``, or a tuple of these.
+#: the fields to continue with, each a node, ``None``, or a tuple of these.
 PLANS: dict[type[Any], tuple[tuple[str, Space] | None, tuple[str, ...]]] = {
     kind: (_NAMES.get(kind), below)
     for kind in ast.Node.__subclasses__()

@@ -86,7 +86,7 @@ class StepCommand:
     That is into calls, over them, or out of the routine.
 
     Actions of interrupts and triggers that come up meanwhile are stepped into only with ``into``.
-    ``motion`` goes on until a motion has ended, and to the next statement of the program then.
+    ``motion`` continues until a motion has ended, and to the next statement of the program then.
     """
 
     way: Way = "over"
@@ -107,7 +107,7 @@ class Back:
 
 @dataclass(frozen=True, slots=True)
 class Select:
-    """Block selection: go on at a line of the present routine, and stop there.
+    """Block selection: continue at a line of the present routine, and stop there.
 
     No statement between here and there is executed [ADV-14]. Refused where the line is one of
     another file than ``file``, or another program than ``task`` has stopped.

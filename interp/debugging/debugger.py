@@ -1,7 +1,7 @@
 """A debugger for all programs of a run: stops, steps, inspects, changes and steps back.
 
 It runs what it is given to run, and calls its client where a program stops; until that answers
-nothing goes on. To go back is to run once more and to stop earlier (`interp.debugging.history`).
+nothing continues. To go back is to run once more and to stop earlier (`interp.debugging.history`).
 """
 
 from __future__ import annotations
@@ -346,7 +346,7 @@ class Debugger:
         return history.unseen(self._count(), shows_places)
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
-        """A program is about to begin a statement; the line to go on at instead, if any.
+        """A program is about to begin a statement; the line to continue at instead, if any.
 
         Only of what the debugger wants to see: whatever `unseen` says.
         """
@@ -491,7 +491,7 @@ class Debugger:
     # ----------------------------------------------------------------------- commands
 
     def _stopped(self, executor: DebuggedExecutor, stop: Stop) -> int | None:
-        """Do what the client wants: go on, and if so at which line, or leave this run."""
+        """Do what the client wants: continue, and if so at which line, or leave this run."""
         while True:
             self._stepping = None
             match self._client_command(stop):

@@ -34,7 +34,7 @@ class Hook(Protocol):
         """
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
-        """A statement is about to begin; the line to go on at instead, if any."""
+        """A statement is about to begin; the line to continue at instead, if any."""
 
     def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
         """The program has come to a fault that it does not handle."""
@@ -111,7 +111,7 @@ class DebuggedExecutor:
             return request
 
     def enter(self, code: CodeHandle) -> None:
-        """Push an action, which runs before the program goes on."""
+        """Push an action, which runs before the program continues."""
         self._actions.append((self.inside.depth, self._again or self._open))
         self._open = self._again = None
         self.inside.enter(code)

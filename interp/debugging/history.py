@@ -41,7 +41,7 @@ class Assigned:
 
 @dataclass(frozen=True, slots=True)
 class Selected:
-    """A line was selected, with which the program goes on."""
+    """A line was selected, with which the program continues."""
 
     line: int
 

@@ -12,7 +12,7 @@ from interp.program.statement_paths import way_to
 
 
 def reason_against(routine: Routine, here: int, line: int) -> str:
-    """Why a program cannot go on at a line when it is at another; empty where it can."""
+    """Why a program cannot continue at a line when it is at another; empty where it can."""
     way = way_to(routine, line)
     if not way:
         return f"no statement of {routine.name} begins in line {line}"

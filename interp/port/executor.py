@@ -3,7 +3,7 @@
 The executor *is* the advance run: it runs ahead of the arm, statement by statement, and hands over
 a request whenever it needs the world (`interp.port.requests`). The controller owns clock, motion
 queue, interrupts, triggers, submit, inputs and outputs and system variables, and decides when the
-executor may go on. Neither knows more of the other than this.
+executor may continue. Neither knows more of the other than this.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Executor(Protocol):
         ...
 
     def enter(self, code: CodeHandle) -> None:
-        """Push a routine or action, which runs before the program goes on.
+        """Push a routine or action, which runs before the program continues.
 
         Allowed between two requests only, and behind the End of the program as well, as long as the
         arm is on its way. Its end is reported by `interp.port.requests.End`, after which the
@@ -48,7 +48,7 @@ class Executor(Protocol):
         ...
 
     def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``; the program goes on behind the call there.
+        """Leave all routines deeper than ``depth``; the program continues behind the call there.
 
         [INT-10]
         """

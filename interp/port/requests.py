@@ -163,7 +163,7 @@ class Move(Asking):
     """A motion is planned. Words as in `grammar.syntax.ast.Motion`; targets are structures.
 
     ``values`` are what stands behind WITH: system variables and the values they have for this
-    motion only. Reply: ``None`` or a fault. The executor goes on while the arm moves.
+    motion only. Reply: ``None`` or a fault. The executor continues while the arm moves.
     """
 
     kind: str
@@ -296,14 +296,14 @@ class End(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Fail(Asking):
-    """The program cannot go on: a fault that nothing took [design section 8]."""
+    """The program cannot continue: a fault that nothing took [design section 8]."""
 
     fault: Exception
 
 
 @dataclass(frozen=True, slots=True)
 class Skip(Asking):
-    """A statement has failed, and the program goes on behind it. Reply: ``None``."""
+    """A statement has failed, and the program continues behind it. Reply: ``None``."""
 
     fault: Exception
 

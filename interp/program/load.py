@@ -1,9 +1,8 @@
-"""From files to a program that can run: read, linked, checked.
+"""Loading: files are read, linked and checked, and become a program that can run.
 
-`load` gives all that an interpreter or a compiler needs to know of a project: its files with their
-trees and what the checker knows of them, its routines by symbol, and what names lead to. An error
-anywhere in the project is a `LinkError`. A routine that no file has is none: it fails when it is
-called [SCO-10].
+`load` gives all that an interpreter or a compiler needs of a project: its files with their trees
+and the results of the checker, its routines by symbol, and the meaning of names. An error anywhere
+in the project is a `LinkError`. A missing routine is no error: its call fails [SCO-10].
 """
 
 from __future__ import annotations
@@ -231,7 +230,7 @@ class CheckedProgram:
 
 
 def _declares_stand_ins(unit: Unit) -> bool:
-    """Whether it is the list of all stand-ins, most of which may be for other programs."""
+    """Whether it is the data list of all stand-ins, most of which other programs may need."""
     return unit.module.folder == FOLDER and unit.module.suffix == ".dat"
 
 

@@ -289,7 +289,7 @@ def reads_text(type_: Type) -> bool:
 
     There an array of CHAR that the caller of a routine has left out is the empty text, as one is
     that never had a value (unconfirmed: the message routines in backups of three independent
-    controllers ask for STRLEN of a parameter that is left out, and go on only if it is not 0).
+    controllers ask for STRLEN of a parameter that is left out, and continue only if it is not 0).
     """
     return isinstance(type_, Array) and type_.element == CHAR and len(type_.sizes) == 1
 

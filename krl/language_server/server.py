@@ -1,4 +1,4 @@
-"""The language server itself: what an editor asks, answered by `krl.language_server`."""
+"""The language server: requests of an editor, answered by the modules of this folder."""
 
 from __future__ import annotations
 

@@ -270,7 +270,7 @@ def assess_all(
 ) -> dict[str, Any]:
     """Assess mutants in ``jobs`` processes and gather the figures; see `assess`.
 
-    Each assessment is kept in the folder ``cache``, so that a bench goes on where it ended.
+    Each assessment is kept in the folder ``cache``, so that a bench continues where it ended.
     """
     found: dict[int, Assessment] = {}
     with ResultStore(cache, f"mutants {key_of(material.grammar)}") as store:

@@ -1,4 +1,4 @@
-"""Do clusters agree with the ledger: is what one construct answers one cluster, and no more?
+"""Agreement of clusters with the ledger: ideally one cluster for each construct.
 
 The ledger says which construct answers a failure: the one from which on its file can be read past
 the place of the failure. So the clusters of the restrictive start can be held against it, on a

@@ -1,8 +1,8 @@
-"""The measure of the tool itself: take something out of a grammar and see whether it is found.
+"""Mutants of a grammar, which measure how well the survey finds what is missing.
 
-There is no official grammar to compare with. So a grammar that reads a corpus is damaged on
-purpose, a rule, an alternative, an optional part or a keyword at a time, and the survey of the same
-corpus has to lead back: notice it, name the rule, name the place, propose an edit that restores it.
+There is no official grammar to compare with. So a grammar that reads a corpus loses a rule, an
+alternative, an optional part or a keyword. The survey of the same corpus has to notice it, name the
+rule and the place, and propose an edit that restores it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Regressions: files that parse, and no longer would once a word is reserved.
+"""Regressions: files that parse now, and would not if a word were reserved.
 
 A word that one line has as a keyword may be a name in another file, and stays one where the grammar
 lists words that are names elsewhere. So an edit that reserves words is tried on some of the files

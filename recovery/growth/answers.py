@@ -1,4 +1,4 @@
-"""Which construct of the ledger answered a cluster of the restrictive start.
+"""The construct of the ledger that answered each cluster of the restrictive start.
 
 A cluster has example lines in real files. The ledger is replayed over these files, and a cluster
 is answered by the construct from which on most of its lines can be read in their places.

@@ -68,7 +68,7 @@ def growth(
 def _digest(
     read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: LedgerSteps
 ) -> str:
-    """What the record depends on besides the code."""
+    """A digest of all that the record depends on, besides the code."""
     code = hashlib.sha256(start.sha256.encode())
     for construct, grammar in steps:
         code.update(repr((construct, grammar.sha256)).encode())

@@ -131,7 +131,7 @@ def read_through(
         for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)
-            store.put(  # after each run, so that a killed growth goes on from there
+            store.put(  # after each run, so that a killed growth continues from there
                 (_key(member.content), known[member.index].record(names))
                 for member in block.members
                 if known[member.index].lasting

@@ -1,4 +1,4 @@
-"""Lookahead: how many tokens a parser needs to decide how a rule goes on.
+"""Lookahead: how many tokens a parser needs to choose a branch of a rule.
 
 A *decision* is a place in a rule where its text leaves a choice: alternatives, or an element with
 ``?``, ``*`` or ``+``. One token decides it when no token can begin two of its branches; two do when
@@ -233,7 +233,7 @@ def _decided(graph: _Graph, fork: _Fork) -> Decision:
 def _alike(
     graph: _Graph, read: tuple[str, ...], reached: Mapping[int, frozenset[_Place]]
 ) -> Iterator[_Case]:
-    """One more token: those that several branches can go on with, and where they are then."""
+    """One more token: those that several branches can continue with, and where they are then."""
     following: dict[str, dict[int, set[_Place]]] = defaultdict(lambda: defaultdict(set))
     for number, places in reached.items():
         for place in places:

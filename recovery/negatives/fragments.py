@@ -1,7 +1,7 @@
-"""Fragments of valid programs, and short programs put together from them.
+"""Fragments of valid programs, and short programs made from them.
 
-A fragment is a statement or a small block, without comments. Of fragments that read alike but for
-names and values only the first is kept.
+A fragment is a statement or a small block, without comments. Of fragments that differ only in names
+and values, the first is kept.
 """
 
 from __future__ import annotations
@@ -123,8 +123,8 @@ ENDDAT
 class FragmentPool:
     """Fragments by where they may be used: at the head of a routine, below, or in a data list.
 
-    Each is a list of forms, each form a list of pieces: a form is as likely as the other, however
-    many assignments there are for one TRIGGER.
+    Each is a list of forms, each form a list of pieces. All forms are equally likely, although
+    there are many assignments for one TRIGGER.
     """
 
     declarations: tuple[tuple[Fragment, ...], ...]

@@ -108,8 +108,8 @@ def _front_matter(path: Path, text: str) -> tuple[dict[str, str], int]:
 class NegativeSet:
     """Negatives of phase ``parse`` (the others are left out), ready to be tried on many grammars.
 
-    Many programs share their lines. So each line is cut into tokens once a lexer, and read once
-    from each state it is met in.
+    Many programs share lines. So each line is tokenised once for each lexer, and read once from
+    each state in which it occurs.
     """
 
     def __init__(self, negatives: Iterable[Negative]) -> None:
@@ -127,10 +127,10 @@ class NegativeSet:
         return len(self.negatives)
 
     def rejected_by(self, recognizer: Recognizer) -> NegativeSet:
-        """Those that this recogniser does reject, by which its successors are measured.
+        """Those that this recogniser rejects; edits of its grammar are measured by them.
 
-        A grammar without a keyword takes the keyword for a name and may accept programs that misuse
-        it; it is not to be blamed on an edit that they stay accepted.
+        A grammar that lacks a keyword reads it as a name, and may accept programs that misuse it.
+        No edit is to blame if these stay accepted.
         """
         accepted = {negative.text for negative in self.accepted(recognizer)}
         return NegativeSet(n for n in self.negatives if n.text not in accepted)
@@ -138,9 +138,9 @@ class NegativeSet:
     def accepted(
         self, recognizer: Recognizer, having: Sequence[frozenset[int]] = (frozenset(),)
     ) -> list[Negative]:
-        """Those that the recogniser takes for programs, in the order of the set.
+        """Those that the recogniser accepts, in the order of the set.
 
-        Only those are looked at that have all tokens of one of the sets ``having``.
+        Only negatives with all tokens of one of the sets ``having`` are tried.
         """
         kinds = self._cut(recognizer.lexer)
         if kinds is None:
@@ -182,7 +182,7 @@ class NegativeSet:
         ]
 
     def _cut(self, lexer: Lexer) -> list[list[int]] | None:
-        """Token kinds of each line; ``None`` where a token goes on behind its line."""
+        """Token kinds of each line; ``None`` where a token continues behind its line."""
         if lexer not in self._kinds:
             if len(self._kinds) >= _MOST_LEXERS:
                 oldest = next(iter(self._kinds))

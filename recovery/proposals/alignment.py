@@ -1,9 +1,9 @@
-"""Alignment of phrases: one phrase that reads all of several.
+"""Alignment of phrases: one phrase that reads several.
 
-Lines of one construct differ in their operands and in their optional parts. Aligned by their
-keywords and signs, each column of operands is read by a rule that reads all of
-them, what only some have becomes optional, and where some have one thing and the others another,
-a choice: from ``LIN A`` and ``LIN {X 1} C_DIS`` comes ``LIN target C_DIS?``.
+Lines of one construct differ in their operands and in their optional parts. They are aligned by
+their keywords and signs. A column of operands becomes a rule that reads all of them. What only some
+lines have becomes optional; what differs becomes a choice. ``LIN A`` and ``LIN {X 1} C_DIS`` give
+``LIN target C_DIS?``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Inference of blocks that the grammar has no form for: an opener, lines inside, a closer.
+"""Inference of blocks that the grammar lacks: an opener, lines inside, a closer.
 
 One line does not show a block: its opener looks like a statement, and its closer fails only because
 the opener did. So the files that fail at an opener are read on: which word closes it, so that both

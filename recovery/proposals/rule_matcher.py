@@ -33,7 +33,7 @@ class RuleMatcher:
         }
 
     def multi_line_rules(self, kinds: Sequence[int]) -> list[str]:
-        """Rules that go on over the end of a line which begins them so."""
+        """Rules that continue over the end of a line which begins them so."""
         ends = self.recognizer.ends
         return [rule for rule, state in self._read(tuple(kinds)).items() if not ends(state)]
 

@@ -1,8 +1,8 @@
 """Edit sites: where the grammar could accept the tokens of a failing line.
 
-They come from the configurations of the recogniser at the offending token and before it, and from
-the positions after which the rest of the line could be read. What is written into the rule there is
-not decided here: see `recovery.proposals.candidates`.
+The sites follow from the configurations of the recogniser at the offending token and before it, and
+from the positions after which the rest of the line could be read. `recovery.proposals.candidates`
+decides what is written there.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class EditSiteFinder:
         }
 
     def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[EditSite]:
-        """Sites ahead of the failure: what should be accepted there was read as something else."""
+        """Sites before the failure, where the line was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = self._begun(before, form)
         for start in range(max(0, form.index - MOST_SKIPPED), form.index):
@@ -197,7 +197,7 @@ class EditSiteFinder:
         for place in sorted(automaton.places[position - base]):
             number = place[-1]
             sequence = self.profile.sequence(rule, place[:-1])
-            # inserting what is missing, to go on where we are
+            # inserting what is missing, to continue where we are
             is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
             begins_loop = number == 1 and len(place) > 2
             gathers = self.similarity.gathers(rule)

@@ -208,7 +208,7 @@ class Reducer:
         return dict(sorted(found.items(), key=lambda item: (len(item[1]), item[1])))
 
     def _endings(self, start: State, line: list[AbstractToken]) -> list[list[AbstractToken]]:
-        """How a program goes on behind the line: as without it, or as if it had been read."""
+        """How a program continues behind the line: as without it, or as if it had been read."""
         broken, frames = self._broken(start, line), self.recognizer.frames
         if broken.index == len(line):
             return [[]]

@@ -20,7 +20,7 @@ class FailureMode(NamedTuple):
 
     ``kind`` is the offending token's; ``meant``, ``before`` and ``lead`` are the keywords meant by
     it, by the name before it and by the first of the line. ``opening`` is the first token's kind
-    where the line could have ended: then the statement as a whole is what does not go on.
+    where the line could have ended: then the statement as a whole is what does not continue.
     """
 
     kind: int

@@ -1,8 +1,8 @@
 """The survey: every file of a corpus read under one grammar, every failure collected.
 
-Files are surveyed in parallel processes, each with a recogniser of its own; results come back in
-the order of discovery, whatever process they came from, so the same corpus gives the same survey.
-A file with the same content as an earlier one is not read again but counted with it.
+Files are surveyed in parallel processes, each with its own recogniser. Results come back in the
+order of discovery, so the same corpus gives the same survey. A file with the content of an earlier
+one is not read again, but counted with it.
 """
 
 from __future__ import annotations
@@ -119,13 +119,13 @@ def survey(
 
 
 def _processes(candidates: Iterable[Found | Skipped]) -> int:
-    """As many as there are cores, but one where starting more would cost more than it saves."""
+    """One a core, or one for a small corpus, where more would cost more than they save."""
     size = sum(c.size for c in candidates if isinstance(c, Found))
     return 1 if size < _SMALL else os.cpu_count() or 1
 
 
 def survey_texts(programs: Sequence[tuple[str, str]], grammar: Grammar) -> Survey:
-    """Read programs given as (path, text) in this process; each is taken for a file of its own."""
+    """Read programs given as (path, text) in this process; each counts as a file of its own."""
     began = time.perf_counter()
     finder = FailureFinder(Recognizer(grammar))
     forms: dict[Form, int] = {}

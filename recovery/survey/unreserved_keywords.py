@@ -1,4 +1,4 @@
-"""Unreserved keywords: words that a grammar lacks and reads as names without any failure.
+"""Unreserved keywords: keywords that a grammar lacks and reads as names, without a failure.
 
 Take ``TRUE`` out of a grammar and every program still parses: the word becomes a variable. No
 failure shows it, but its uses do: programs of several origins read it, and none declares it,

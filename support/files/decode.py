@@ -133,7 +133,7 @@ _FLAGS = re.IGNORECASE | re.ASCII
 _NEWLINE = re.compile(r"\r\n|\r|\n")
 
 # Other languages open functions with DEF too: there the parameters are followed by a colon, a brace
-# or an equals sign, hold parentheses, or go on in the next line.
+# or an equals sign, hold parentheses, or continue in the next line.
 _OPENER = re.compile(
     r"(?:\A|[\r\n])[ \t]*(?:GLOBAL[ \t]+)?"
     r"(?:(?:DEFFCT|DEFDAT|DEFTP)[ \t]+[A-Z_${<%]"

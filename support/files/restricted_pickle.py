@@ -1,8 +1,7 @@
 """Serialisation of our own classes that is safe to read from untrusted bytes.
 
-Pickle can build any object; here it builds only data classes and enumerations of the packages
-that are named, and plain values. Whoever can write the bytes can make up such values, and nothing
-else.
+Pickle can build any object. Here it builds only plain values, and data classes and enumerations of
+the named packages. Forged bytes can contain false values of these kinds, and nothing else.
 """
 
 from __future__ import annotations

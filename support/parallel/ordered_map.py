@@ -1,8 +1,8 @@
 """A function applied to many tasks: in this process, in others of this machine, or on a cluster.
 
-A few tasks are submitted ahead, and their results come back in the order of the tasks, each exactly
-once, whoever did them. A worker that dies loses no result: its tasks are done by another one. A
-task that kills every worker it is given to is found, since it is then tried again alone.
+A few tasks are submitted ahead. Results come back in the order of the tasks, each exactly once. If
+a worker dies, another one does its tasks. A task is then tried alone, so that one that kills every
+worker is found.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _next(
     workers: Workers,
     lost: Callable[[*_Ts], _T] | None,
 ) -> _T:
-    """The result of the first task; where a worker has died over it, of another try."""
+    """The result of the first task, retried if a worker died."""
     task, pending = submitted.popleft()
     try:
         return pending.result()
@@ -109,7 +109,7 @@ def _next(
 
 
 def _wait_for(submitted: Iterable[Pending[object]]) -> None:
-    """Wait until nothing is being done; what has failed is raised when its turn comes."""
+    """Wait until all are done; an error is raised later, when its result is taken."""
     for pending in submitted:
         try:
             pending.result()

@@ -1,8 +1,8 @@
-"""Values of expressions that are known before a program runs: literals, constants, what they make.
+"""Constant folding: values of expressions that are known before a program runs.
 
-The language demands them in sizes of arrays, steps of FOR, labels of CASE, numbers of inputs and
-outputs. A quotient of integers that leaves a rest is not folded: which way it is rounded is not
-certain for negative ones [ARI-02]. Nor are rounded numbers that are compared with == [ARI-10].
+Sizes of arrays, steps of FOR, labels of CASE, numbers of inputs and outputs need them. A quotient
+of integers with a remainder is not folded, because the rounding of negative ones is not certain
+[ARI-02]. Nor are comparisons of rounded numbers with == [ARI-10].
 """
 
 from __future__ import annotations

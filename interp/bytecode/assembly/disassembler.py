@@ -287,7 +287,7 @@ def _constant_operand(kind: str, operand: int) -> str:
 
 
 def _targets(code: Code) -> set[int]:
-    """The instructions that others go on at."""
+    """The instructions that others continue at."""
     return {
         operand
         for instruction in code.instructions

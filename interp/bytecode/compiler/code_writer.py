@@ -28,7 +28,7 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(slots=True, eq=False)
 class Label:
-    """A place to go on at; ``place`` is that of an instruction when it is known."""
+    """A place to continue at; ``place`` is that of an instruction when it is known."""
 
     place: int = -1
 

@@ -57,7 +57,7 @@ class ControlFlow(CodeMaker):
         self._labels.pop()
 
     def begin(self, node: ast.Node, end: Label) -> None:
-        """A statement begins, or a loop anew; where it ends early it goes on at ``end``."""
+        """A statement begins, or a loop anew; where it ends early it continues at ``end``."""
         self._context.line = self._context.unit.line(node)
         self._emit(Op.LINE, self._context.line, end)
 

@@ -1,4 +1,4 @@
-"""Designators: variables, members and elements, and the places that they name.
+"""Code of designators: variables, members and elements, and the locations that they name.
 
 Indices are evaluated from left to right. A place of the frame or of the data lists costs no
 instruction until something is done with it; others are on the stack.

@@ -1,4 +1,4 @@
-"""Expressions: what leaves their values on the stack.
+"""Code of expressions, which leaves their values on the stack.
 
 Operands and arguments are evaluated from left to right. What cannot be known before the program
 runs, above all the type of a system variable that no table has, is refused: it ends the program

@@ -1,4 +1,4 @@
-"""Moving values: what instructions read a location, refer to it, store in it and trace that.
+"""Code that reads a location, refers to it, stores in it, and traces the assignment.
 
 `Memory` knows cells and types and nothing of syntax trees.
 """

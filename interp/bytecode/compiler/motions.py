@@ -1,4 +1,4 @@
-"""Motions, triggers, interrupts and cyclic signals: statements that only ask the world."""
+"""Code of motions, triggers, interrupts and cyclic signals, which only send requests."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Statements: which rule makes the code of which, the bodies of routines, and plain statements.
+"""Code of routines and statements: which rule compiles which statement, and the simple ones.
 
-A statement begins with LINE. Where it ends early, by a fault that ON_ERROR_PROCEED takes or by
-RESUME, the routine goes on behind all of it.
+A statement begins with LINE. If it ends early, by a fault that ON_ERROR_PROCEED takes or by RESUME,
+the routine continues after the whole statement.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ class Statements(CodeMaker):
         self._emit(Op.PROCEED)
 
     def _wait_for(self, node: ast.WaitFor, end: Label) -> None:
-        """Asked before each look at the condition, so that time passes between two [CTL-12]."""
+        """A request before each evaluation of the condition lets time pass [CTL-12]."""
         test, again = Label(), Label()
         self._emitter.ask("Poll", Constant(True))
         self._writer.place(test)

@@ -15,7 +15,7 @@ _T = TypeVar("_T", bound=Hashable)
 
 
 class Tables:
-    """The tables of a program in the making. The same entry is there once."""
+    """The tables of a program that is being compiled, without duplicates."""
 
     def __init__(self) -> None:
         self.types: list[Type] = list(BASIC_TYPES)

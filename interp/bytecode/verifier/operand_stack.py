@@ -53,7 +53,7 @@ class Flow:
         return max((stack.cells for stack in stacks if stack is not None), default=0)
 
     def _after(self, place: int, before: Stack) -> Iterator[tuple[int, Stack]]:
-        """Where an instruction can go on, and the stack there."""
+        """Where an instruction can continue, and the stack there."""
         instruction = self._code.instructions[place]
         try:
             stack = self._effects.after(instruction, before)

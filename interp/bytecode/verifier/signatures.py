@@ -1,7 +1,7 @@
-"""Checks entries against what they name: fields of requests, arguments of functions.
+"""Checks the entries of a program against the requests and functions that they name.
 
 An entry of the table of requests names a request of `interp.port.requests` and has a part for each
-of its fields but ``at``.
+of its fields except ``at``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Successors of instructions: the edges of the control flow of a code object."""
+"""Successors of instructions: the control flow graph of a code object."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ENDS = frozenset(Op(one.number) for one in instructions() if "ends" in one.flags
 
 
 def targets(instruction: Instruction) -> Iterator[int]:
-    """The instructions that an instruction may go on at, besides the next one."""
+    """The instructions that an instruction may continue at, besides the next one."""
     kinds = shape(instruction.op.name).operands
     for kind, operand in zip(kinds, instruction.operands, strict=True):
         if kind == "target":

@@ -139,7 +139,7 @@ _INT_COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
     "LE": operator.le,
     "GE": operator.ge,
 }
-#: By the names of the instructions that go on elsewhere unless they hold.
+#: By the names of the instructions that continue elsewhere unless they hold.
 _COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
     f"{name}_{kind}": compare
     for name, compare in _INT_COMPARISONS.items()

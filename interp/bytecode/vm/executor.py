@@ -1,10 +1,10 @@
 """The machine as an executor: the port of `interp.port.executor` on a verified program.
 
 It goes from operation to operation (`interp.bytecode.vm.threaded_code`) until one of them has put a
-request into the state and gives nothing to go on with.
+request into the state and gives nothing to continue with.
 
 A fault that ON_ERROR_PROCEED takes is noted in ``$ERR.NUMBER`` by a request to write: the number of
-its message, or 1 where it has none. Then the routine goes on behind the statement, as it does
+its message, or 1 where it has none. Then the routine continues behind the statement, as it does
 behind the one that RESUME comes back to.
 """
 
@@ -174,7 +174,7 @@ class Machine:
         return Slice(at, slices) if slices else None
 
     def enter(self, code: CodeHandle) -> None:
-        """Push an action, which runs before the program goes on.
+        """Push an action, which runs before the program continues.
 
         It finds no variables where the routine that handed it over has ended.
         """
@@ -234,7 +234,7 @@ class Machine:
     # ----------------------------------------------------------------------- skipping
 
     def standing(self) -> object | None:
-        """All that it goes on from; see `interp.port.executor.Recurrent`."""
+        """All that it continues from; see `interp.port.executor.Recurrent`."""
         now, state, counter, random = self._open, self._state, self._services.counter, self._random
         counted = counter.standing
         is_known = state.site is not None and now.request is not None and not self._entered
@@ -380,7 +380,7 @@ class Machine:
         _, state.code, state.fp, state.base, state.statement, state.serial = call
 
     def _leave_frame(self) -> None:
-        """Leave a frame that is not to go on, and forget what it had interrupted."""
+        """Leave a frame that is not to continue, and forget what it had interrupted."""
         if self._is_in_action():
             self._forget_entered()
         self._pop_frame()
@@ -391,7 +391,7 @@ class Machine:
         return self._entered.pop()
 
     def _leave_action(self) -> None:
-        """An action has ended: what it had interrupted goes on, or is asked again."""
+        """An action has ended: what it had interrupted continues, or is asked again."""
         self._state.request = End(self._services.at())
         self._pop_frame()
         entered = self._forget_entered()

@@ -1,4 +1,4 @@
-"""Names of variables and their parts: for the trace, and for VARSTATE."""
+"""Names of variables and their parts, for the trace and for VARSTATE."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Services of the machine for instructions: counting, requests, events."""
+"""What instructions need from the machine: statement counting, requests, events."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ _NOWHERE = At("", 0, 0)
 class Services:
     """Makes the operations that reach beyond the cells, and knows where the program is.
 
-    ``entered`` is how many of the open calls were none but interruptions. The machine puts in
-    what ends an action and what ends the program.
+    ``entered`` counts the open calls that are entered actions. The machine sets
+    ``leave_action`` and ``finish``, which end an action and the program.
     """
 
     def __init__(
@@ -250,7 +250,7 @@ class Services:
         result: Value | None,
         after: Operation,
     ) -> Operation | None:
-        """Go through what is to be stored, and put the result away behind it."""
+        """Make the requests in ``stores`` one by one, then store the result."""
         request = next(stores, None)
         if request is None:
             entry.put(block, result)
@@ -309,7 +309,7 @@ class Services:
         return operation
 
     def _tell_changed(self, change: Change) -> None:
-        """What was written last is an argument that a function has changed."""
+        """Trace that a function has changed an argument."""
         if self._assignments is None:
             return
         given, through = change.changed.given, change.changed.through

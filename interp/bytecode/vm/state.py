@@ -11,9 +11,9 @@ from interp.port.requests import Request
 
 #: An instruction made ready to run. It gives the next one, or ``None`` where the machine stops.
 Operation = Callable[[], Optional["Operation"]]
-#: Takes the reply to a request and gives the operation to go on with.
+#: Takes the reply to a request and gives the operation to continue with.
 Completion = Callable[[Any], Operation | None]
-#: The frame to return to: the operation to go on with there, then ``code``, ``fp``, ``base``,
+#: The frame to return to: the operation to continue with there, then ``code``, ``fp``, ``base``,
 #: ``statement`` and ``serial`` of the state. A tuple, as calls are frequent and a tuple is made in
 #: a third of the time of any object.
 Call = tuple[Operation, int, int, int, int, int]
@@ -32,8 +32,8 @@ class State:
     ``last`` the cell that was written last through a reference.
 
     When the machine stops, ``request`` is why, and ``completion`` takes the reply. ``reader`` is
-    there while a condition is evaluated, which does not stop. ``site`` is what the program goes on
-    with behind the request, where nothing else is to be remembered.
+    there while a condition is evaluated, which does not stop. ``site`` is where the program
+    continues with behind the request, where nothing else is to be remembered.
     """
 
     __slots__ = (

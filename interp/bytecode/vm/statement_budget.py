@@ -93,7 +93,7 @@ class Counter:
 
     @property
     def standing(self) -> tuple[int, ...] | None:
-        """What it goes on from, where neither the budget nor ON_ERROR_PROCEED is near."""
+        """What it continues from, where neither the budget nor ON_ERROR_PROCEED is near."""
         if self._guard is not Guard.OFF or self.spare <= 0:
             return None
         due = self._due - self._begun

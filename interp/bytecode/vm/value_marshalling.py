@@ -1,4 +1,4 @@
-"""Values on their way between cells and the world: inputs and replies."""
+"""Conversion between cells and the values of requests: inputs and replies."""
 
 from __future__ import annotations
 
