@@ -26,7 +26,7 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from interp.standins.completion import StandIn, complete
 from interp.standins.missing_returns import with_returns
-from interp.standins.unreadable_lines import readable
+from interp.standins.unreadable_lines import Readable, readable
 from interp.standins.uses import FOLDER
 from interp.values.faults import BudgetExhausted, LinkError
 from support.gc_pause import gc_paused
@@ -262,26 +262,17 @@ def load(
     with the first thing that is wrong; where ``unread`` is given, it receives why other files
     cannot be read, which then are left out.
     """
-    by_path = {source.path: source for source in sources}
-    files = []
-    damaged: set[str] = set()
-    for path, source in list(by_path.items()):
-        try:
-            files.append(File(path, _read(source)))
-        except LinkError as error:
-            found = readable(source) if stands_in else None
-            if (unread is None or path == main) and found is None:
-                raise
-            if unread is not None:
-                unread += [str(error)] if found is None else found.reasons
-            if found is not None:
-                damaged.add(path)
-                by_path[path] = found.source
-                files.append(File(path, found.syntax))
+    by_path, files, wrong = _files(sources, stands_in=stands_in)
+    for path, (error, found) in wrong.items():
+        if found is None and (unread is None or path == main):
+            raise error
+        if unread is not None:
+            unread += [str(error)] if found is None else found.reasons
+    damaged = frozenset(path for path, (_, found) in wrong.items() if found is not None)
     for project in link(files, system).projects:
         if any(module.path == main for module in project.modules):
             whole = _checked(project, by_path, main, strict=strict, stands_in=stands_in)
-            return replace(whole, damaged=frozenset(damaged))
+            return replace(whole, damaged=damaged)
     raise LinkError(f"{main} is not among the files")
 
 
@@ -293,17 +284,7 @@ def load_all(
     It is loaded as without ``strict`` in `load`, each project once. A file that cannot be read is
     listed with the reason, after the programs; without ``stands_in`` it is left out of its project.
     """
-    by_path = {source.path: source for source in sources}
-    files, unread = [], []
-    for path, source in list(by_path.items()):
-        try:
-            files.append(File(path, _read(source)))
-        except LinkError as error:
-            unread.append((path, str(error)))
-            found = readable(source) if stands_in else None
-            if found is not None:
-                by_path[path] = found.source
-                files.append(File(path, found.syntax))
+    by_path, files, wrong = _files(sources, stands_in=stands_in)
     programs: list[CheckedProgram] = []
     for project in link(files, system).projects:
         first = project.modules[0].path
@@ -313,7 +294,26 @@ def load_all(
             for unit in whole.units.values()
             if unit.module.path in by_path and whole.routines_of(unit)
         ]
-    return tuple(programs), tuple(unread)
+    return tuple(programs), tuple((path, str(error)) for path, (error, _) in wrong.items())
+
+
+def _files(
+    sources: Iterable[Source], *, stands_in: bool
+) -> tuple[dict[str, Source], list[File], dict[str, tuple[LinkError, Readable | None]]]:
+    """The texts by path, the files of them, and the errors with what can be read all the same."""
+    by_path = {source.path: source for source in sources}
+    files: list[File] = []
+    wrong: dict[str, tuple[LinkError, Readable | None]] = {}
+    for path, source in by_path.items():
+        try:
+            files.append(File(path, _read(source)))
+        except LinkError as error:
+            found = readable(source) if stands_in else None
+            wrong[path] = error, found
+            if found is not None:
+                by_path[path] = found.source
+                files.append(File(path, found.syntax))
+    return by_path, files, wrong
 
 
 def _checked(
