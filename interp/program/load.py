@@ -24,7 +24,7 @@ from grammar.semantics.types import Array, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
-from interp.standins.completion import StandIn, complete
+from interp.standins.completion import LIST_OF_ONE, StandIn, complete
 from interp.standins.missing_returns import with_returns
 from interp.standins.unreadable_lines import Readable, readable
 from interp.standins.uses import FOLDER
@@ -32,6 +32,7 @@ from interp.values.faults import BudgetExhausted, LinkError
 from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 
+_TYPES = frozenset({Kind.STRUCTURE, Kind.ENUMERATION, Kind.PLAIN_TYPE})
 #: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
 #: an interpreter may use Python's own stack for them.
 MOST_BLOCKS = 50
@@ -162,13 +163,19 @@ class CheckedProgram:
         """
         if not self.stand_ins:
             return ()
-        places: dict[str, tuple[Unit, ast.Name]] = {}
+        places: dict[tuple[str, bool, bool], tuple[Unit, ast.Name]] = {}
         units = [one for one in self.reached(*routines) if not _declares_stand_ins(one)]
         for unit in sorted(units, key=lambda one: one.module.folder == FOLDER):
-            for name in sorted(unit.checked.resolution.answers, key=lambda one: one.span):
-                places.setdefault(name.key, (unit, name))
+            answers = unit.checked.resolution.answers
+            for name in sorted(answers, key=lambda one: one.span):
+                answer = answers[name]
+                is_type = isinstance(answer, Found) and answer.symbol.kind in _TYPES
+                is_declared = isinstance(answer, Found) and _is_own(answer.module)
+                places.setdefault((name.key, is_type, is_declared), (unit, name))
         used = [
-            (one, *places[key]) for one in self.stand_ins if (key := one.name.upper()) in places
+            (one, *places[key])
+            for one in self.stand_ins
+            if (key := (one.name.upper(), one.kind == "type", one.origin == "unset")) in places
         ]
         return tuple(
             one
@@ -227,6 +234,13 @@ class CheckedProgram:
             seen.add(symbol)
             found = answer
         return found
+
+
+def _is_own(module: Module | None) -> bool:
+    """Whether it is a file of the project itself, and no stand-in."""
+    if module is None or module.folder == FOLDER:
+        return False
+    return module.table is None or not module.table.key.startswith(LIST_OF_ONE)
 
 
 def _declares_stand_ins(unit: Unit) -> bool:

@@ -34,6 +34,8 @@ from interp.standins.uses import FOLDER, DataUse, Uses
 from support.lazy_dataclass import dataclass
 
 _LIST: Final = "STANDIN"
+#: Begins the name of a data list that stands in for that of one program.
+LIST_OF_ONE: Final = "LIST_"
 _ROUNDS: Final = 4
 #: At the end of a name: the value that variables of its type begin with, LDEFAULT for instance.
 _DEFAULT: Final = "DEFAULT"
@@ -317,7 +319,7 @@ class _Making:
             )
         for path, declared in lines.items():
             name = re.sub(r"\W", "_", PurePosixPath(path).stem, flags=re.ASCII)
-            self._texts[path] = "\n".join([f"DEFDAT LIST_{name}", *declared, "ENDDAT", ""])
+            self._texts[path] = "\n".join([f"DEFDAT {LIST_OF_ONE}{name}", *declared, "ENDDAT", ""])
 
     # ------------------------------------------------------------------------- the library
 

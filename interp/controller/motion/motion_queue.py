@@ -149,8 +149,11 @@ class MotionQueue:
 
     # ---------------------------------------------------------------------------- planning
 
-    def plan(self, task: Task, request: Move | MoveSpline) -> None:
-        """Plan a motion with the triggers before it. Raises `Fault`; then nothing is planned."""
+    def plan(self, task: Task, request: Move | MoveSpline, *, is_replaced: bool = False) -> None:
+        """Plan a motion with the triggers before it. Raises `Fault`; then nothing is planned.
+
+        One that ``is_replaced`` leads to the same point as a PTP, in any Status.
+        """
         triggers, task.triggers = task.triggers, []
         if isinstance(request, MoveSpline):
             if task.levels:
@@ -164,7 +167,7 @@ class MotionQueue:
             # With stand-ins PATH counts along the way of the tool, also of a PTP.
             if has_path and request.kind in WITHOUT_PATH and not self._state.profile.is_tolerant:
                 raise own_fault("trigger_path")
-            planned = self._builder.build(request, triggers)
+            planned = self._builder.build(request, triggers, is_replaced=is_replaced)
         self._load(task, planned)
 
     def plan_return(self, task: Task, at: At, axes: Sequence[float]) -> None:

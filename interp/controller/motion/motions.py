@@ -42,6 +42,8 @@ _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 _KINDS: Final = {kind.removesuffix("_REL") for kind in (*PLAIN_MOTIONS, *SPLINE_MOTIONS)}
 #: How the arm is brought to the end of a line that a program begins with.
 _BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
+#: And to the end of any motion that cannot be planned.
+_REPLACED: Final = {**_BROUGHT, "CIRC": "PTP", "SCIRC": "SPTP"}
 
 
 @dataclass(slots=True, eq=False)
@@ -121,8 +123,13 @@ class MotionBuilder:
         """The motion built last was not planned."""
         self._number -= 1
 
-    def build(self, request: Move, triggers: Sequence[SetTrigger]) -> PlannedMotion:
-        """A single motion with the triggers before it. Raises `Fault`."""
+    def build(
+        self, request: Move, triggers: Sequence[SetTrigger], *, is_replaced: bool = False
+    ) -> PlannedMotion:
+        """A single motion with the triggers before it. Raises `Fault`.
+
+        One that ``is_replaced`` is a PTP to the same point, in any Status.
+        """
         kind, _, suffix = request.kind.partition("_")
         if kind not in _KINDS or kind == "SPL":
             raise own_fault("motion_kind")
@@ -135,14 +142,20 @@ class MotionBuilder:
         snapshot = self._variables.snapshot(request.values)
         self._check_frames(snapshot, kind, target)
         settings = self._settings(snapshot)
+        auxiliary = None if request.auxiliary is None else target_of(request.auxiliary)
+        angle = request.angle
+        if is_replaced:
+            kind, criteria, auxiliary, angle = _REPLACED.get(kind, kind), (), None, None
+            settings = replace(settings, target_status="#BEST")
+            target = {name: value for name, value in target.items() if name not in ("S", "T")}
         motion = Motion(
             self._next(),
             request.at,
             kind,
             settings,
             target,
-            None if request.auxiliary is None else target_of(request.auxiliary),
-            request.angle,
+            auxiliary,
+            angle,
             bool(suffix),
             None if request.reference is None else f"#{request.reference.lstrip('#')}",
             criteria,

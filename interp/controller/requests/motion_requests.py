@@ -6,7 +6,7 @@ from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.messages import own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
-from interp.port.requests import At, Move, MoveEmily, MoveSpline
+from interp.port.requests import At, Move, MoveEmily, MoveSpline, SetTrigger
 from interp.values.faults import Fault
 
 
@@ -25,11 +25,12 @@ class MotionRequests:
         """
         if task.name == "submit":
             raise own_fault("submit_motion")
-        is_first = self._queue.is_unused
+        is_first, triggers = self._queue.is_unused, task.triggers
         try:
             self._queue.plan(task, request)
         except Fault as error:
-            return self._skip(task, request.at, error)
+            if not self._replaces(task, request, triggers, error):
+                return self._skip(task, request.at, error)
         if is_first and self._state.profile.runs_coincidence:
             return self._coincide(task, request)
         advance = self._state.variables.read(("$ADVANCE",))
@@ -38,6 +39,25 @@ class MotionRequests:
             self._queue.stop_advance()
             self._queue.release()
         return Blocked(request, lambda: self._queue.own_pending(task) <= advance, lambda: None)
+
+    def _replaces(
+        self, task: Task, request: Move | MoveSpline, triggers: list[SetTrigger], error: Fault
+    ) -> bool:
+        """Whether a PTP leads to the end of a motion that cannot be planned.
+
+        So the motions behind it begin where they should, though the arm is not that of the program.
+        """
+        profile = self._state.profile
+        if not (profile.is_tolerant and profile.brings_arm) or isinstance(request, MoveSpline):
+            return False
+        task.triggers = triggers
+        try:
+            self._queue.plan(task, request, is_replaced=True)
+        except Fault:
+            return False
+        instead = Fault(error.slug, f"{error}, PTP instead", number=error.number, rules=error.rules)
+        self._state.skip(task.name, request.at, instead)
+        return True
 
     def _coincide(self, task: Task, request: Move | MoveSpline) -> Blocked:
         """The block coincidence run: the program waits until it has ended [ADV-14]."""

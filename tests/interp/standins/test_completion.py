@@ -82,6 +82,20 @@ def test_inline_forms(executor: str) -> None:
     assert (("end", ""), ["PTP", "PTP", "LIN"]) == (_outcome(run), moved)
 
 
+def test_bas_takes_data_of_older_releases() -> None:
+    """What such data leaves out stays as it is."""
+    data = "DECL PDAT P={VEL 100.0}\nDECL LDAT L={ACC 50.0}\nDECL FDAT F={TOOL_NO 0}\n"
+    files = {
+        "main.src": f"DEF main ( )\n{HOME}$APO.CDIS=7.0\nPDAT_ACT=P\nLDAT_ACT=L\nFDAT_ACT=F\n"
+        "BAS (#PTP_DAT )\nBAS (#CP_DAT )\nBAS (#FRAMES )\nD=$APO.CDIS\nEND\n",
+        "main.dat": f"DEFDAT main\n{data}REAL D=0.0\nENDDAT\n",
+    }
+    setup = RunSetup(is_full=True, is_tolerant=True, skips_failures=True)
+    run = run_program(_program(files), setup)
+    assert {} == run.controller.skipped
+    assert 7.0 in [one.fields.get("value") for one in run.events if one.kind == "assign"]
+
+
 def test_limits_of_bas() -> None:
     """BAS replaces a percentage above 100 by the default and keeps $VEL_MA.CP [MOT-03, MOT-04]."""
     body = "BAS (#INITMOV,0 )\nBAS (#VEL_PTP,140 )\nBAS (#ACC_PTP,101 )\nBAS (#VEL_CP,9 )\n"
@@ -314,6 +328,24 @@ def test_failing_statements_are_skipped(failing: str, executor: str) -> None:
     ]
 
 
+@pytest.mark.parametrize("motion", ["LIN", "CIRC {X 0.0,Y 9.0,Z 600.0},", "SLIN"])
+def test_a_point_behind_a_path_that_cannot_be_followed_is_reached(motion: str) -> None:
+    """A PTP leads there, with the triggers of the path; what cannot be reached stays skipped."""
+    behind = "{X -400.0,Y 3.0,Z 600.0,A 0.0,B 0.0,C 180.0}"
+    body = f"OPT ( )\n{HOME}$BASE=$WORLD\n$TOOL=$NULLFRAME\n"
+    body += "PTP {X 400.0,Y 0.0,Z 600.0,A 0.0,B 0.0,C 180.0}\n"
+    body += "TRIGGER WHEN DISTANCE=1 DELAY=0 DO $OUT[3]=TRUE\n"
+    body += f"{motion} {behind}\nLIN {{X 9000.0}}\n"
+    setup = RunSetup(is_tolerant=True, skips_failures=True)
+    run = run_program(_main(body), setup)
+    texts = [str(one) for one in run.controller.skipped.values()]
+    assert [True, False] == [text.endswith(", PTP instead") for text in texts]
+    assert 3 == len(_planned(run))
+    assert [3] == [one.fields["number"] for one in run.events if one.kind == "out"]
+    strict = run_program(_main(body), RunSetup(is_tolerant=True))
+    assert 2 == len(_planned(strict))
+
+
 def test_nothing_is_skipped_in_a_complete_project() -> None:
     """What fails there is the program's own fault, which ends it."""
     program = _main("N=N+1\n", declared="INT N\n")
@@ -359,6 +391,18 @@ def test_used_stand_ins() -> None:
     }
     program = _program(files)
     assert ["OPT_A"] == [one.name for one in program.used_stand_ins(program.start())]
+
+
+def test_what_only_has_the_name_of_a_stand_in_is_not_listed() -> None:
+    """A point of its own data list, or a type, though other programs lack one of that name."""
+    files = {
+        "main.src": f"DEF main ( )\nDECL POS P\n{HOME}PTP XP1\nOPT ( )\nEND\n",
+        "main.dat": "DEFDAT main\nDECL E6POS XP1={X 400.0,Y 0.0,Z 600.0}\nENDDAT\n",
+        "other.src": "DEF other ( )\nINT I\nPTP XP1\nPTP POS[I]\nEND\n",
+    }
+    program = _program(files)
+    assert {"XP1", "POS", "OPT"} == {one.name for one in program.stand_ins}
+    assert ["OPT"] == [one.name for one in program.used_stand_ins(program.start())]
 
 
 def test_files_reached_are_in_the_order_of_the_project() -> None:
