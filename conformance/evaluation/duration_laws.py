@@ -19,6 +19,7 @@ from conformance.evaluation.motions import (
     ROUNDING,
     Array,
     EndedMotion,
+    follows,
 )
 from conformance.evaluation.path_geometry import change_rates
 from conformance.evaluation.run_laws import Violation
@@ -153,7 +154,7 @@ def _rows(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
     """The motions from rest to rest, blended where there are several."""
     row: list[EndedMotion] = []
     for one in motions:
-        row = [one] if one.begins else [*row, one]
+        row = [*row, one] if row and not one.begins and follows(row[-1], one) else [one]
         if one.stops and row[0].begins:
             yield tuple(row)
 

@@ -73,9 +73,10 @@ def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
     texts = (*case.io, *(source.text for source in case.sources))
     slow = any("OV_PRO" in text.upper() for text in texts)
     motions = tuple(ended(seen))
-    broken = [deviations(seen), violations(seen), misdeeds(seen, motions), misplaced(motions)]
+    free = [one for one in motions if not one.is_held]
+    broken = [deviations(seen), violations(seen), misdeeds(seen, motions), misplaced(free)]
     if not slow:
-        broken += [delays(motions), mistimed(seen, motions)]
+        broken += [delays(free), mistimed(seen, free)]
     for one in chain(*broken):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail

@@ -45,8 +45,8 @@ def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
     if path is not None and machine is not None:
         yield from _displaced(path, machine)
     for one in motions:
-        laws = (_arrives, _stands, _has_posture, _keeps_speed, _passes_auxiliary, _passes_points)
-        for law in laws:
+        laws = (_arrives, _has_posture, _passes_auxiliary, _passes_points)
+        for law in laws if one.is_held else (*laws, _stands, _keeps_speed):
             yield from law(one)
 
 

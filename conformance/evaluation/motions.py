@@ -6,7 +6,6 @@ ours says where its own set-points lie.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,7 +37,7 @@ class EndedMotion:
     """A motion that came to its end, times in µs; where it is blended, the blend is left out.
 
     ``begins`` and ``stops``: it starts from rest, and comes to it. ``planned`` is the time at
-    which its way was known.
+    which its way was known. ``is_held``: a BRAKE, RESUME or stop lies between that and its end.
     """
 
     motion: Motion
@@ -48,6 +47,7 @@ class EndedMotion:
     end: int
     begins: bool
     stops: bool
+    is_held: bool
     path: PathRecord
     machine: MachineData
 
@@ -108,16 +108,16 @@ class EndedMotion:
 
 
 def ended(seen: Observation) -> Iterator[EndedMotion]:
-    """The motions that came to their end, up to the first that something has stopped.
+    """The motions that came to their end with no other on in between.
 
-    None where path or machine data are unknown.
+    A CIRC behind a RESUME is left out, as it is no circle [INT-14]. None where path or machine
+    data are unknown.
     """
     path, machine = seen.path, seen.machine
     if path is None or machine is None:
         return
-    stopped = min(
-        (one.time or 0 for one in seen.of_kind("brake", "resume", "halt")), default=math.inf
-    )
+    stops = [(one.time or 0, one.kind) for one in seen.of_kind("brake", "resume", "halt")]
+    starts = [one.time or 0 for one in seen.of_kind("motion_start")]
     known = path.times[-1] + _cycle(path.times)
     found: dict[tuple[str, object], Event] = {}
     kinds = ("motion_planned", "motion_start", "motion_end", "blend_start", "blend_end")
@@ -126,15 +126,25 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
     for begun, motion in path.motions:
         event, end = (found.get((kind, motion.number)) for kind in ("motion_start", "motion_end"))
         entered, left = (found.get((kind, motion.number)) for kind in ("blend_end", "blend_start"))
-        if event is None or end is None or end.time is None or end.time > stopped:
+        if event is None or end is None or end.time is None:
             continue
         planned = found.get(("motion_planned", motion.number), event).time or 0
+        is_held = any(planned <= time <= end.time for time, _ in stops)
+        _, last_stop = max((each for each in stops if each[0] <= planned), default=(0, ""))
+        if last_stop == "resume" and motion.kind.startswith("CIRC"):
+            continue
         start = begun if entered is None else entered.time
         last = end.time if left is None else left.time
-        if start is not None and last is not None and start <= last <= known:
-            yield EndedMotion(
-                motion, event, planned, start, last, entered is None, left is None, path, machine
-            )
+        if start is None or last is None or not start <= last <= known:
+            continue
+        if not any(start < time < last for time in starts):
+            ends = entered is None, left is None
+            yield EndedMotion(motion, event, planned, start, last, *ends, is_held, path, machine)
+
+
+def follows(one: EndedMotion, other: EndedMotion) -> bool:
+    """Whether the second motion is the next that was planned behind the first."""
+    return other.motion.number == one.motion.number + 1
 
 
 def _cycle(times: npt.NDArray[np.int64]) -> int:

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from conformance.evaluation.motions import Array, EndedMotion
+from conformance.evaluation.motions import Array, EndedMotion, follows
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import between, drawn
 from conformance.evaluation.run_laws import Violation
@@ -65,7 +65,7 @@ def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Blends that take more of a motion than their criteria say, or less of both [BLD-07]."""
     law = "a blend takes of both motions what its criteria say"
     for (one, way), (other, further) in pairwise(_ways(motions)):
-        if one.stops or other.begins or not one.motion.criteria:
+        if one.stops or other.begins or not one.motion.criteria or not follows(one, other):
             continue
         is_path, leads_on = (not each.motion.kind.endswith("PTP") for each in (one, other))
         main, *second = one.motion.criteria
@@ -114,7 +114,9 @@ def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | 
     axes: Array | None = None
     point: Array | None = None
     placement = None
-    for one in motions:
+    for before, one in zip((None, *motions), motions, strict=False):
+        if before is not None and not follows(before, one):
+            axes = point = None
         if one.begins or placement != one.motion.settings.placement:
             axes = one.ends[0] if one.begins else axes
             point = None if axes is None else _tool(one, axes)[0]
@@ -187,6 +189,8 @@ def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
 
     Nothing where not all of their motions came to their end, or some are of a spline block.
     """
+    stopped = min((one.time or 0 for one in seen.of_kind("brake", "resume", "halt")), default=None)
+    motions = [one for one in motions if stopped is None or one.end <= stopped]
     moving = [motion for _, motion in seen.path.motions] if seen.path else []
     if any(part.places for motion in moving for part in motion.parts):
         return

@@ -257,6 +257,42 @@ def test_a_motion_that_ends_the_run_is_judged_too() -> None:
     assert ("MOT-20", 15) in broken(with_motion(15, target={"A1": 1.0}))
 
 
+_HELD: Final = """DEF a()
+  GLOBAL INTERRUPT DECL 5 WHEN $FLAG[1]==TRUE DO STAND()
+  INTERRUPT ON 5
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  $VEL.CP = 0.1
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  TRIGGER WHEN DISTANCE=0 DELAY=300 DO $FLAG[1]=TRUE
+  LIN {X 445, Y 100, Z 890}
+  WAIT SEC 0
+  LIN {X 445, Y 150, Z 890}
+END
+DEF STAND()
+  BRAKE
+  WAIT SEC 0.1
+END
+"""
+
+
+@pytest.mark.parametrize("line", [9, 11])
+def test_what_a_brake_holds_and_what_comes_behind_it_is_judged(line: int) -> None:
+    """Both end at their targets, though one takes longer than it would."""
+    run = seen(_HELD)
+    assert run.path is not None
+    assert [9] == [one.event.line for one in ended(run) if one.is_held]
+    free = tuple(one for one in ended(run) if not one.is_held)
+    assert [] == [*misdeeds(run, tuple(ended(run))), *misplaced(free), *delays(free)]
+    motions = [
+        (time, replace(motion, target={"Y": 101.0}) if motion.at.line == line else motion)
+        for time, motion in run.path.motions
+    ]
+    changed = replace(run, path=replace(run.path, motions=tuple(motions)))
+    found = misdeeds(changed, tuple(ended(changed)))
+    assert [("MOT-20", line)] == [(one.rule, one.event.line) for one in found if one.event]
+
+
 def test_seconds_of_a_length() -> None:
     """With all of speed and acceleration, with acceleration only, with neither."""
     assert 2 * 1.5 + 1.0 == pytest.approx(seconds_of(5.0, 2.0, 2.0, 4.0))
