@@ -22,6 +22,8 @@ _WORD = re.compile(r"[A-Z]+|[^A-Z]+", re.IGNORECASE)
 _NUMBER = re.compile(r"[\d_]+")
 # Both are there in every library.
 _PAIR = {"GET", "SET"}
+# A letter and the digit that looks like it.
+_ALIKE = ({"O", "0"}, {"I", "1"}, {"L", "1"})
 # A letter behind a shorter word may number it: POSX, POSY.
 _SHORTEST_TO_END = 6
 # What inline forms put before the name of a point to name its data: XP1, FP1, PPDAT1, LCPDAT1.
@@ -123,14 +125,14 @@ def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> boo
             and {letter} != set(_word(longer, start))
         ):
             return True  # a letter doubled, or one of two lost
-        if longer is wrong and letter == "S" and start == len(shorter):
+        if longer is wrong and letter == "S" and start == len(shorter) and name[0] != "$":
             return False  # one of several, and all of them
         if start == 0:
             return has_slipped or (longer is right and _loses_its_first(name, series))
         spelt = misspelt if longer is wrong else name
         return not _numbers(spelt, start, series, _SHORTEST_TO_END)
     if wrong[start + 1 :] == right[start + 1 :]:
-        if series is Series.NONE:
+        if series is Series.NONE or {wrong[start], right[start]} in _ALIKE:
             return True
         if not has_slipped and _is_prefix(misspelt, name, start):
             return False

@@ -7,6 +7,7 @@ those of all files are graded together (`grammar.check.names.unresolved_names`).
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
@@ -72,7 +73,7 @@ def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]
     if not uses or context.module.words:  # what cannot be read may use it
         return {}
     unused = _unused(context, _own_tables(context))
-    typos = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
+    typos = Typos((symbol.name for symbol in unused.values()), 3, series=Series.NONE)
     found = {}
     for key, some in uses.items():
         near = typos.meant(key)
@@ -312,6 +313,13 @@ _WORDS_OF_KRL = {
 }
 
 
+#: What inline forms call, and with which arguments: the name alone is too short to tell.
+_BAS = Typos(("BAS",), 2, series=Series.NONE)
+_FOR_BAS = re.compile(
+    r"[ \t]*\([ \t]*#(?:INITMOV|[A-Z]+_PARAMS|(?:VEL|ACC)_[A-Z]+|BASE|TOOL)\b", re.IGNORECASE
+)
+
+
 def _may_be_elsewhere(use: Use) -> bool:
     """Whether a name comes from a file that is not at hand; what several declare does not."""
     if isinstance(use.answer, MaybeElsewhere):
@@ -340,6 +348,9 @@ def _near(
         return (bare,)
     if name.startswith("$") and (meant := _system_typos().meant(name)):
         return meant
+    behind = use.name.span[1]
+    if space is Space.ROUTINE and _BAS.meant(name) and _FOR_BAS.match(context.source.text, behind):
+        return ("BAS",)
     if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
         return meant
     small, everywhere = small_prefix(name), context.project.typos[space]

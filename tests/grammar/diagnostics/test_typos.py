@@ -23,6 +23,9 @@ WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
         ("XApp2Plac", "XApp2Place"),
         ("T$IMER_STOP", "$TIMER_STOP"),
         ("stScrewLea9f0", "stScrewLeaf90"),
+        ("gbTime0ut", "gbTimeOut"),
+        ("Cil_lndiv_1", "Cil_1ndiv_1"),
+        ("STATION_I", "STATION_1"),
     ],
 )
 def test_slips(wrong: str, right: str) -> None:
@@ -65,7 +68,9 @@ def test_small_letters_are_a_prefix_where_other_names_have_it(wrong: str) -> Non
     assert () == known.meant(wrong)
 
 
-@pytest.mark.parametrize("wrong", ["$POS_AC", "$POS_ACX", "$POSS_ACT", "?POS_ACT", "gPOS_ACT"])
+@pytest.mark.parametrize(
+    "wrong", ["$POS_AC", "$POS_ACX", "$POS_ACTS", "$POSS_ACT", "?POS_ACT", "gPOS_ACT"]
+)
 def test_only_digits_number_what_is_wholly_known(wrong: str) -> None:
     """Where all of a series would be known, its letters may be slips and its digits not."""
     known = Typos(["$POS_ACT", "$LOAD_A2"], series=Series.DIGITS)

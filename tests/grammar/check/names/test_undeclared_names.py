@@ -115,6 +115,33 @@ END"""
     agrees({"cell.src": cell}, is_complete=None)
 
 
+@pytest.mark.parametrize(
+    ("call", "is_slip"),
+    [
+        ("BASS (#INITMOV, 0)", True),
+        ("BSA(#PTP_PARAMS, 100)", True),
+        ("BASS(#OPEN)", False),
+        ("GAS(3)", False),
+    ],
+)
+def test_what_inline_forms_call_is_known_by_its_arguments(
+    finds: Callable[..., list[Diagnostic]], call: str, is_slip: bool
+) -> None:
+    """BAS is too short a name to be known by its letters."""
+    found = finds({"a.src": f"DEF A()\n{call}\nEND\n"}, is_complete=None)
+    assert is_slip == any(one.code == "KRL102" for one in found)
+
+
+def test_a_slip_in_a_declaration_that_leaves_a_global_name(agrees: Agrees) -> None:
+    """A local name that nothing uses is near one of another file that the routine uses."""
+    config = "DEFDAT CELL PUBLIC\nGLOBAL INT PLACE=1\nENDDAT"
+    cell = """DEF CELL()
+  INT PLAEC, SPARE ;> KRL117? KRL117-
+  PLACE = 2
+END"""
+    agrees({"cell.dat": config, "cell.src": cell}, with_data=True)
+
+
 def test_what_is_used_again_and_again_is_no_slip(agrees: Agrees) -> None:
     """A name that is written more than twice is called so; one that is near it is the slip."""
     cell = """DEF CELL()
