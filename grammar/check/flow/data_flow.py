@@ -18,6 +18,8 @@ from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.did_you_mean import one_of
+from grammar.diagnostics.typos import Typos
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import BOOL, REAL
 from grammar.syntax import ast
@@ -263,22 +265,40 @@ class _DataFlow:
         return {access.name.key for access in accesses(self._context, placed.statement)}
 
     def unused(self) -> Iterator[Diagnostic]:
-        """Variables and parameters that nothing reads; notes."""
+        """Variables and parameters that nothing reads; notes.
+
+        What is one slip away from a name of another file that the routine uses is a warning.
+        """
         if not self.variables and not self.parameters:
             return
         used: set[str] = set()
         written: set[str] = set()
+        table = self._routine.table.table.spaces[Space.VALUE]
+        others: dict[str, str] = {}
         for placed in self._routine.statements:
             for access in _all(self._context, placed):
-                (written if access.use is Use.WRITTEN else used).add(access.name.key)
-        table = self._routine.table.table.spaces[Space.VALUE]
+                key = access.name.key
+                (written if access.use is Use.WRITTEN else used).add(key)
+                if key not in table and self._context.found(access.name):
+                    others[key] = access.name.text
         for key in sorted(self.variables | self.parameters):
             symbol = table[key]
             if key in used or (symbol.kind is Kind.PARAMETER and key in written):
                 continue
             what = "is assigned to and never read" if key in written else "is never used"
             message = f"{symbol.name} {what}"
-            yield self._context.finding("unused", symbol.span, message)
+            near = Typos(others.values()).meant(symbol.name) if key not in written else ()
+            if len(near) == 1 and symbol.kind is Kind.VARIABLE:
+                yield self._context.finding(
+                    "unused",
+                    symbol.span,
+                    message,
+                    reason=f"{near[0]} is used here and declared elsewhere",
+                    severity="warning",
+                    fix=one_of(near),
+                )
+            else:
+                yield self._context.finding("unused", symbol.span, message)
 
 
 def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
