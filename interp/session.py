@@ -90,8 +90,8 @@ class RunSetup:
     assignment traced; without ``is_traced`` executors report nothing that the run does not need,
     which leaves calls and branches out of the trace, without ``is_submit_traced`` those of the
     submit program. ``motion`` is how motions are planned: as they become known, or in batches.
-    ``until`` is the most virtual time in µs, ``patience`` how long the
-    arm may stand before it counts as over; ``limits`` are the most statements and calls.
+    ``until`` is the most virtual time in µs, ``patience`` how long the arm may stand outside of a
+    WAIT SEC before it counts as over; ``limits`` are the most statements and calls.
     ``make_robot`` makes another robot than ``robot`` names, of the machine and the cycle in µs.
     ``scene`` is what stands around the arm, ``robot_file`` an arm in place of that of the project.
     ``is_tolerant``: where another arm stands in for one whose machine data is not understood, or a
@@ -344,14 +344,14 @@ def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]
     now = moved = known = 0
     while True:
         report = _REPORT if moved == now else max(_LONG_REPORT, now - moved)
-        now = min(now + report, moved + setup.patience, setup.until)
+        now = min(now + report, max(moved + setup.patience, now + _REPORT), setup.until)
         outcome = controller.run(now)
         on_time(outcome.time)
         if outcome.ending != "time" or now >= setup.until or outcome.time < now:
             return outcome
         if controller.core.pending() or len(controller.points) > known:
             moved, known = now, len(controller.points)
-        if now - moved >= setup.patience:
+        if now - moved >= setup.patience and not controller.is_pausing:
             return outcome
 
 

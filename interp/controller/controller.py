@@ -47,6 +47,8 @@ if TYPE_CHECKING:
 
 #: Of all waits the longest are reported, each with its first variables.
 _MOST_WAITS, _MOST_NAMES = 5, 4
+#: How long a WAIT SEC has to go on, in µs, for a program to count as one that pauses.
+_PAUSE = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +191,14 @@ class Controller:
             for at, (time, names) in waited[:_MOST_WAITS]
             if time
         ]
+
+    @property
+    def is_pausing(self) -> bool:
+        """Whether the robot's program is in a WAIT SEC that lasts another second at least."""
+        blocked = self._scheduler.tasks[0].blocked
+        if blocked is None or not isinstance(blocked.request, requests.Wait):
+            return False
+        return blocked.wake is not None and blocked.wake - self._state.clock.now >= _PAUSE
 
     def run(self, until: int = HOUR) -> RunOutcome:
         """Run until the program ends, or halts without a later start, or until a time in µs.

@@ -34,6 +34,9 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     yield from _seen(done)
     if not done.controller.points and setup.routine is None:
         yield from _elsewhere(program)
+    if done.outcome.ending == "time" and setup.patience <= done.outcome.time < setup.until:
+        stood = f"{setup.patience / 1e6:g} s"
+        yield f"the arm has stood still for {stood}; --until S goes on for longer"
     for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
         yield f"waited for: {line}"
 

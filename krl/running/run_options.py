@@ -26,6 +26,8 @@ _AUTO = "auto"
 _MOST_LISTED = 3
 #: Virtual seconds that a run lasts at most, without and with automatic inputs.
 _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
+#: With automatic inputs a program only serves whose arm has stood for so many seconds.
+_AUTO_PATIENCE = 20.0
 
 
 class Executor(StrEnum):
@@ -118,7 +120,8 @@ class RunOptions:
             "--until",
             min=0.0,
             metavar="S",
-            help="Stop after S seconds of virtual time; default: 3600, with --io auto 600.",
+            help="Stop after S seconds of virtual time; default: 3600, with --io auto 600, or "
+            "once the arm has stood still for 20.",
         ),
     ] = None
     statements: Annotated[
@@ -191,9 +194,9 @@ def prepared_run(
         file, strict=options.strict, stands_in=not options.strict, routine=options.routine
     )
     submit = submit_of(program) if is_auto and options.submit is None else options.submit
-    seconds = options.max_time
+    seconds, patience = options.max_time, _SECONDS
     if seconds is None:
-        seconds = _AUTO_SECONDS if is_auto else _SECONDS
+        seconds, patience = (_AUTO_SECONDS, _AUTO_PATIENCE) if is_auto else (_SECONDS, _SECONDS)
     profile = Profile.load(options.profile or _agreed_profile(file))
     setup = RunSetup(
         executor=options.executor.value if options.executor is not None else available()[-1],
@@ -206,6 +209,7 @@ def prepared_run(
         is_traced=is_traced,
         motion=options.motion.value,
         until=round(seconds * 1e6),
+        patience=round(patience * 1e6),
         limits=Limits(statements=options.statements, per_slice=profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,

@@ -142,6 +142,18 @@ def test_automatic_inputs(run: Run) -> None:
     )
 
 
+def test_programs_that_only_serve_end(run: Run) -> None:
+    """Once the arm has stood for 20 s, WAIT SEC not counted; --until runs on."""
+    body = "PTP {A1 9,A2 -90,A3 90,A4 0,A5 0,A6 0}\nWAIT SEC 100\n"
+    body += "LOOP\n$OUT[1]=NOT $OUT[1]\nENDLOOP\n"
+    status, out, err = run(body, "--io", "auto")
+    seconds = float(out.removeprefix("main.src: time limit after ").partition(" s at main.src:")[0])
+    assert (1, True) == (status, 100 <= seconds <= 105)
+    assert "the arm has stood still for 20 s; --until S goes on for longer\n" in err
+    _, out, err = run("WAIT FOR $OV_PRO==50\n", "--io", "auto", "--until", "50")
+    assert ("main.src: time limit after 50 s at main.src:2\n", False) == (out, "stood" in err)
+
+
 def test_strict(run: Run) -> None:
     """With --strict an error of the checker is told in one line with status 2, and nothing runs."""
     status, out, err = run("DECL INT I\nI=TRUE\n", "--strict")
