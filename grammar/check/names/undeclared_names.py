@@ -29,7 +29,7 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, Module, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Symbol, Table
-from grammar.semantics.types import SCALARS, Structure
+from grammar.semantics.types import CHAR, SCALARS, Array, Structure
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
@@ -313,6 +313,15 @@ _WORDS_OF_KRL = {
 }
 
 
+def _is_without_dollar(system: System, key: str) -> bool:
+    """Whether a name is that of a variable of the controller but for the dollar sign.
+
+    Programs use no texts of it; HOME is a position that a list not at hand declares.
+    """
+    known = system.variables.get(f"${key}")
+    return known is not None and not (isinstance(known.type, Array) and known.type.element == CHAR)
+
+
 #: What inline forms call, and with which arguments: the name alone is too short to tell.
 _BAS = Typos(("BAS",), 2, series=Series.NONE)
 _FOR_BAS = re.compile(
@@ -341,7 +350,7 @@ def _near(
     name = use.name.text
     if use.name in context.constants:
         return (context.constants[use.name],)
-    if space is Space.VALUE and f"${use.name.key}" in context.system.variables:
+    if space is Space.VALUE and _is_without_dollar(context.system, use.name.key):
         return (f"${name}",)
     bare = name.rstrip("0123456789")
     if name.startswith("$") and bare != name and bare.upper() in context.system.variables:

@@ -132,6 +132,15 @@ def test_what_inline_forms_call_is_known_by_its_arguments(
     assert is_slip == any(one.code == "KRL102" for one in found)
 
 
+@pytest.mark.parametrize(("name", "is_slip"), [("POS_ACT", True), ("HOME", False)])
+def test_a_position_called_home_is_no_folder(
+    finds: Callable[..., list[Diagnostic]], name: str, is_slip: bool
+) -> None:
+    """The dollar sign is missed where a motion could go to what has one."""
+    found = finds({"a.src": f"DEF A()\nPTP {name}\nEND\n"}, is_complete=None)
+    assert is_slip == any(one.severity == "warning" for one in found)
+
+
 def test_a_slip_in_a_declaration_that_leaves_a_global_name(agrees: Agrees) -> None:
     """A local name that nothing uses is near one of another file that the routine uses."""
     config = "DEFDAT CELL PUBLIC\nGLOBAL INT PLACE=1\nENDDAT"
