@@ -5,8 +5,9 @@ its outstretched length covers the points of the project, measured from its shou
 not, its links are longer by one factor, so that they do with any orientation. Nothing else is known
 of the arm; its dynamics are those of the default, and its axis limits are assumed.
 
-Where the bases are lost too, points lie in the arm or behind it. Then the arm stands elsewhere: its
-foot is where it reaches the most of them in one posture, upright or hanging, from any side.
+Points behind a $BASE that a program writes out count in it. Where the bases are lost too, points
+lie in the arm or behind it. Then the arm stands elsewhere: its foot is where it reaches the most of
+them in one posture, upright or hanging, from any side.
 
 A point that no file has gets a place that the arm reaches, by its name: about the same posture, so
 that a straight line leads from each place to each other one.
@@ -17,7 +18,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import product
@@ -45,6 +46,8 @@ _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_
 _WHOLE: Final = re.compile(
     rf"{_POSE.pattern}\s*,\s*A{_NUMBER}\s*,\s*B{_NUMBER}\s*,\s*C{_NUMBER}", re.I
 )
+#: An assignment to $BASE, of a frame as it is written or of anything else.
+_BASE: Final = re.compile(rf"\$BASE\s*=\s*(?:{_WHOLE.pattern})?", re.I)
 NO_MACHINE: Final = "no machine data of an arm"
 #: For points fewer than these the foot of the arm stays where it is: they may be anything.
 _FEWEST: Final = 3
@@ -166,16 +169,19 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
 
     Points are aggregates of numbers with X, Y, Z in mm and A, B, C in degrees.
     """
-    found = [tuple(map(float, one.groups())) for text in texts for one in _WHOLE.finditer(text)]
     every = [  # else a base, or a way, or garbage
-        one for one in found if any(one[:3]) and all(abs(value) < _GARBAGE for value in one)
+        base @ Pose.of(*numbers)
+        for text in texts
+        for base, part in _stretches(text)
+        for numbers in (_numbers(one) for one in _WHOLE.finditer(part))
+        if any(numbers[:3]) and all(abs(value) < _GARBAGE for value in numbers)
     ]
     some = every[:: len(every) // _MOST_POINTS + 1]
     if len(some) < _FEWEST:
         return machine
     import numpy as np  # only where an arm stands in for one that is lost
 
-    poses = np.array([Pose.of(*one).matrix for one in some])
+    poses = np.array([one.matrix for one in some])
     arm, length = kinematics_of(machine), _length(machine)
     lower, upper = (
         np.array([getattr(axis, end) for axis in machine.axes]) for end in ("lower", "upper")
@@ -215,6 +221,28 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
     return replace(machine, name=f"{machine.name} at {{{where}}}", robroot=rounded)
 
 
+def _numbers(match: re.Match[str]) -> tuple[float, ...]:
+    return tuple(map(float, match.groups()))
+
+
+def _placed(base: Pose, point: tuple[float, ...]) -> Sequence[float]:
+    """X, Y, Z of a point in a base; of garbage, as it is."""
+    return (base @ Pose.of(*point)).position if max(map(abs, point)) < _GARBAGE else point
+
+
+def _stretches(text: str) -> Iterator[tuple[Pose, str]]:
+    """The parts of a text, each with the base that the lines above it have written out.
+
+    So programs are written by offline systems: $BASE={X 800,...}, then the points in it.
+    """
+    base, start = IDENTITY, 0
+    for match in _BASE.finditer(text):
+        yield base, text[start : match.start()]
+        is_frame = match[1] is not None and all(abs(one) < _GARBAGE for one in _numbers(match))
+        base, start = Pose.of(*_numbers(match)) if is_frame else IDENTITY, match.end()
+    yield base, text[start:]
+
+
 def _length(machine: MachineData) -> float:
     """From the shoulder to the wrist of the outstretched arm, in mm."""
     forearm = math.hypot(*(row[3] for row in machine.tx3p3.rows))
@@ -224,9 +252,10 @@ def _length(machine: MachineData) -> float:
 def _factor(machine: MachineData, texts: Iterable[str]) -> float:
     """How much longer its links have to be for the points in texts, in steps of a tenth."""
     distances = [  # from the shoulder, in mm
-        math.dist(map(float, one.groups()), machine.tiroro.position)
+        math.dist(_placed(base, _numbers(one)), machine.tiroro.position)
         for text in texts
-        for one in _POSE.finditer(text)
+        for base, part in _stretches(text)
+        for one in _POSE.finditer(part)
     ]
     if not distances:
         return 1.0

@@ -81,6 +81,20 @@ def test_points_in_reach() -> None:
     assert default_machine() == reaching(default_machine(), [LOW[: LOW.index("XP2")]])
 
 
+def test_points_in_a_base_that_is_written_out() -> None:
+    """They count in it, up to the next base; what no number can be says nothing."""
+    machine = default_machine()
+    base = "$BASE = {FRAME: X 2600.0,Y 0.0,Z 900.0,A 90.0,B 0.0,C 0.0}\n"
+    assert 3.7 * machine.length_a <= fitting_arm(machine, [base + LOW]).length_a
+    assert machine == fitting_arm(machine, [base + "$BASE=BASE_DATA[3]\n" + LOW])
+    near = base.replace("2600", "500").replace("900", "300")
+    assert machine == reaching(machine, [near + LOW])
+    assert machine != reaching(machine, [near + "$BASE=$WORLD\n" + LOW])
+    endless = base.replace("2600", "1E999") + LOW
+    assert machine == fitting_arm(machine, [endless])
+    fitting_arm(machine, [base + LOW.replace("X ", "X 1E999")])
+
+
 def test_garbage() -> None:
     """One point that no arm can reach makes no arm larger."""
     wild = FAR.replace("2600", "500").replace("1000", "300") * 8 + "{X 1e9,Y 0,Z 0}"
