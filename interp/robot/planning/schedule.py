@@ -34,6 +34,8 @@ _JUMP = 0.01
 """Share of the acceleration by which that of the path may jump where two blends touch."""
 _HELD = 0.8
 """Share of the speed at which a blend could be passed evenly below which it is held up."""
+_STANDS = 1e-3
+"""Speed in mm/s or deg/s that rounding may leave where the arm stands at the end."""
 _HALVINGS = 48
 
 
@@ -117,8 +119,9 @@ def schedule(
     """A profile for each step from a state on, to stand still in the end of the last.
 
     Positions of a profile are u from its start times `Stretch.size`. Returns ``None`` where it
-    cannot be done: the acceleration cannot be taken back in time, or, with ``is_strict``, the end
-    of a span would be passed faster than what follows allows.
+    cannot be done: the acceleration cannot be taken back in time, the end is too near to stand
+    still there, or, with ``is_strict``, the end of a span would be passed faster than what follows
+    allows.
     """
     best: _Plan | None = None
     known: list[list[float]] = []
@@ -193,7 +196,7 @@ def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool)
             over += span.length
         ends.append(found)
         speed, acceleration = found, _behind(spans, place, found)
-    return _Speeds(ends, over)
+    return _Speeds(ends, over) if speed <= _STANDS else None
 
 
 def braking(
