@@ -118,9 +118,7 @@ def _command(what: str, folder: Path) -> Parser:
         command_words = [str(file) if word == "{}" else word for word in words]
         command = command_words if "{}" in words else [*command_words, str(file)]
         try:
-            done = subprocess.run(
-                command, capture_output=True, timeout=_LONGEST, cwd=folder, check=False
-            )
+            done = subprocess.run(command, capture_output=True, timeout=_LONGEST, check=False)
         except subprocess.TimeoutExpired:
             return f"it takes more than {_LONGEST} seconds"
         except OSError as error:

@@ -48,6 +48,17 @@ def test_files_are_given_without_front_matter() -> None:
     assert "pass" == result.verdict
 
 
+def test_a_command_is_run_where_it_was_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its words may be paths from there: of a script, or of a grammar that it loads."""
+    (tmp_path / "reads.py").write_text("", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    with parsers([f"mine={sys.executable} reads.py"]) as found:
+        (result,) = compared([_READ], found)
+    assert "pass" == result.verdict
+
+
 @pytest.mark.skipif(
     not shutil.which("java") or not _ANTLR.exists(), reason="Java or ANTLR is not at hand"
 )
