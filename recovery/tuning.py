@@ -323,8 +323,8 @@ MOST_SAMPLES = 64
 #: long lists are usual a seventh or more of those with two items have a fourth. Revised: 50 for
 #: both, with which corpora of 45 such indices left them unbounded and some 100 of 1,000 sentences
 #: were rejected for that.
-SHORT_LIST_EXAMPLES = 30
-PAIR_EXAMPLES = 20
+SHORT_LIST_EXAMPLES = 20
+PAIR_EXAMPLES = 12
 ITEMS_BEHIND_THE_FIRST = 2
 #: Places without a part, each kind of line of a file once, that show that it is never there.
 #: Measured: from 13 grown grammars 20 takes one part more, and 200 the same parts; neither loses a

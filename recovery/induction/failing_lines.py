@@ -11,6 +11,7 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.failures import Failure
 from grammar.parser.recognizer import Recognizer, State
 from recovery.induction.steps import Evidence
+from recovery.induction.symbols import BRACKETS
 from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.language import CorpusFile
 from recovery.proposals.edit_site import LinePattern
@@ -32,7 +33,10 @@ class Occurrences:
 
 
 class FailingLines:
-    """The distinct failing lines of files, ``patterns[n]`` with ``occurrences[n]``."""
+    """The distinct failing lines of files, ``patterns[n]`` with ``occurrences[n]``.
+
+    A line with a bracket that nothing closes or opens is damaged and shows nothing.
+    """
 
     def __init__(
         self,
@@ -47,6 +51,8 @@ class FailingLines:
                     continue
                 ends = failure.form.kinds[-1:] == (keywords.lexer.line_kind,)
                 words = tuple(map(str.upper, failure.lexemes[: -1 if ends else None]))
+                if not _is_balanced(words):
+                    continue
                 pattern = LinePattern(failure.form, keywords.in_line(words) if words else ())
                 line = found.setdefault(pattern, Occurrences())
                 line.texts.add(words)
@@ -98,3 +104,14 @@ class FailingLines:
             if not is_word or recognizer.run(recognizer.restore(form.before), kinds)[1] is not None:
                 return False
         return True
+
+
+def _is_balanced(words: Sequence[str]) -> bool:
+    """Whether the brackets of a line come in pairs, one within another."""
+    open_: list[str] = []
+    for word in words:
+        if word in BRACKETS:
+            open_.append(BRACKETS[word])
+        elif word in BRACKETS.values() and (not open_ or open_.pop() != word):
+            return False
+    return not open_

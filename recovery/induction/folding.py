@@ -38,7 +38,14 @@ from grammar.notation.model import (
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.forms import LONG_LIST, FormWriter, samples_of
 from recovery.induction.steps import Inferred
-from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
+from recovery.induction.symbols import (
+    BRACKETS,
+    Operand,
+    OperandRules,
+    Symbol,
+    SymbolReader,
+    bracket_pairs,
+)
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import FOLDING_SYMBOLS, LEAST_STEM
 
@@ -96,6 +103,9 @@ class Folding:
         yield from self._lists(families)
         yield from self._trailing()
         yield from self._tails()
+        yield from self._brackets()
+        yield from self._headers()
+        yield from self._initial_values()
         yield from self._leading()
         yield from self._signs()
         yield from self._modifiers()
@@ -252,6 +262,84 @@ class Folding:
             title = f"one form for what follows a name in {rule.name}"
             yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
 
+    def _brackets(self) -> Iterator[Inferred]:
+        """One form for what is in brackets behind a declared name, where lines of a rule differ."""
+        for rule in self.grammar.rules:
+            found: dict[str, list[tuple[int, int, Sequence[Element]]]] = defaultdict(list)
+            for number, alternative in enumerate(
+                () if self._is_inner(rule) else rule.alternatives, 1
+            ):
+                for sign, start, end in bracket_pairs(alternative):
+                    inside = alternative.elements[start + 1 : end]
+                    if start and inside and self._is_name(alternative.elements[start - 1]):
+                        found[sign].append((number, start + 2, inside))
+            for sign, contents in found.items():
+                shapes = [s for *_, inside in contents for s in samples_of(self.rules, inside)]
+                form = self.writer.form(list(dict.fromkeys(shapes)))
+                edits = tuple(
+                    Replace(rule.name, (number, at), form or "", len(inside))
+                    for number, at, inside in contents
+                    if self._source(rule.name, inside) != form
+                )
+                title = f"one form between {sign} and {BRACKETS[sign]} in {rule.name}"
+                if form and len(contents) > 1:
+                    yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+    def _headers(self) -> Iterator[Inferred]:
+        """Any operand where a name is all that opens a block, if most others open with any."""
+        widest, end = self.rules.widest, self.profile.line_end
+        alone: list[tuple[str, int]] = []
+        others = 0
+        for name in self.rules.reaches:
+            for number, alternative in enumerate(self.grammar.by_name[name].alternatives, 1):
+                called = (e.name for e in walk(alternative) if isinstance(e, Reference))
+                is_block = any(name in self.rules.reaches.get(c, ()) for c in called)
+                match alternative.elements if is_block else ():
+                    case (Reference(is_token=True), Reference() as operand, following, *_):
+                        others += operand.name == widest
+                        ends = self._source(name, [following]) == end
+                        alone += [(name, number)] if ends and self._is_name(operand) else []
+        for name, number in alone if others > len(alone) else ():
+            edits = (Replace(name, (number, 2), widest or ""),)
+            title = f"any operand opens a block in {name} {number}"
+            yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+    def _initial_values(self) -> Iterator[Inferred]:
+        """The same values behind a sign in all lines of a rule, where none of them is a name."""
+        for rule in self.grammar.rules:
+            found: dict[str, list[tuple[Address, list[str]]]] = defaultdict(list)
+            for address, sequence in () if self._is_inner(rule) else sequences(rule):
+                for place, (left, right) in enumerate(pairwise(sequence.elements), 2):
+                    values = self._values(right)
+                    if _sign(left) and values:
+                        found[_sign(left)].append(((*address, place), values))
+            for sign, places in found.items():
+                every = sorted({value for _, values in places for value in values})
+                including = self.rules.includes
+                every = [v for v in every if not any(o != v and including(o, v) for o in every)]
+                edits = tuple(
+                    Replace(rule.name, at, f"({' | '.join(every)})")
+                    for at, values in places
+                    if values != every
+                )
+                title = f"values behind {sign} in {rule.name}"
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+    def _is_inner(self, rule: Rule) -> bool:
+        """Whether a rule is one of tokens or part of a line."""
+        return rule.is_lexer or rule.name in self.rules.within_lines
+
+    def _values(self, element: Element) -> list[str]:
+        """The rules of values that an element is a choice of; none where one reads names."""
+        named = self.rules.matcher.rules_for((self.lexer.name_kind,))
+        every = [element]
+        if isinstance(element, Group):
+            every = [e for a in element.alternatives for e in a.elements]
+            every *= all(len(a.elements) == 1 for a in element.alternatives)
+        names = [e.name for e in every if isinstance(e, Reference) and not e.is_token]
+        is_of_values = len(names) == len(every) and named.isdisjoint(names)
+        return sorted(names) if is_of_values else []
+
     def _source(self, rule: str, elements: Sequence[Element]) -> str:
         return " ".join(map(self.grammar.by_name[rule].source_of, elements))
 
@@ -361,8 +449,8 @@ class Folding:
                 Replace(
                     rule, (number, len(self._line(rule, number)) - len(run) + 1), text, len(run)
                 )
-                for rule, number, run, some, how in alike
-                if (some, how) != (every, often) or len(run) != text.count(word)
+                for rule, number, run, _, _ in alike
+                if self._source(rule, run) != text
             ]
             if len(every) > 1 and edits and every not in done:
                 done.add(every)

@@ -521,7 +521,8 @@ def _samples(
             return [(Symbol("", Operand((), name)),)]
         case Reference(name=name) if not name[0].isupper():
             alternatives = rules.grammar.by_name[name].alternatives
-            if name in within or (name in rules.reaches[name] and name in rules.ladder):
+            is_level = name in rules.reaches[name] and name in rules.ladder
+            if name in within or is_level or name in rules.bracketed.values():
                 return [(Symbol("", Operand((), name)),)]
             inner = [e for a in alternatives for e in walk(a)]
             if rules.is_part(name) or any(isinstance(e, Literal) and e.text == "," for e in inner):

@@ -98,6 +98,8 @@ class LineEdits:
             if symbols[0].is_operand and (any(beside) or len(symbols) == 1):
                 continue  # no line is a value, or two without a word that says what they are
             head = self._head(symbols)
+            if symbols[0].is_operand and self._is_begun(number):
+                head += " …"  # lines of this kind are known where it stands, and not elsewhere
             if self._block_words.isdisjoint(s.text for s in symbols[:2]):
                 groups[self.hosts.of(number), head].append(number)
         families = list(_families(groups))
@@ -152,6 +154,11 @@ class LineEdits:
             return False
         return self.at.writing(number, self.at.shown(self.at.tokens[number][opened])) is not None
 
+    def _is_begun(self, number: int) -> bool:
+        """Whether the grammar reads more than the first operand of a line and a sign behind it."""
+        first = self.symbols[number][0].operand
+        return first is not None and self.at.lines[number].form.index > 1 + len(first.kinds)
+
     def _head(self, symbols: Sequence[Symbol]) -> str:
         """What says which kind of line it is: its first word, behind one that may be missing."""
         texts = [symbol.text for symbol in symbols[:3]]
@@ -171,16 +178,19 @@ class LineEdits:
         for number in members:
             shapes[self.symbols[number]].append(number)
         grown = list(self._grown(head, shapes, members))
-        if grown:
-            yield from grown
-            return
+        yield from grown
+        fixed = {e.rule for found in grown for e in found.edits if isinstance(e, Insert | Replace)}
+        # a line that is more in one place than in others is one of that place
+        reads = self.at.rules.includes
+        hosts = [h for h in hosts if all(h != rule and reads(h, rule) for rule in fixed)]
         title = head.replace("_ ", "name ").strip()
-        for text in self.forms.of(shapes):
+        for text in self.forms.of(shapes) if hosts or not grown else ():
             for host in hosts:
                 added = AddAlternative(host, f"{text}{self.hosts.ending(host)}")
                 edits = (*self.forms.reserving(text), added)
                 yield Inferred(f"{title} … as {host}", edits, tuple(members))
-            for rule, at in self._left_open(members) if WORD.fullmatch(head) else ():
+            is_new = WORD.fullmatch(head) and not grown
+            for rule, at in self._left_open(members) if is_new else ():
                 edits = (*self.forms.reserving(text), Insert(rule, at, text))
                 yield Inferred(f"{title} … behind {rule}", edits, tuple(members))
 

@@ -95,6 +95,7 @@ class Induction:
         self._names: str | None = None
         self._prefixes: frozenset[str] = frozenset()
         self._tried: set[Edit] = set()
+        self._lossy: set[tuple[Edit, ...]] = set()  # folds that lose lines of some file
         self._review: EditReview | None = None
         self._held_read = Reading(0, 0, 0)
 
@@ -284,6 +285,7 @@ class Induction:
 
         Where none is left at the end lists are bounded, for which all has to be read that will be.
         """
+        before = review
         recognizer, files = review.recognizer, self.shown.files
         reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
         lines = CorpusLines(files, recognizer.lexer).lines
@@ -292,7 +294,7 @@ class Induction:
         refused: dict[str, Refused] = {}
         found = Folding(recognizer, operands, self._prefixes).candidates()
         while fold := next(found, None):
-            if fold.title in refused or fold.edits in self.struck:
+            if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
             grammar = review.recognizer.grammar
             reason = review.objection(grammar, fold.edits, fold.edits)
@@ -309,7 +311,13 @@ class Induction:
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
             review = replace(review, recognizer=narrower)
             found = Folding(narrower, operands, self._prefixes).candidates()
-        taken, lost = self.shown.kept(self.grammar, taken, self._names)
+        kept, lost = self.shown.kept(self.grammar, taken, self._names)
+        if lost:
+            # folds behind it are written for what it leaves: they are sought anew without it
+            self._lossy.add(lost[0].edits)
+            taken = kept[: [step.edits for step in taken].index(lost[0].edits)]
+            if not taken:
+                return self._folded(before, failures, is_last=is_last)
         if is_last and not taken:
             read = [file for file, wrong in zip(files, failures, strict=True) if not wrong]
             texts = (file.text for file in read)
@@ -319,8 +327,7 @@ class Induction:
                 for bounded in bounded_lists(recognizer, self._start, texts, origins)
                 if bounded.edits not in self.struck
             ]
-            taken, too_short = self.shown.kept(self.grammar, bounds, self._names)
-            lost += too_short
+            taken, lost = self.shown.kept(self.grammar, bounds, self._names)
         return taken, [*lost, *refused.values()]
 
     # ------------------------------------------------------------------------------------- literals

@@ -93,14 +93,15 @@ class ShownFiles:
     def _is_outvoted(self, places: Sequence[int], step: Taken) -> bool:
         """Whether files are of one origin, and a step is shown by more origins and files.
 
-        As many origins will do for words with which lines of their own begin.
+        As many origins will do for words with which lines of their own begin, and places for files.
         """
         origins = frozenset[str]().union(*(self.files[p].origins for p in places))
         words = {edit.name for edit in step.edits if isinstance(edit, AddToken)}
         added = [edit.text.split() for edit in step.edits if isinstance(edit, AddAlternative)]
         is_ahead = words <= {word for text in added if len(text) > 1 for word in text[:2]}
-        enough = step.evidence.origins + (is_ahead and bool(words))
-        return len(origins) == 1 < enough and 2 * len(places) < step.evidence.files
+        is_leading = is_ahead and bool(words)
+        votes = max(step.evidence.files, is_leading * len(step.evidence.seen))
+        return len(origins) == 1 < step.evidence.origins + is_leading and 2 * len(places) < votes
 
 
 def reading(failures: Failures) -> Reading:

@@ -268,3 +268,68 @@ def test_what_holds_beside_alike(title: str, accepted: str, rejected: str) -> No
     (fold,) = (f for f in Folding(Recognizer(grammar), ()).candidates() if f.title == title)
     after = Recognizer(apply(grammar, fold.edits))
     assert [True, False] == [after.accepts(f"{line}\n") for line in (accepted, rejected)]
+
+
+_BLOCKS = """grammar Toy;
+program : (block NEWLINE)* EOF ;
+statement : (MOVE NAME)? NEWLINE | block NEWLINE ;
+block
+    : IF any NEWLINE statement* DONE
+    | WHILE any NEWLINE statement* DONE
+    | CASE NAME NEWLINE statement* DONE
+    | SUB NAME '(' (NAME (IN | OUT))? ')' NEWLINE
+    | FUN NAME '(' NAME IN ')' NEWLINE
+    | DIM NAME '=' (NUMBER | set) NEWLINE
+    | FIX NAME '=' set NEWLINE
+    ;
+any : one ('+' one)* ;
+one : NUMBER | NAME | '(' any ')' ;
+number : NUMBER ;
+set : '{' number (',' number)* '}' ;
+"""
+
+
+@pytest.mark.parametrize(
+    ("title", "accepted", "rejected"),
+    [
+        ("any operand opens a block in block 3", "CASE 1 + X\nDONE", "CASE\nDONE"),
+        ("one form between ( and ) in block", "FUN F(A OUT)\n", "FUN F(A)\n"),
+        ("values behind '=' in block", "FIX A = 1\n", "FIX A = B\n"),
+    ],
+)
+def test_what_holds_beside_alike_in_blocks(title: str, accepted: str, rejected: str) -> None:
+    """Operands of headers, what is in the brackets of routines, and values of declarations."""
+    words = "".join(f"{w} : '{w}' ;\n" for w in _BLOCK_WORDS.split())
+    text = _BLOCKS.replace("NUMBER | set", "number | set")
+    grammar = read(f"{text}{words}{_BLOCK_TOKENS}")
+    (fold,) = (f for f in Folding(Recognizer(grammar), ()).candidates() if f.title == title)
+    after = Recognizer(apply(grammar, fold.edits))
+    assert [True, False] == [after.accepts(f"{line}\n") for line in (accepted, rejected)]
+    assert not Recognizer(grammar).accepts(f"{accepted}\n")
+
+
+_BLOCK_WORDS = "IF WHILE CASE SUB FUN DIM FIX IN OUT MOVE DONE"
+_BLOCK_TOKENS = """COMMA : ',' ;
+PLUS : '+' ;
+ASSIGN : '=' ;
+LPAREN : '(' ;
+RPAREN : ')' ;
+LBRACE : '{' ;
+RBRACE : '}' ;
+NAME : [A-Z]+ ;
+NUMBER : [0-9]+ ;
+NEWLINE : '\\n' ;
+WS : ' ' -> skip ;
+"""
+
+
+def test_a_bracketed_rule_stays_one() -> None:
+    """A fold writes the rule of what is in brackets, and not what is in it."""
+    lines = "MOVE NAME '=' (set | number) | MOVE FIX NAME '=' set"
+    text = _BLOCKS.replace("SUB NAME '(' (NAME (IN | OUT))? ')'", "SUB").replace(
+        "program : (block NEWLINE)* EOF ;", f"program : (line NEWLINE)* EOF ;\nline : {lines} ;"
+    )
+    words = "".join(f"{w} : '{w}' ;\n" for w in _BLOCK_WORDS.split())
+    folds = Folding(Recognizer(read(f"{text}{words}{_BLOCK_TOKENS}")), ()).candidates()
+    (fold,) = (f for f in folds if f.title == "one form for MOVE in line")
+    assert "MOVE FIX? NAME '=' (number | set)" in {getattr(e, "text", "") for e in fold.edits}

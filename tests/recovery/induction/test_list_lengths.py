@@ -38,7 +38,7 @@ def test_short_lists(start: str, lists: list[str], found: list[str]) -> None:
 def test_pairs(items: str, count: int) -> None:
     """Where none has three items fewer lists show that none is long."""
     edits = bounded_lists(
-        Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), [f"F({items})\n"] * 25, 4
+        Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), [f"F({items})\n"] * 15, 4
     )
     assert count == len(list(edits))
 

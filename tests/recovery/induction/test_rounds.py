@@ -4,14 +4,23 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from grammar.notation.edits import AddAlternative, AddRule, AddToken, MakeOptional, apply
+from grammar.notation.edits import (
+    AddAlternative,
+    AddRule,
+    AddToken,
+    MakeOptional,
+    RemoveAlternative,
+    RemoveRule,
+    apply,
+)
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
-from grammar.notation.model import Grammar
+from grammar.notation.model import Grammar, Reference
 from grammar.parser.recognizer import Recognizer
 from recovery.induction import list_lengths, rounds
 from recovery.induction.corpus_lines import held_out
@@ -19,6 +28,7 @@ from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
+from recovery.induction.steps import Inferred
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -390,6 +400,7 @@ import json, sys
 from grammar.notation.g4 import read
 from recovery.language import CorpusFile
 from recovery.induction.rounds import Induction
+from recovery.induction.steps import Inferred
 from recovery.negatives.negatives import NegativeSet
 start, files = json.load(sys.stdin)
 shown = [CorpusFile(path, text, frozenset(origins)) for path, text, origins in files]
@@ -418,3 +429,42 @@ def test_the_same_over_hash_seeds(toy: Grammar, toy_files: tuple[CorpusFile, ...
         for seed in range(3)
     }
     assert (1, True) == (len(rounds), "REPEATN" in min(rounds))
+
+
+def test_a_line_with_an_open_bracket_shows_nothing(toy: Grammar) -> None:
+    """A form is learnt from lines with brackets in pairs, and not from others."""
+    texts = [f"SEND ({name})\nPUT ({name} SLOW\nPUT ({name} 1 SLOW\n" for name in "ABCD"]
+    files = tuple(
+        CorpusFile(n, text, frozenset({n})) for n, text in zip("ABCD", texts, strict=True)
+    )
+    titles = [construct.title for construct in _grown(toy, files).constructs]
+    assert [] == [title for title in titles if "PUT" in title]
+
+
+class _Folds:
+    """Two folds: one that loses lines, and one written for what that leaves."""
+
+    def __init__(self, recognizer: Recognizer, *_: object) -> None:
+        self.rules = recognizer.grammar.by_name
+
+    def candidates(self) -> Iterator[Inferred]:
+        called = [
+            alternative.elements for alternative in self.rules["simpleStatement"].alternatives
+        ]
+        names = [e.name for (e,) in called if isinstance(e, Reference)]
+        if "assignment" in names:
+            gone = RemoveAlternative("simpleStatement", 1), RemoveRule("assignment")
+            yield Inferred("no assignment", gone, ())
+        if "call" in names:
+            edits = (RemoveAlternative("simpleStatement", names.index("call") + 1),)
+            yield Inferred("no call", edits, ())
+
+
+def test_folds_behind_one_that_is_lost(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They were written for other places and are sought anew."""
+    monkeypatch.setattr(rounds, "Folding", _Folds)
+    monkeypatch.setattr(rounds, "FOLD_FILES", 0)  # only whole files show what is lost
+    files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
+    grown = _grown(toy, files)
+    assert ["no call"] == [construct.title for construct in grown.constructs]
+    assert all(Recognizer(grown.grammar).accepts(file.text) for file in files)

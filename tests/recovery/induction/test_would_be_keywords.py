@@ -62,3 +62,20 @@ def test_a_word_between_a_keyword_and_an_operand(toy: Grammar, behind: str, soft
     files = {o: f"HALT KIND {o}{behind}\nHALT KIND B{o}{behind}\n" for o in "abc"}
     keywords = _keywords(toy, files)
     assert ("KIND" in keywords.words, soft) == (True, "KIND" in keywords.soft)
+
+
+@pytest.mark.parametrize(("behind", "found"), [("A := 1", False), ("A B", True)])
+def test_the_name_of_a_type(toy: Grammar, behind: str, found: bool) -> None:
+    """Where a reserved type stands a name is that of a type, unless two operands follow."""
+    files = {o: f"SET HALT A{o} := 1\nSET KIND {behind}\n" for o in "abc"}
+    assert found == ("KIND" in _keywords(toy, files, ("HALT",)).words)
+
+
+@pytest.mark.parametrize(("uses", "soft"), [(1, False), (2, True)])
+def test_one_line_does_not_outvote_others(toy: Grammar, uses: int, soft: bool) -> None:
+    """A word that begins three lines is no name for a single line in which it is one."""
+    files = {"a": "MOVE A\nMOVE 1\nMOVE 2\n" + "".join(f"X := MOVE + {n}\n" for n in range(uses))}
+    lexer = Recognizer(toy).lexer
+    shown = [CorpusFile(o, text, frozenset({"a"})) for o, text in files.items()]
+    keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, (), 1)
+    assert ("MOVE" in keywords.words, soft) == (True, "MOVE" in keywords.soft)
