@@ -4,11 +4,11 @@ const POINTS = 2_000; // points that are marked, and pieces of the path without 
 const POSES = 12; // at which the arm must be in the picture
 const DIRECTIONS = { slanted: [1, -1.2, 0.8], front: [1, 0, 0.001], side: [0, -1, 0.001], above: [0, -0.001, 1] };
 
-/** What draws, and how round it can afford things to be: WebGL, or SVG where the browser has none. */
+/** What draws, and how round it can afford things to be: WebGL, whose picture is printed too, or SVG where the browser has none. */
 function rendererFor(canvas) {
-  const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
+  const context = canvas.getContext("webgl2", { antialias: true, alpha: true, preserveDrawingBuffer: true });
   if (!context) return { renderer: new THREE.SVGRenderer(), facets: 6, light: 1 };
-  const renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
+  const renderer = new THREE.WebGLRenderer({ canvas, context });
   return { renderer, facets: 16, light: Math.PI };
 }
 
@@ -109,7 +109,7 @@ function scene() {
   function resize() {
     const [width, height] = [holder.clientWidth, holder.clientHeight];
     renderer.setPixelRatio(devicePixelRatio);
-    renderer.setSize(width, height);
+    renderer.setSize(width, height, false); // as wide as it is on paper, the style says
     overlay.width = width * devicePixelRatio;
     overlay.height = height * devicePixelRatio;
     camera.aspect = width / height;

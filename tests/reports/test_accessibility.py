@@ -133,6 +133,23 @@ def test_a_page_can_be_used_by_all(
     assert [] == found
 
 
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_can_be_printed(
+    browser: webdriver.Chrome, pages: dict[str, Path], name: str, resize: Callable[[int], None]
+) -> None:
+    """On paper nothing is cut off at the side, and no title of a row is set letter by letter."""
+    resize(720)
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        load(browser, pages[name].as_uri())
+        page = "return document.documentElement.scrollWidth"
+        assert 720 >= browser.execute_script(page)
+        rows = "return [...document.querySelectorAll('.row .open')].map((one) => one.offsetHeight)"
+        assert 80 > max(browser.execute_script(rows), default=0)
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
 def _violations(browser: webdriver.Chrome, only: Json) -> list[str]:
     script = (
         "const done = arguments[1]; axe.run(document, { runOnly: arguments[0] })"
