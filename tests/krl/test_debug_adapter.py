@@ -270,6 +270,27 @@ def test_programs_and_the_arm_are_threads(client: Client, project: Path) -> None
     assert 1 == len(client.do("stackTrace", threadId=3)["stackFrames"])
 
 
+def test_the_stack_goes_through_an_interrupt(client: Client) -> None:
+    """Its routine lies on the interrupt, and that on the routines that were interrupted.
+
+    A step out of it goes where RESUME leads.
+    """
+    cell = Path(__file__).parents[2] / "corpus" / "programs" / "search_demo" / "R1" / "Program"
+    program, script = cell / "search_demo.src", cell / "search_demo.io"
+    begun(client, program, {"line": 56}, submit="count_parts", robot="kinematic", io=str(script))
+    client.wait("stopped")
+    frames = client.do("stackTrace", threadId=1)["stackFrames"]
+    assert [
+        ("touched", 56),
+        ("interrupt 10 in search_demo", 23),
+        ("search", 49),
+        ("search_demo", 29),
+    ] == [(one["name"], one["line"]) for one in frames]
+    submit = client.do("stackTrace", threadId=2)["stackFrames"]
+    assert ["count_parts"] == [one["name"] for one in submit]
+    assert ("step", 30) == client.stopped("stepOut", threadId=1)
+
+
 def test_a_line_is_selected_and_files_are_read_again(client: Client, project: Path) -> None:
     """Goto executes nothing between; restart runs what the files are now."""
     begun(client, project, stopOnEntry=True)
