@@ -5,7 +5,7 @@ const short = (value) => value.toLocaleString("en-GB", { maximumSignificantDigit
 
 function runCurve(title, values) {
   const known = values.filter((value) => typeof value === "number");
-  if (!known.length) return null;
+  if (known.length < 2) return null;
   const [width, height] = [260, 64];
   const [low, high] = [Math.min(...known, 0), Math.max(...known)];
   const x = (n) => 4 + ((width - 8) * n) / Math.max(1, values.length - 1);
@@ -24,10 +24,11 @@ function runCurve(title, values) {
 
 const benches = [...new Set(runs.flatMap((run) => Object.keys(run.bench)))];
 const curves = [
-  ["files that parse, share", runs.map((run) => run.parsed)],
+  ["files that parse, %", runs.map((run) => (typeof run.parsed === "number" ? 100 * run.parsed : null))],
   ["runs of cases that pass", runs.map((run) => run.passed)],
   ["runs of cases that fail", runs.map((run) => run.failed)],
   ["divergences of the fuzzer", runs.map((run) => run.divergences)],
   ...benches.map((name) => [name, runs.map((run) => run.bench[name] ?? null)]),
 ];
-document.getElementById("curves")?.append(...curves.map(([title, values]) => runCurve(title, values)).filter(Boolean));
+const drawn = curves.map(([title, values]) => runCurve(title, values)).filter(Boolean);
+if (drawn.length) document.getElementById("curves").replaceChildren(...drawn);
