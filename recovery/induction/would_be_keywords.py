@@ -112,8 +112,6 @@ class WouldBeKeywords:
             for kind, shown in enumerate(lexer.display)
             if kind and shown == lexer.names[kind] and not lexer.is_keyword(kind)
         ) - {lexer.line_kind}
-        self._type_places = frozenset(p for line in corpus.lines for p in self._of_types(line))
-        self._kinds = self._named_types()
         fillers: dict[_Surroundings, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
         files: Counter[tuple[_Surroundings, str]] = Counter()
         uses: Counter[str] = Counter()
@@ -164,7 +162,7 @@ class WouldBeKeywords:
             for word, origins in words.items()
             # what a type declares ends there, or a sign goes on
             if len(origins) >= WOULD_BE_ORIGINS and 2 * followed[word] <= files[surroundings, word]
-        } | self._kinds
+        }
         ahead = {w for s in self._closed if s[2] == _TYPE for w in fillers[s]}
         #: Those that are used as names besides.
         self.soft = frozenset(
@@ -239,7 +237,7 @@ class WouldBeKeywords:
         )
         for place, (word, kind) in enumerate(zip(line, kinds, strict=True)):
             depth += (word == "{") - (word == "}")
-            if kind != self._name or depth or word.startswith("$") or self._is_type(line, place):
+            if kind != self._name or depth or word.startswith("$"):
                 continue
             behind = self._class(line, kinds, place + 1, ("{",))
             if not place:
@@ -263,8 +261,7 @@ class WouldBeKeywords:
                 and behind not in _BEHIND_NAMES
                 and not (place == 1 and behind == "=")
                 and (
-                    behind == _TYPE
-                    or (place == 1 and len(kinds) > 2 and self.lexer.is_keyword(kinds[2]))
+                    (place == 1 and len(kinds) > 2 and self.lexer.is_keyword(kinds[2]))
                     or ahead == ":"
                     or self.lexer.is_keyword(kinds[place - 1])
                 )
@@ -272,31 +269,6 @@ class WouldBeKeywords:
                 yield _Use(place, word, surroundings, False)
             else:
                 yield _Use(place, word, _PLAIN, False)
-
-    def _of_types(self, line: Sequence[str]) -> Iterator[tuple[str, str]]:
-        """Places of types ahead of names: the first word of a line, and what is ahead of it."""
-        for place, word in enumerate(line[1:-1], 1):
-            if word in self._types and self.lexer.kinds[line[place + 1]] == self._name:
-                yield line[0], line[place - 1]
-
-    def _named_types(self) -> frozenset[str]:
-        """Names that stand where types do, with nothing but a sign behind what they declare."""
-        found: Counter[str] = Counter()
-        kinds = self.lexer.kinds
-        for number, line in enumerate(self.corpus.lines):
-            for place, word in enumerate(line[1:-1], 1):
-                is_of_names = kinds[word] == kinds[line[place + 1]] == self._name
-                if is_of_names and (line[0], line[place - 1]) in self._type_places:
-                    is_beside = self._is_beside(line, place + 1)
-                    found[word] += self.corpus.counts[number] * (-1 if is_beside else 1)
-        return frozenset(word for word, count in found.items() if count > 0)
-
-    def _is_type(self, line: Sequence[str], place: int) -> bool:
-        """Whether a name is that of a type."""
-        if not 0 < place < len(line) - 1 or line[place] not in self._kinds:
-            return False
-        behind = self.lexer.kinds[line[place + 1]]
-        return behind == self._name and (line[0], line[place - 1]) in self._type_places
 
     def _is_headed_oddly(self, line: Sequence[str], kinds: Sequence[int]) -> bool:
         """Whether two operands are side by side, so that a word of the line is a keyword."""
@@ -313,8 +285,6 @@ class WouldBeKeywords:
     ) -> str:
         if place >= len(line):
             return _END
-        if self._is_type(line, place):
-            return _TYPE
         if line[place] in signs or kinds[place] in self._values:
             # the first word of a line says what may come behind it, whether it is known or not
             return _OPERAND if place else line[0]

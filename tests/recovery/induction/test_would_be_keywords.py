@@ -64,13 +64,6 @@ def test_a_word_between_a_keyword_and_an_operand(toy: Grammar, behind: str, soft
     assert ("KIND" in keywords.words, soft) == (True, "KIND" in keywords.soft)
 
 
-@pytest.mark.parametrize(("behind", "found"), [("A := 1", False), ("A B", True)])
-def test_the_name_of_a_type(toy: Grammar, behind: str, found: bool) -> None:
-    """Where a reserved type stands a name is that of a type, unless two operands follow."""
-    files = {o: f"SET HALT A{o} := 1\nSET KIND {behind}\n" for o in "abc"}
-    assert found == ("KIND" in _keywords(toy, files, ("HALT",)).words)
-
-
 @pytest.mark.parametrize(("uses", "soft"), [(1, False), (2, True)])
 def test_one_line_does_not_outvote_others(toy: Grammar, uses: int, soft: bool) -> None:
     """A word that begins three lines is no name for a single line in which it is one."""
