@@ -14,10 +14,8 @@ from dataclasses import dataclass
 from itertools import count, repeat
 from pathlib import Path
 
-from grammar.bench.damage import damaged_source
 from grammar.blocks import BLOCKS
 from grammar.parser.lexer import Lexer
-from grammar.syntax.source import Source
 
 # What may hold digits or words that are no numbers and no names comes first, and stays as it is.
 _PIECE = re.compile(
@@ -83,26 +81,18 @@ def spread(texts: Iterable[str]) -> list[str]:
     return [ordered[place] for place in places]
 
 
-def write_corpus(
-    chosen: Sequence[Template], folder: Path, size: int, seed: int = 1, damages: Iterable[str] = ()
-) -> Written:
+def write_corpus(chosen: Sequence[Template], folder: Path, size: int, seed: int = 1) -> Written:
     """Write copies below ``folder`` until they have ``size`` bytes or a little more.
 
-    Each gets the ``damages``, one after the other (`grammar.bench.damage`). The same templates,
-    size, seed and damages give the same files. Raises ValueError without templates.
+    The same templates, size and seed give the same files. Raises ValueError without templates.
     """
     if not chosen:
         raise ValueError("there is no name in them")
     files = written = 0
     for template, (digits, suffix) in _variants(chosen, seed):
         name = f"{files // _FILES_A_FOLDER:04}/p{files:06}.src"
-        source: Source | None = Source(template.copy(digits, suffix), name)
-        for kind in damages:
-            source = source and damaged_source(source, kind, seed)
         files += 1
-        if source is None:  # lost
-            continue
-        data = source.text.encode("utf-8")
+        data = template.copy(digits, suffix).encode("utf-8")
         place = folder / name
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_bytes(data)

@@ -288,17 +288,12 @@ def _recovering_antlr() -> Callable[[str], object]:
 def _scaled_to(size: float, roots: Sequence[Path], grammar: Grammar, seed: int) -> dict[str, Any]:
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
-        call_isolated(synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
+        call_isolated(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
         return call_isolated(_scaled, Path(folder), grammar.text)
 
 
-def synthesise(
-    roots: Sequence[Path],
-    grammar_text: str,
-    folder: Path,
-    size: int,
-    seed: int,
-    damages: Sequence[str] = (),
+def _synthesise(
+    roots: Sequence[Path], grammar_text: str, folder: Path, size: int, seed: int
 ) -> Written:
     """Write copies of the programs below the roots, other ones for another seed.
 
@@ -307,7 +302,7 @@ def synthesise(
     texts = spread(_texts(roots))
     lexer = Recognizer(g4.read(grammar_text)).lexer
     try:
-        return write_corpus(list(templates(texts, lexer)), folder, size, seed, damages)
+        return write_corpus(list(templates(texts, lexer)), folder, size, seed)
     except ValueError as error:
         raise IngestError(f"no larger corpus can be made of these files: {error}") from error
 

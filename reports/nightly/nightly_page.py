@@ -61,7 +61,6 @@ _IN_WORDS = {
     "mutation.item_top5": "right item among five, share",
     "mutation.repeated": "damaged grammars surveyed more than once",
     "mutation.runs": "surveys of each of these",
-    "mutation.same_ranking": "surveys that agree, share",
     "mutation.reproducer_median_tokens": "reproducer, tokens in the median",
     "mutation.clusters_per_cause": "clusters a cause",
     "mutation.false_accept": "negatives accepted by the first proposal, share",

@@ -54,8 +54,6 @@ OUTPUTS = {
     "image": "disasm {1}",
     "code of strangers": "bench real-code --executor vm --json out/c.json {0}",
     "programs of strangers": "bench programs --executor vm --jobs 1 --json out/p.json {0}",
-    "damage to them": "bench recover --damage cut --sizes 0.01 --json out/r.json {0}",
-    "causes in them": "bench causes --halves 0 --json out/a.json {0}",
     "a name on the command line": "explain {1}",
     "a case on the command line": "conform --robot none {1}",
 }

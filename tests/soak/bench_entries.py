@@ -62,7 +62,7 @@ def damaged(folder: Path, foundry: Foundry) -> Given:
     negatives = folder / "negatives"
     rejected = foundry.text(NEGATIVE) if victim == "negatives" else NEGATIVE.encode()
     put(negatives, "a.src", rejected)
-    drawn = "--singles 1 --multiple 1 --repeated 0 --jobs 1".split()
+    drawn = "--singles 1 --multiple 1 --jobs 1".split()
     given = ("--grammar", put(folder, "g.g4", grammar), "--negatives", negatives)
     return krl("bench", "mutation", *drawn, *given, "--", programs)
 

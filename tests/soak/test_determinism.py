@@ -56,7 +56,6 @@ COMMANDS = {
     "construct replay": "construct replay --out {out}/G.g4",
     "construct oracle": "construct oracle --bundle {out}/bundle",
     "corpus synth": "corpus synth --size 40kB --seed 7 --out {out}/synth",
-    "bench causes": "bench causes --halves 1 --json {out}/a.json {some}",
     "bench programs": "bench programs --jobs {jobs} --max-time 5 --cache {out}/cache "
     "--json {out}/p.json {some}",
     "bench real-code": "bench real-code --executor vm --json {out}/c.json {some}",

@@ -49,9 +49,8 @@ FILES_WANTED = [
     ("bench programs ?", ".src"),
     ("bench programs --every --scripts ? !", ".io"),
     ("bench real-code ?", ".zip"),
-    ("bench mutation --singles 1 --multiple 0 --repeated 0 --jobs 1 --grammar ? !", ".g4"),
-    ("bench mutation --singles 1 --multiple 0 --repeated 0 --jobs 1 --negatives ? !", ".src"),
-    ("bench causes --halves 0 ?", ".src"),
+    ("bench mutation --singles 1 --multiple 0 --jobs 1 --grammar ? !", ".g4"),
+    ("bench mutation --singles 1 --multiple 0 --jobs 1 --negatives ? !", ".src"),
     ("bench check --sizes= ?", ".src"),
 ]
 

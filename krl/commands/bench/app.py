@@ -4,7 +4,6 @@ import typer
 
 from krl.commands.bench.arm import arm
 from krl.commands.bench.blends import blends
-from krl.commands.bench.causes import causes
 from krl.commands.bench.check import check
 from krl.commands.bench.conform import conform
 from krl.commands.bench.fuzz import fuzz
@@ -25,7 +24,6 @@ app.command("conform")(conform)
 app.command("fuzz")(fuzz)
 app.command("real-code")(real_code)
 app.command("recover")(recover)
-app.command("causes")(causes)
 app.command("check")(check)
 app.command("growth")(growth)
 

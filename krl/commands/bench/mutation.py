@@ -24,7 +24,6 @@ _AIMS = (
     ("repair_top5", "0.92"),
     ("clusters_per_cause", "1.3"),
     ("false_accept", "0.005"),
-    ("same_ranking", "1"),
     ("reproducer_median_tokens", "6"),
     ("seconds_per_mutant", ""),
 )
@@ -51,10 +50,6 @@ def mutation(
     multiple: Annotated[
         int, typer.Option(min=0, metavar="N", help="Mutants with two or three parts missing.")
     ] = 200,
-    repeated: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Mutants whose ranking is computed again.")
-    ] = 6,
-    runs: Annotated[int, typer.Option(min=1, metavar="N", help="How often it is computed.")] = 10,
     seed: Annotated[int, typer.Option(metavar="N", help="Seed of the samples.")] = 1,
     cache: Annotated[
         Path | None,
@@ -68,7 +63,6 @@ def mutation(
     from grammar.notation.model import GrammarError
     from recovery.bench.assessment import assess_all
     from recovery.bench.specimens import choose_mutants, material_for
-    from recovery.bench.stability import rankings, same_ranking
     from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError
 
@@ -77,20 +71,14 @@ def mutation(
         whole = read_file(grammar or GRAMMAR)
         material = material_for(whole, paths or [_PROGRAMS], negatives_or_ours(negatives), seed)
         chosen = choose_mutants(whole, singles, multiple, seed)
-        again = chosen[:: max(1, len(chosen) // repeated)][:repeated] if repeated else []
         with progress_bar("assessing", len(chosen)) as bar:
             record = assess_all(material, chosen, jobs=all_cores(jobs), cache=cache, on_done=bar)
-        with progress_bar("repeating", runs) as bar:
-            same = same_ranking(rankings(material, again, runs, bar)) if again else None
     record = {
         "bench": "mutation",
         "grammar": (grammar or GRAMMAR).name,
         "shown": len(material.shown),
         "held_out": len(material.held_out),
         **record,
-        "same_ranking": same,
-        "repeated": len(again),
-        "runs": runs,
     }
     write_json(record, json_file, indent=1)
     console = Console(highlight=False)

@@ -11,7 +11,6 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.commands.bench.scaling import damage_kinds
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.running.program_loading import sources_below
 from krl.running.run_options import Executor, Robot
@@ -58,6 +57,16 @@ class Part(StrEnum):
     FILE = "file"
 
 
+def _kinds(value: str) -> str:
+    """The value of ``--damage``, if each of its kinds is one."""
+    from grammar.bench.damage import DAMAGES
+
+    kinds = list(DAMAGES) if value == "all" else value.split(",")
+    if value and not DAMAGES.keys() >= set(kinds):
+        raise typer.BadParameter(f"kinds are {', '.join(DAMAGES)} and all")
+    return ",".join(kinds)
+
+
 def programs(
     paths: ProgramsArgument = None,
     executor: Annotated[
@@ -101,7 +110,7 @@ def programs(
         str,
         typer.Option(
             metavar="KIND,…",
-            callback=damage_kinds,
+            callback=_kinds,
             help="Run all once more with three of ten files damaged: files (lost), lists (data "
             "lists lost), cut, lines (lost), names (misspelt), characters (exchanged), latin (read "
             "so), or all of these.",

@@ -1,23 +1,15 @@
 """`krl bench recover`: how fast a corpus is surveyed."""
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
-from krl.commands.bench.scaling import (
-    SizesOption,
-    damage_kinds,
-    peak,
-    phases_table,
-    print_growth,
-    sizes_of,
-)
+from krl.commands.bench.scaling import SizesOption, peak, phases_table, print_growth, sizes_of
 from krl.errors import FINE, as_input_errors
-from krl.terminal.options import JsonOption, ProgramsArgument, negatives_or_ours, programs_or_ours
+from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
@@ -29,16 +21,7 @@ def recover(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
     sizes: SizesOption = "1,10,100",
-    damage: Annotated[
-        str,
-        typer.Option(
-            metavar="KIND,…",
-            callback=damage_kinds,
-            help="Only what damaged source costs, causes included: three of ten copies are damaged "
-            "in each of these ways. See krl bench programs for the kinds.",
-        ),
-    ] = "",
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of copies and damage.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the copies.")] = 1,
 ) -> int:
     """Measure the survey: bytes per second, beside ANTLR, with a cache, at growing sizes.
 
@@ -53,8 +36,6 @@ def recover(
     check_files(json_file)
     wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
-    if damage:
-        return _damaged(roots, wanted, damage.split(","), seed, json_file)
     with as_input_errors(GrammarError, IngestError):
         grammar = krl_grammar()
         with progress_bar("measuring", steps(wanted)) as advance:
@@ -62,44 +43,6 @@ def recover(
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
     write_json(record, json_file, indent=1)
     _print(record)
-    return FINE
-
-
-def _damaged(
-    roots: Sequence[Path], sizes: Sequence[float], damages: list[str], seed: int, out: Path | None
-) -> int:
-    from grammar.notation.krl_grammar import krl_grammar
-    from recovery.bench.damaged_survey import measure_damaged
-    from support.files.discovery import IngestError
-
-    with as_input_errors(IngestError), progress_bar("measuring", len(sizes)) as advance:
-        costs = measure_damaged(
-            roots,
-            krl_grammar(),
-            negatives_or_ours(),
-            sizes=sizes,
-            damages=damages,
-            seed=seed,
-            on_step=advance,
-        )
-    record = {"bench": "recover damaged", "damage": damages, "seed": seed, **costs}
-    write_json(record, out, indent=1)
-    shown = [
-        (
-            f"{row['bytes'] / MB:,.1f} MB",
-            *(f"{row[count]:,}" for count in ("files", "failures", "forms", "clusters")),
-            f"{row['read_seconds']:.1f} s",
-            f"{row['cause_seconds']:.1f} s",
-            f"{row['s_per_mb']:.1f}",
-            peak(row),
-        )
-        for row in costs["scaling"]
-    ]
-    titles = ("damaged", "files", "failures", "forms", "clusters", "reading", "causes", "s/MB")
-    console = Console(highlight=False)
-    console.print(figures((*titles, "peak memory"), shown))
-    if shown:
-        print_growth(console, record, "cost of a MB")
     return FINE
 
 

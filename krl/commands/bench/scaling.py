@@ -20,16 +20,6 @@ SizesOption = Annotated[
 ]
 
 
-def damage_kinds(value: str) -> str:
-    """The value of ``--damage``, if each of its kinds is one."""
-    from grammar.bench.damage import DAMAGES
-
-    kinds = list(DAMAGES) if value == "all" else value.split(",")
-    if value and not DAMAGES.keys() >= set(kinds):
-        raise typer.BadParameter(f"kinds are {', '.join(DAMAGES)} and all")
-    return ",".join(kinds)
-
-
 def sizes_of(given: str) -> list[float]:
     """Sizes in MB from a list with commas."""
     try:
