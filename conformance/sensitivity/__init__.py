@@ -5,8 +5,7 @@
 `mutants`            changes drawn by chance from what decides semantics, put in place
 `line_reach`         which cases run which lines
 `mutant_trial`       mutants against the cases that run their lines
-`planted_fault`      a fault that no such change makes, thought up and planted
-`…_faults`           these faults: of the clock and outputs, the advance run, interrupts, paths
+`planted_faults`     faults that no such change makes
 `trial`              planted faults against cases
 `removed_features`   what the titles of cases name, taken out of them: which still pass
 `bench`              how many are noticed, and cases a second

@@ -12,7 +12,7 @@ from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
 from conformance.sensitivity.mutant_trial import OF_TRIAL, Fate, Trial
 from conformance.sensitivity.mutants import OF_CASES
-from conformance.sensitivity.planted_fault import Fault
+from conformance.sensitivity.planted_faults import Fault
 from conformance.sensitivity.trial import Verdict, try_faults
 from conformance.suite.case import Case
 

@@ -7,19 +7,14 @@ only others find changes a verdict.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
 from conformance.evaluation.execution import Setup
 from conformance.runner import run_case
-from conformance.sensitivity import (
-    advance_run_faults,
-    interrupt_faults,
-    path_faults,
-    timing_faults,
-)
-from conformance.sensitivity.planted_fault import Fault, on, several
+from conformance.sensitivity.planted_faults import FAULTS, Fault, on
 from conformance.suite.case import Case
 from interp.controller.scheduler import Scheduler
 from interp.robot.api.control_core import ControlCore
@@ -43,17 +38,6 @@ class Verdict:
     runs: int
 
 
-@cache
-def all_faults() -> tuple[Fault, ...]:
-    """Every fault there is, group by group."""
-    return (
-        *timing_faults.faults(),
-        *advance_run_faults.faults(),
-        *interrupt_faults.faults(),
-        *path_faults.faults(),
-    )
-
-
 def try_faults(
     faults: Sequence[Fault],
     cases: Sequence[Case],
@@ -63,7 +47,7 @@ def try_faults(
 ) -> list[Verdict]:
     """What becomes of each fault, in their order; the same whatever ``jobs`` is.
 
-    With more than one job the faults have to be among `all_faults`. ``on_done`` is called for
+    With more than one job the faults have to be among `FAULTS`. ``on_done`` is called for
     each fault as soon as it has its verdict. ``executor`` runs the cases.
     """
     running = [case for case in cases if case.phase == "run"]
@@ -80,7 +64,7 @@ def _verdicts(
 ) -> Iterator[Verdict]:
     if jobs <= 1:
         return (_verdict_of(one, cases, executor) for one in faults)
-    known = {id(one): number for number, one in enumerate(all_faults())}
+    known = {id(one): number for number, one in enumerate(FAULTS)}
     tasks = ((known[id(one)], _of_suites(one, cases), executor) for one in faults)
     return ordered_map(_verdict_of_number, tasks, jobs=jobs)
 
@@ -91,12 +75,12 @@ def _of_suites(fault: Fault, cases: Sequence[Case]) -> tuple[Case, ...]:
 
 def _verdict_of_number(number: int, cases: tuple[Case, ...], executor: str) -> Verdict:
     """Functions are not sent from process to process: a fault is known by its number there."""
-    return _verdict_of(all_faults()[number], cases, executor)
+    return _verdict_of(FAULTS[number], cases, executor)
 
 
 def _verdict_of(fault: Fault, cases: Sequence[Case], executor: str) -> Verdict:
     runs = 0
-    setup = Setup(executor, fault.robot)
+    setup = Setup(executor, "kinematic")
     for case in _of_suites(fault, cases):
         if not _passes(case, setup):
             continue
@@ -115,7 +99,9 @@ def _passes(case: Case, setup: Setup) -> bool:
 
 def _with(fault: Fault, case: Case, setup: Setup) -> str:
     """The verdict on a case with a fault where it is no longer ``pass``, else an empty text."""
-    with several(fault.plant, *_ending())():
+    with ExitStack() as stack:
+        for plant in (fault.plant, *_ending()):
+            stack.enter_context(plant())
         verdict = run_case(case, [setup]).verdict
     return "" if verdict == "pass" else verdict
 

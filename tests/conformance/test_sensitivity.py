@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from conformance.sensitivity import bench
-from conformance.sensitivity.planted_fault import Fault, constant, on, several
-from conformance.sensitivity.trial import all_faults, try_faults
+from conformance.sensitivity.planted_faults import FAULTS, Fault, on
+from conformance.sensitivity.trial import try_faults
 from conformance.suite.case import CASES, Case, read_case
 from interp.controller.state.clock import Clock
 from interp.executors import is_available
@@ -14,7 +14,7 @@ from interp.robot.planning import blending
 
 
 def _fault(words: str) -> Fault:
-    return next(one for one in all_faults() if one.words == words)
+    return next(one for one in FAULTS if one.words == words)
 
 
 def _cases(*names: str) -> list[Case]:
@@ -24,7 +24,7 @@ def _cases(*names: str) -> list[Case]:
 def test_a_fault_is_there_only_while_it_is_planted() -> None:
     """The clock rounds down within the context and up outside of it, even after an error."""
     clock = Clock(12_000)
-    plant = constant(Clock, "tick_after", lambda _clock, _duration: 12_000)
+    plant = on(Clock, "tick_after", lambda _right: lambda _clock, _duration: 12_000)
     seen = []
 
     def fails() -> None:
@@ -38,22 +38,12 @@ def test_a_fault_is_there_only_while_it_is_planted() -> None:
     assert 24_000 == clock.tick_after(23_000)
 
 
-def test_plants_are_put_back_in_any_combination() -> None:
-    """Attributes and constants come back as they were."""
-    half, cycle = blending._HALF, Clock.__dict__["cycle"]
-    plant = several(on(Clock, "cycle", lambda _one: 3), constant(blending, "_HALF", 0.9))
-    with plant():
-        assert (3, 0.9) == (Clock.__dict__["cycle"], blending._HALF)
-    assert (cycle, half) == (Clock.__dict__["cycle"], blending._HALF)
-
-
-def test_there_are_enough_faults_and_each_has_its_name(own_cases: list[Case]) -> None:
-    """There are forty and more; no two are called the same."""
-    assert len(all_faults()) >= 40
-    names = [(one.group, one.words) for one in all_faults()]
+def test_each_fault_has_its_name_and_suites(own_cases: list[Case]) -> None:
+    """No two are called the same, and the suites that have to find them exist."""
+    names = [(one.group, one.words) for one in FAULTS]
     assert len(names) == len(set(names))
     suites = {case.suite for case in own_cases}
-    assert set() == {suite for one in all_faults() for suite in one.suites} - suites
+    assert set() == {suite for one in FAULTS for suite in one.suites} - suites
 
 
 @pytest.mark.parametrize(
@@ -61,9 +51,7 @@ def test_there_are_enough_faults_and_each_has_its_name(own_cases: list[Case]) ->
     [
         ("outputs are switched a cycle late", "trigger/start_distance_0"),
         ("only the last trigger counts", "trigger/two_at_once"),
-        ("an event is a level, not an edge", "interrupt/called_once"),
-        ("nothing is blended", "blending/c_dis_blends"),
-        ("CONTINUE does nothing", "advance/continue_spares"),
+        ("a number is declared once and for all", "interrupt/declared_anew"),
     ],
 )
 def test_a_case_finds_a_fault(words: str, case: str) -> None:
@@ -80,17 +68,17 @@ def test_a_case_finds_a_fault_under_native_code(
     """The executor that is asked for runs the case with the fault."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     (found,) = try_faults(
-        [_fault("an event is a level, not an edge")],
-        _cases("interrupt/called_once"),
+        [_fault("a number is declared once and for all")],
+        _cases("interrupt/declared_anew"),
         executor="compiled",
     )
-    assert ("interrupt/called_once", "fail") == (found.case, found.verdict)
+    assert ("interrupt/declared_anew", "fail") == (found.case, found.verdict)
     assert [] != list(tmp_path.rglob("*.so"))
 
 
 def test_each_fault_is_reported_when_it_was_judged() -> None:
     """Progress moves with each fault, and nothing depends on how many processes there are."""
-    faults, cases = all_faults()[:3], _cases("io/anout_follows", "control/if_else")
+    faults, cases = FAULTS[:3], _cases("io/anout_follows", "control/if_else")
     told: list[int] = []
     alone = try_faults(faults, cases, 1, told.append)
     assert [1, 1, 1] == told
@@ -100,7 +88,7 @@ def test_each_fault_is_reported_when_it_was_judged() -> None:
 
 def test_a_fault_that_changes_nothing_survives() -> None:
     """A fault that nobody can see is told as not found, with how often it was looked for."""
-    nothing = Fault("none", "nothing", ("control",), constant(blending, "_HALF", blending._HALF))
+    nothing = Fault("none", "nothing", ("control",), on(blending, "_HALF", lambda half: half))
     (found,) = try_faults([nothing], _cases("control/recursion", "control/if_else"))
     assert (None, 2) == (found.case, found.runs)
     record = bench.record_of([found])

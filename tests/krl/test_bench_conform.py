@@ -21,17 +21,17 @@ def test_faults_of_a_group_are_planted_and_counted(
     known = [one for one in cases.find_cases() if one.name in names]
     monkeypatch.setattr(cases, "find_cases", lambda: known)
     target = tmp_path / "bench.json"
-    words = ["bench", "conform", "--mutants", "0", "--group", "triggers", "--jobs", "1"]
+    words = ["bench", "conform", "--mutants", "0", "--group", "outputs", "--jobs", "1"]
     assert 0 == main([*words, "--json", str(target)])
     record = json.loads(target.read_text(encoding="utf-8"))
-    assert ["triggers"] == [one["group"] for one in record["groups"]]
+    assert ["outputs"] == [one["group"] for one in record["groups"]]
     assert (
         record["mutants"] == len(record["verdicts"]) == record["killed"] + len(record["survivors"])
     )
     assert 1 == record["killed"]
     assert record["cases_per_s"] > 0
     assert (
-        "Not found: triggers: a trigger is for every motion that follows" in capsys.readouterr().out
+        "Not found: outputs: groups have their bits the other way round" in capsys.readouterr().out
     )
 
 

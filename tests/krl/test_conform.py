@@ -180,9 +180,9 @@ def test_a_change_has_to_be_unambiguous(capsys: pytest.CaptureFixture[str]) -> N
 
 def test_a_fault_has_to_be_unambiguous(capsys: pytest.CaptureFixture[str]) -> None:
     """Words that fit several faults name them; words that fit none say where all are named."""
-    assert 2 == run("control/recursion", "--fault", "groups")
+    assert 2 == run("control/recursion", "--fault", "targets")
     assert (
-        "groups have their bits the other way round; groups have eight bits at most"
+        "the Status of a target counts nothing; $TOOL counts nothing; components left out are zero"
         in capsys.readouterr().err
     )
     assert 2 == run("control/recursion", "--fault", "nobody knows this")

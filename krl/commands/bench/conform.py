@@ -82,11 +82,11 @@ def conform(
         from conformance.evaluation.execution import Setup, missing
         from conformance.sensitivity.bench import measure, speed_of
         from conformance.sensitivity.mutants import OF_CASES
-        from conformance.sensitivity.trial import all_faults
+        from conformance.sensitivity.planted_faults import FAULTS
         from conformance.suite.case import CaseError, find_cases
     if removed:
         return _removals(json_file, all_cores(jobs))
-    groups = list(dict.fromkeys(one.group for one in all_faults()))
+    groups = list(dict.fromkeys(one.group for one in FAULTS))
     for name in group or ():
         if name not in (*groups, "none"):
             raise InputError(f"--group {name}: the groups are {', '.join(groups)}, none")
@@ -95,7 +95,7 @@ def conform(
             raise InputError(f"--package {name}: the packages are {', '.join(OF_CASES)}")
     if lacking := missing(Setup(executor.value, "none")):
         raise InputError(f"--executor {executor.value}: {lacking}")
-    faults = [one for one in all_faults() if not group or one.group in group]
+    faults = [one for one in FAULTS if not group or one.group in group]
     with as_input_errors(CaseError):
         cases = find_cases()
     seeds = seed or [_SEED]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from krl.errors import InputError
 
 if TYPE_CHECKING:
-    from conformance.sensitivity.planted_fault import Fault
+    from conformance.sensitivity.planted_faults import Fault
 
 _SHOWN = 12
 
@@ -49,10 +49,10 @@ def _mutant(words: str) -> Iterator[str]:
 
 def _chosen(words: str) -> "Fault":
     """The one with these words, or with these among its own, whatever the letter case."""
-    from conformance.sensitivity.trial import all_faults
+    from conformance.sensitivity.planted_faults import FAULTS
 
     wanted = words.strip().casefold()
-    fitting = [one for one in all_faults() if wanted in f"{one.group}: {one.words}".casefold()]
+    fitting = [one for one in FAULTS if wanted in f"{one.group}: {one.words}".casefold()]
     exact = [one for one in fitting if one.words.casefold() == wanted]
     if len(exact or fitting) == 1:
         return (exact or fitting)[0]
