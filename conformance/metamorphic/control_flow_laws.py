@@ -29,22 +29,11 @@ from grammar.syntax import ast
 from grammar.syntax.walk import children, walk
 
 Statements = tuple[ast.Statement, ...]
-_EXIT: Final = ast.Exit(MADE)
 _MOST_FOLDED: Final = 1_000
 
 
-def _everywhere(program: Program, make: Callable[[ast.Routine], Change]) -> Program | None:
-    """The program with each routine changed, if any of them is another then."""
-    changed, is_other = {}, False
-    for path, module in (program.modules or {}).items():
-        found = [rewritten(one, make(one)) for one in routines(module)]
-        is_other = is_other or any(a is not b for a, b in zip(found, routines(module), strict=True))
-        changed[path] = with_routines(module, found) if found else module
-    return program.written(changed) if is_other else None
-
-
 def _simply(change: Change) -> Callable[[Program, Random], Program | None]:
-    return lambda program, _random: _everywhere(program, lambda _routine: change)
+    return lambda program, _random: program.rewritten(lambda _routine: change)
 
 
 def _if(condition: ast.Expression, *body: ast.Statement) -> ast.If:
@@ -52,12 +41,6 @@ def _if(condition: ast.Expression, *body: ast.Statement) -> ast.If:
 
 
 # ------------------------------------------------------------------------------------ loops
-
-
-def _while_to_loop(node: ast.Node) -> ast.Node:
-    if not isinstance(node, ast.While):
-        return node
-    return ast.Loop(MADE, (_if(negated(node.condition), _EXIT), *node.body))
 
 
 def _for_to_while(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
@@ -79,12 +62,6 @@ def _is_down(number: ast.Expression) -> bool | None:
     is_down = isinstance(number, ast.Unary) and number.operator == "-"
     digits = number.operand if isinstance(number, ast.Unary) else number
     return is_down if isinstance(digits, ast.IntegerLiteral) else None
-
-
-def _repeat_to_loop(node: ast.Node) -> ast.Node:
-    if not isinstance(node, ast.Repeat) or _has_labels(node.body):
-        return node
-    return ast.Loop(MADE, (*node.body, _if(node.condition, _EXIT)))
 
 
 def _has_labels(body: Statements) -> bool:
@@ -116,7 +93,7 @@ def _with_goto(program: Program, _random: Random) -> Program | None:
         inner = {id(one) for loop in walk(routine) if _is_loop(loop) for one in _below(loop)}
         return lambda node: node if id(node) in inner else change(node)
 
-    return _everywhere(program, make)
+    return program.rewritten(make)
 
 
 def _is_loop(node: ast.Node) -> bool:
@@ -159,46 +136,6 @@ def _without_exit(node: ast.Statement, label: ast.Name) -> ast.Statement:
 # ------------------------------------------------------------------------------------ branches
 
 
-def _if_to_switch(node: ast.Node) -> ast.Node:
-    """``IF V == 3`` for a variable of the program that is compared with a number."""
-    match node:
-        case ast.If(
-            condition=ast.Binary(operator="==", left=ast.Variable() as selector, right=right)
-        ):
-            if not isinstance(right, ast.IntegerLiteral) or selector.name.text.startswith("$"):
-                return node
-            branch = ast.CaseBranch(MADE, (right,), node.body)
-            return ast.Switch(MADE, selector, (branch,), node.otherwise)
-    return node
-
-
-def _without_reals(program: Program, random: Random) -> Program | None:
-    """SWITCH knows no REAL: such a variable has to be known as INT by its declaration."""
-    declared = {
-        declarator.name.key
-        for module in (program.modules or {}).values()
-        for one in walk(module)
-        if isinstance(one, ast.VariableDeclaration) and one.type.key != "INT"
-        for declarator in one.declarators
-    }
-    passed = {
-        parameter.name.key
-        for module in (program.modules or {}).values()
-        for routine in routines(module)
-        for parameter in routine.parameters
-    }
-
-    def change(node: ast.Node) -> ast.Node:
-        found = _if_to_switch(node)
-        if isinstance(found, ast.Switch) and found is not node:
-            assert isinstance(found.selector, ast.Variable)
-            if found.selector.name.key in declared | passed:
-                return node
-        return found
-
-    return _simply(change)(program, random)
-
-
 def _switch_to_if(node: ast.Node) -> ast.Node:
     """A chain of IF, where looking at the selector twice does not matter."""
     if not isinstance(node, ast.Switch) or not isinstance(node.selector, ast.Variable):
@@ -215,14 +152,6 @@ def _switch_to_if(node: ast.Node) -> ast.Node:
             condition = ast.Binary(MADE, "OR", condition, test)
         chain = (ast.If(MADE, condition, branch.body, chain),)
     return chain[0] if chain and isinstance(chain[0], ast.If) else node
-
-
-def _branches_exchanged(node: ast.Node) -> ast.Node:
-    if not isinstance(node, ast.If) or node.otherwise is None:
-        return node
-    return replace(
-        node, condition=negated(node.condition), body=node.otherwise, otherwise=node.body
-    )
 
 
 # ------------------------------------------------------------------------------------ routines
@@ -337,36 +266,16 @@ def _unfolded(program: Program, random: Random) -> Program | None:
         }
         return lambda node: node if id(node) in fixed else change(node)
 
-    return _everywhere(program, make)
-
-
-def _doubled_parentheses(node: ast.Node) -> ast.Node:
-    if not isinstance(node, ast.Assignment) or not isinstance(node.value, ast.Binary):
-        return node
-    return replace(node, value=parenthesised(parenthesised(node.value)))
+    return program.rewritten(make)
 
 
 LAWS: Final[Sequence[Law]] = (
-    Law(
-        "WHILE as LOOP and EXIT",
-        "WHILE is a LOOP that begins with a test to EXIT",
-        ("CTL-01", "CTL-02"),
-        same_effects,
-        _simply(_while_to_loop),
-    ),
     Law(
         "FOR as WHILE",
         "FOR counts by its step, with a test before each pass",
         ("CTL-01", "CTL-05"),
         same_effects,
         _simply(_for_to_while),
-    ),
-    Law(
-        "REPEAT as LOOP and EXIT",
-        "REPEAT is a LOOP that ends with a test to EXIT",
-        ("CTL-01", "CTL-02"),
-        same_effects,
-        _simply(_repeat_to_loop),
     ),
     Law(
         "GOTO in place of a loop",
@@ -376,25 +285,11 @@ LAWS: Final[Sequence[Law]] = (
         _with_goto,
     ),
     Law(
-        "IF as SWITCH",
-        "IF with a number to compare with is a SWITCH with one CASE",
-        ("CTL-03", "CTL-04"),
-        same_effects,
-        _without_reals,
-    ),
-    Law(
         "SWITCH as IF",
         "SWITCH is a chain of IF in the order of its cases",
         ("CTL-03", "CTL-04"),
         same_effects,
         _simply(_switch_to_if),
-    ),
-    Law(
-        "branches exchanged",
-        "IF is the same with NOT and its branches exchanged",
-        ("CTL-03",),
-        same_effects,
-        _simply(_branches_exchanged),
     ),
     Law(
         "inlining",
@@ -409,12 +304,5 @@ LAWS: Final[Sequence[Law]] = (
         ("ARI-01", "ARI-05"),
         same_trace,
         _unfolded,
-    ),
-    Law(
-        "parentheses",
-        "parentheses around a whole value change nothing",
-        ("ARI-05",),
-        same_trace,
-        _simply(_doubled_parentheses),
     ),
 )

@@ -15,7 +15,6 @@ from conformance.metamorphic.comparison import (
     same_axes,
     same_geometry,
     same_outputs,
-    same_trace,
 )
 from conformance.metamorphic.law import Law
 from conformance.metamorphic.subject import Program, Run
@@ -79,9 +78,8 @@ def _has_exact_stops(program: Program) -> bool:
     return _is_timeless(program) and not any(one.criteria for one in _motions(program))
 
 
-def _blends_by_way(program: Program) -> bool:
-    criteria = {each for one in _motions(program) for each in one.criteria}
-    return _is_timeless(program) and bool(criteria) and "C_VEL" not in criteria
+def _goes_by_place(program: Program) -> bool:
+    return _is_timeless(program) and all("C_VEL" not in one.criteria for one in _motions(program))
 
 
 def _with_prelude(program: Program, *statements: ast.Statement) -> Program | None:
@@ -299,10 +297,6 @@ def _where_all_blends(compare: Compare) -> Compare:
     return found
 
 
-def _both(left: Observation, right: Observation) -> str:
-    return same_trace(left, right) or same_axes(left, right)
-
-
 LAWS: Final[Sequence[Law]] = (
     Law(
         "points and base shifted",
@@ -315,21 +309,12 @@ LAWS: Final[Sequence[Law]] = (
     ),
     Law(
         "override",
-        "the override changes times, not where the arm goes: exact stops and spline blocks",
-        ("SPL-03", "MOT-09"),
+        "the override changes times, not where the arm goes, but for blends by speed",
+        ("BLD-01", "MOT-09", "SPL-03"),
         same_geometry,
         _slower,
         _KINEMATIC,
-        needs=_has_exact_stops,
-    ),
-    Law(
-        "override of blends",
-        "nor does it change where blends lie, but for those by speed",
-        ("BLD-01", "MOT-09"),
-        same_geometry,
-        _slower,
-        _KINEMATIC,
-        needs=_blends_by_way,
+        needs=_goes_by_place,
     ),
     Law(
         "half the override",
@@ -367,38 +352,5 @@ LAWS: Final[Sequence[Law]] = (
         _KINEMATIC,
         Run(robot="kinematic", motion="batch"),
         needs=_is_for_batches,
-    ),
-    Law(
-        "machine in Python",
-        "the machine in Python does what the tree interpreter does, at the same time",
-        (),
-        same_trace,
-        None,
-        other=Run("vm"),
-    ),
-    Law(
-        "machine in C",
-        "the machine in C does what the tree interpreter does, at the same time",
-        (),
-        same_trace,
-        None,
-        other=Run("native"),
-    ),
-    Law(
-        "robots",
-        "the trace does not depend on whether a robot follows the set-points",
-        (),
-        same_trace,
-        None,
-        other=_KINEMATIC,
-    ),
-    Law(
-        "twice",
-        "a program that is run twice has the same trace and path, to the bit",
-        (),
-        _both,
-        None,
-        _KINEMATIC,
-        _KINEMATIC,
     ),
 )

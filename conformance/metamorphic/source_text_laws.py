@@ -22,11 +22,9 @@ from conformance.metamorphic.tree_rewriting import (
     with_routines,
 )
 from grammar.syntax import ast
-from grammar.syntax.formatter import formatter
 from grammar.syntax.walk import walk
 
 _STRINGS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
-_PLAIN_TYPES: Final = frozenset({"INT", "REAL", "BOOL", "CHAR", "FRAME", "POS", "E6POS", "AXIS"})
 
 
 def _folded(program: Program, random: Random) -> Program | None:
@@ -82,18 +80,6 @@ def _prints_names(program: Program) -> bool:
         {"SWRITE", "CWRITE", "SREAD", "CREAD"} & calls_of(module)
         for module in (program.modules or {}).values()
     )
-
-
-def _laid_out(program: Program, _random: Random) -> Program | None:
-    """As `krl format` sets it."""
-    texts = {}
-    for source in program.case.sources:
-        found = formatter().layout(source.text, source.path)
-        if not isinstance(found, str):
-            return None
-        texts[source.path] = found
-    changed = any(texts[one.path] != one.text for one in program.case.sources)
-    return program.with_texts(texts) if changed else None
 
 
 # ------------------------------------------------------------------------------------ names
@@ -152,66 +138,24 @@ def _with_names(routine: ast.Routine, names: dict[str, str]) -> ast.Routine:
 # ------------------------------------------------------------------------------------ declarations
 
 
-def _of_routines(program: Program, change: object) -> Program | None:
-    """Another program where ``change`` makes another routine of one."""
-    assert callable(change)
-    changed, is_other = {}, False
-    for path, module in (program.modules or {}).items():
-        found = [change(routine) for routine in routines(module)]
-        is_other = is_other or any(a is not b for a, b in zip(found, routines(module), strict=True))
-        changed[path] = with_routines(module, found) if found else module
-    return program.written(changed) if is_other else None
-
-
 def _reordered(program: Program, _random: Random) -> Program | None:
     """Neighbouring declarations of plain variables the other way round."""
 
-    def change(routine: ast.Routine) -> ast.Routine:
+    def change(node: ast.Node) -> ast.Node:
+        if not isinstance(node, ast.Routine):
+            return node
         body: list[ast.Statement] = []
-        for is_declaration, group in groupby(routine.body, _is_plain):
+        for is_declaration, group in groupby(node.body, _is_plain):
             found = list(group)
             body += reversed(found) if is_declaration else found
-        is_same = all(a is b for a, b in zip(body, routine.body, strict=True))
-        return routine if is_same else replace(routine, body=tuple(body))
+        is_same = all(a is b for a, b in zip(body, node.body, strict=True))
+        return node if is_same else replace(node, body=tuple(body))
 
-    return _of_routines(program, change)
+    return program.rewritten(lambda _routine: change)
 
 
 def _is_plain(node: ast.Statement) -> bool:
     return isinstance(node, ast.VariableDeclaration) and not node.is_constant
-
-
-def _split(program: Program, _random: Random) -> Program | None:
-    """Each variable gets a declaration of its own."""
-
-    def change(routine: ast.Routine) -> ast.Routine:
-        body: list[ast.Statement] = []
-        for one in routine.body:
-            if isinstance(one, ast.VariableDeclaration) and len(one.declarators) > 1:
-                body += [replace(one, declarators=(each,)) for each in one.declarators]
-            else:
-                body.append(one)
-        return routine if len(body) == len(routine.body) else replace(routine, body=tuple(body))
-
-    return _of_routines(program, change)
-
-
-def _decl_exchanged(program: Program, _random: Random) -> Program | None:
-    """DECL before types that do not need it where it is missing, and none where it stands."""
-
-    def change(routine: ast.Routine) -> ast.Routine:
-        body = tuple(
-            replace(one, has_decl=not one.has_decl)
-            if _is_plain(one)
-            and isinstance(one, ast.VariableDeclaration)
-            and one.type.key in _PLAIN_TYPES
-            else one
-            for one in routine.body
-        )
-        is_same = all(a is b for a, b in zip(body, routine.body, strict=True))
-        return routine if is_same else replace(routine, body=body)
-
-    return _of_routines(program, change)
 
 
 def _routines_moved(program: Program, random: Random) -> Program | None:
@@ -266,14 +210,6 @@ LAWS: Final[Sequence[Law]] = (
         _other_case,
     ),
     Law(
-        "layout",
-        "what krl format changes means nothing to a program",
-        ("ADV-08",),
-        same_trace,
-        _laid_out,
-        is_of_text=True,
-    ),
-    Law(
         "names of local variables",
         "it does not matter what a local variable is called",
         ("TYP-05", "SCO-03"),
@@ -286,20 +222,6 @@ LAWS: Final[Sequence[Law]] = (
         ("TYP-06",),
         same_trace,
         _reordered,
-    ),
-    Law(
-        "declaration lists",
-        "a list of variables is as good as a declaration for each",
-        ("TYP-06",),
-        same_trace,
-        _split,
-    ),
-    Law(
-        "DECL",
-        "DECL may be dropped before the types of the controller",
-        ("TYP-06",),
-        same_trace,
-        _decl_exchanged,
     ),
     Law(
         "order of routines",

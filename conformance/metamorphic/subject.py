@@ -6,7 +6,7 @@ program and runs both; `Program.modules` are its files as trees, `Program.writte
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Final, Literal
 
 from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.observation import Observation
+from conformance.metamorphic.tree_rewriting import Change, rewritten, routines, with_routines
 from conformance.suite.case import Case
 from grammar.generation.closed.programs import Sample
 from grammar.syntax import ast
@@ -31,7 +32,6 @@ _KNOW_LINES: Final = ("LINE_NR", "PROG_LINE", "$PRO_IP", "$PRO_NAME")
 class Run:
     """How a program is run."""
 
-    executor: str = "tree"
     robot: str = "none"
     motion: Literal["lookahead", "batch"] = "lookahead"
 
@@ -80,6 +80,16 @@ class Program:
         sources = tuple(Source(unparse(module), path) for path, module in modules.items())
         return Program(replace(self.case, sources=sources))
 
+    def rewritten(self, change_for: Callable[[ast.Routine], Change]) -> Program | None:
+        """The program with each routine changed; ``None`` where all stay as they are."""
+        changed, is_other = {}, False
+        for path, module in (self.modules or {}).items():
+            found = [rewritten(one, change_for(one)) for one in routines(module)]
+            pairs = zip(found, routines(module), strict=True)
+            is_other = is_other or any(one is not before for one, before in pairs)
+            changed[path] = with_routines(module, found) if found else module
+        return self.written(changed) if is_other else None
+
     def with_texts(self, texts: Mapping[str, str]) -> Program:
         """A program with other texts of some of its files."""
         sources = tuple(
@@ -89,4 +99,4 @@ class Program:
 
     def run(self, how: Run) -> Observation:
         """Run it."""
-        return observe(self.case, Setup(how.executor, how.robot, how.motion))
+        return observe(self.case, Setup("tree", how.robot, how.motion))

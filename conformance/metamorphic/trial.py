@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from platform import node
 from random import Random
 from typing import Any, Final
 
@@ -15,10 +14,10 @@ from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program
 from conformance.suite.case import Case
 from grammar.generation.closed.programs import seeded
-from interp.executors import available
 from support.parallel.ordered_map import ordered_map
-from support.parallel.workers import WorkersError
 
+#: Every law.
+LAWS: Final = (*source_text_laws.LAWS, *control_flow_laws.LAWS, *motion_laws.LAWS)
 #: For each generated program that a law is to apply to, so many are looked at.
 _LOOKED_AT: Final = 6
 
@@ -41,12 +40,6 @@ class Standing:
         return self.applied - len(self.broken)
 
 
-def laws() -> tuple[Law, ...]:
-    """All laws that can be tried here: without a C compiler there is no machine in C."""
-    every = (*source_text_laws.LAWS, *control_flow_laws.LAWS, *motion_laws.LAWS)
-    return tuple(one for one in every if one.other is None or one.other.executor in available())
-
-
 def try_laws(
     cases: Sequence[Case],
     programs: int,
@@ -62,7 +55,7 @@ def try_laws(
     tried.
     """
     running = [case for case in cases if case.phase == "run"]
-    tasks = ((law.name, running, programs, seed) for law in laws())
+    tasks = ((law.name, running, programs, seed) for law in LAWS)
     found = []
     for counted in ordered_map(_standing, tasks, jobs=max(1, jobs), scheduler=scheduler):
         found.append(_whole(counted))
@@ -75,7 +68,7 @@ _Counted = tuple[str, int, int, tuple[Attempt, ...]]
 
 
 def _law(name: str) -> Law:
-    return next(law for law in laws() if law.name == name)
+    return next(law for law in LAWS if law.name == name)
 
 
 def _whole(counted: _Counted) -> Standing:
@@ -84,8 +77,6 @@ def _whole(counted: _Counted) -> Standing:
 
 
 def _standing(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
-    if all(law.name != name for law in laws()):
-        raise WorkersError(f"a worker on {node()} lacks the executor for the law '{name}'")
     law = _law(name)
     drawn = list(cases)
     Random(f"{seed}/{law.name}").shuffle(drawn)

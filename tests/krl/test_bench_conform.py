@@ -66,11 +66,11 @@ def test_laws_are_reported_one_by_one(
     """Each law has its line and its place in the record; a broken one is status 1."""
     from conformance.metamorphic import law, trial
 
-    right = trial.laws()[0]
+    right = trial.LAWS[0]
     wrong = law.Law("wrong", "", (), lambda _left, _right: "they differ", right.change)
     for made, status in (((right,), 0), ((right, wrong), 1)):
-        monkeypatch.setattr(trial, "laws", lambda made=made: made)
-        monkeypatch.setattr("conformance.metamorphic.laws", trial.laws)
+        monkeypatch.setattr(trial, "LAWS", made)
+        monkeypatch.setattr("conformance.metamorphic.LAWS", made)
         target = tmp_path / f"{status}.json"
         words = ["conform", "control/if_else", "--metamorphic", "1", "--jobs", "1"]
         assert status == main([*words, "--json", str(target)])
