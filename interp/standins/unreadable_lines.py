@@ -4,14 +4,15 @@ A controller selects no such program. Offline most of it can be run all the same
 cannot be read becomes a call of `UNREADABLE`, a routine that no file has and for which one stands
 in that does nothing, so that the trace shows when the line was passed; so does a condition, which
 counts as TRUE. A loop that counts is gone through once, and its head calls `COUNT`. A declaration
-that cannot be read is left out: stand-ins take its place.
+that cannot be read is left out: stand-ins take its place. A file that begins without DEF gets one,
+and blanks and quotation marks of word processors are read as those of KRL.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.diagnostics.error_recovery import recover
@@ -31,15 +32,28 @@ _DECLARES: Final = frozenset(
 _TRUE: Final = re.compile(r"^\s*((?:IF|UNTIL) )TRUE\b")
 _ONCE: Final = re.compile(r"^\s*(FOR \S+=1 TO 1)\s*$")
 _WORD: Final = re.compile(r"\s*(\w*)")
+#: A name has so many letters at most.
+_LONGEST: Final = 24
 #: So many are tried one by one where not all can stand together.
 _MOST: Final = 20
+#: What word processors and web pages put in the place of signs of KRL: each for one.
+_SIGNS: Final = str.maketrans(
+    {"\N{NO-BREAK SPACE}": " ", **dict.fromkeys("“”„", '"'), **dict.fromkeys("‘’", "'"), "−": "-"}
+)
+#: How a file begins that has no head, by the first word that ends a routine in it.
+_HEADS: Final = {"END": "DEF {}( )", "ENDFCT": "DEFFCT INT {}( )", "ENDDAT": "DEFDAT {}"}
+_HEAD_OR_END: Final = re.compile(
+    r"\s*(?:GLOBAL\s+)?(DEF|DEFFCT|DEFDAT|DEFTP|END|ENDFCT|ENDDAT)\b", re.I
+)
+#: A head that is misspelt is for `recover` to read, with the name that it has.
+_LIKE_HEAD: Final = re.compile(r"\s*(?:GLOBAL\s+)?[DEF]\w{0,5}\s+[\w$]+\s*\(", re.I)
 
 
 @dataclass(frozen=True, slots=True)
 class Readable:
     """A file as it can be run, and where and why not all of it can be read, in words.
 
-    ``source`` has a line for each line of the file.
+    ``source`` has a line for each line of the file, and one before them where a head had no room.
     """
 
     source: Source
@@ -49,6 +63,37 @@ class Readable:
 
 def readable(source: Source) -> Readable | None:
     """A file that has syntax errors without the lines that cannot be read; or ``None``."""
+    more = _with_head(Source(source.text.translate(_SIGNS), source.path))
+    if more.text != source.text:
+        failures = read_module(source.text, source.path)
+        syntax = read_module(more.text, source.path)
+        assert isinstance(failures, list), "it has syntax errors"
+        first = syntax_findings(failures, source)[0]
+        reason = f"{source.path}:{first.region.line}: {first.message}"
+        if isinstance(syntax, ast.Module):
+            return Readable(more, syntax, (reason,))
+        rest = _without_lines(more)
+        return rest and replace(rest, reasons=tuple(dict.fromkeys((reason, *rest.reasons))))
+    return _without_lines(source)
+
+
+def _with_head(source: Source) -> Source:
+    """A file with a head in the last line before its first statement, if it has none."""
+    lines = list(source.lines)
+    first = next((number for number, line in enumerate(lines) if _first_word(line)), None)
+    if first is None or _LIKE_HEAD.match(lines[first]):
+        return source
+    found = next(filter(None, map(_HEAD_OR_END.match, lines)), None)
+    word = "END" if found is None else found[1].upper()
+    if word not in _HEADS:
+        return source
+    name = source.name if source.name.isidentifier() and source.name.isascii() else "MAIN"
+    head = _HEADS["ENDDAT" if source.kind == "dat" else word].format(name[:_LONGEST])
+    lines[max(first - 1, 0) : first] = [head]
+    return Source("\n".join(lines), source.path)
+
+
+def _without_lines(source: Source) -> Readable | None:
     found = recover(source.text, source.path)
     if found.syntax is None:
         return None

@@ -25,7 +25,7 @@ class Decoded:
 
     `text` has its newlines as they were, and no byte order mark. `encoding` is the Python name of
     what it was written in: `text.encode(encoding)` gives back the bytes, but for the mark of
-    UTF-16 and UTF-32 and for the padding that `decode` drops.
+    UTF-16 and UTF-32 and for what `decode` drops at the end.
     """
 
     text: str
@@ -50,8 +50,9 @@ def decode(data: bytes) -> Decoded | str:
     """Return the text of a KRL file, or in one line why `data` is not KRL text.
 
     Read as UTF-8 where that is valid, else as cp1252, else as Latin-1, because cp1252 leaves five
-    bytes undefined; as UTF-16 or UTF-32 where the byte order mark says so. Ctrl-Z and NUL bytes at
-    the very end are dropped: old controllers pad their files with them.
+    bytes undefined; as UTF-16 or UTF-32 where the byte order mark says so, or every other byte is
+    zero. Ctrl-Z and NUL bytes at the very end are dropped: old controllers pad their files with
+    them; so is half a character of UTF-16.
     """
     if not data:
         return "empty file"
@@ -71,6 +72,9 @@ _WIDE = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 _PADDING = "\0\x1a"
+# Where the zeros of Latin letters are.
+_ZEROS = {"utf-16-le": 1, "utf-16-be": 0}
+_LOOKED_AT = 64
 _CONTROLS = bytes(set(range(32)) - set(b"\t\n\v\f\r")) + b"\x7f"
 _MAGIC = (
     (b"\xff\xd8\xff", "a JPEG image"),
@@ -92,10 +96,12 @@ _MAGIC = (
 
 def _text_of(data: bytes) -> Decoded | str:
     """Decode `data`, or say why it is not text."""
-    for mark, encoding in _WIDE:
+    unmarked = ((b"", encoding) for encoding, place in _ZEROS.items() if _is_wide(data, place))
+    for mark, encoding in (*_WIDE, *unmarked):
         if data.startswith(mark):
+            width = 4 if "32" in encoding else 2
             try:
-                text = data[len(mark) :].decode(encoding)
+                text = data[len(mark) : len(data) // width * width].decode(encoding)
             except UnicodeDecodeError:
                 continue
             text = text.rstrip(_PADDING)
@@ -112,6 +118,12 @@ def _text_of(data: bytes) -> Decoded | str:
             continue
         return Decoded(text, "utf-8-sig" if marked and encoding == "utf-8" else encoding)
     return Decoded(body.decode("latin-1"), "latin-1")
+
+
+def _is_wide(data: bytes, place: int) -> bool:
+    """Whether every other byte is zero from a place on, and no other, where the text begins."""
+    start = data[: _LOOKED_AT // 2 * 2]
+    return len(start) > 1 and not any(start[place::2]) and all(start[1 - place :: 2])
 
 
 def _why_binary(body: bytes) -> str | None:

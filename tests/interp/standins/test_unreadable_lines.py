@@ -109,3 +109,37 @@ def test_file_that_was_cut(end: str) -> None:
         run.outcome.ending,
         sum(event.kind == "motion_end" for event in run.events),
     )
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("&ACCESS RVP\n\nWAIT SEC 0\n$OUT[1]=TRUE\nEND\n", 4),
+        (";by mail\nGLOBAL INTERRUPT DECL 3 WHEN $IN[1] DO main()\n$OUT[1]=TRUE\n", 3),
+        ("DECL INT J\nJ=1\n$OUT[J]=TRUE\nEND\nDEF other ( )\nEND\n", 4),  # no room: one line more
+        ("J=1\n$OUT[1]=TRUE\nRETURN J\nENDFCT\n", 3),
+        ("DEF main ( )\n\N{NO-BREAK SPACE}$OUT[1]\N{NO-BREAK SPACE}= TRUE\nEND\n", 2),
+        ("DEF main ( )\nMsgNotify(“on”)\n$OUT[1]=TRUE\nEND\n", 3),
+    ],
+)
+def test_what_is_missing_or_strange_is_put_right(text: str, line: int, executor: str) -> None:
+    """A file without DEF, or with signs of a word processor, loses no statement."""
+    program, run = _run(text, executor)
+    assert ("end", [f"main.src:{line}"]) == (
+        run.outcome.ending,
+        [event.place for event in run.events if event.kind == "out"],
+    )
+    assert not _passed(run)
+    assert program.damaged == {"main.src"}
+
+
+def test_data_list_without_its_head() -> None:
+    """It is read all the same, and so is a data list of which only data is left."""
+    files = [
+        Source("DEF main ( )\n$OUT[N]=TRUE\nEND\n", "main.src"),
+        Source("&ACCESS RVP\nDECL INT N=7\n", "main.dat"),
+    ]
+    program = load(files, "main.src", strict=False, stands_in=True, unread=[])
+    run = run_program(program, RunSetup())
+    assert [7] == [event.fields["number"] for event in run.events if event.kind == "out"]

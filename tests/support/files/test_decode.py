@@ -54,6 +54,14 @@ def test_wide_text_is_read_by_its_mark(encoding: str, tail: str) -> None:
     assert Decoded(text, encoding) == decode(BOMS[encoding] + text.encode(encoding))
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_utf16_is_read_without_a_mark(encoding: str) -> None:
+    """Every other byte of it is zero; a file that was cut may end within a character."""
+    data = f"{PROGRAM}; Ü 5 €".encode(encoding)
+    assert Decoded(f"{PROGRAM}; Ü 5 €", encoding) == decode(data)
+    assert Decoded(f"{PROGRAM}; Ü 5 ", encoding) == decode(data[:-1])
+
+
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 @given(tail=st.text(st.characters(exclude_categories=["Cc", "Cs"])))
 def test_utf8_round_trip(encoding: str, tail: str) -> None:
@@ -232,9 +240,9 @@ def test_an_endless_comment_is_not_read_to_its_end() -> None:
         (b"MZ\x90\0\x03", "binary data: a Windows program"),
         (b"DEF A()\nI=\0\0\0\nEND", "binary data: NUL bytes in it"),
         (b"DEF A()\n" + b"\x01\x02" * 30, "binary data: 60 control characters in it"),
-        ("DEF A()\nEND".encode("utf-16-le"), "binary data: NUL bytes in it"),
+        ("DEF A(\0)\nEND".encode("utf-16-le"), "binary data: NUL bytes in it"),
         (b"\xff\xfe" + "DEF A(\0)\nEND".encode("utf-16-le"), "binary data: NUL bytes in it"),
-        (b"\xff\xfe\0", "no KRL statement in its only line: looks like other text"),
+        (b"\xff\xfe\0", "no statements, only header, comment or blank lines"),
     ],
 )
 def test_binary_data_is_named(data: bytes, expected: str) -> None:
