@@ -1,1 +1,1 @@
-"""What stands between executors and controller: requests, replies, events."""
+"""The port between executors and the controller: requests, replies and events."""

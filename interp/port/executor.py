@@ -1,9 +1,10 @@
-"""The port between whoever executes a program and whoever owns the world it acts on.
+"""The executor as the controller sees it: it runs a program and returns requests.
 
-The executor *is* the advance run: it runs ahead of the arm, statement by statement, and hands over
-a request whenever it needs the world (`interp.port.requests`). The controller owns clock, motion
-queue, interrupts, triggers, submit, inputs and outputs and system variables, and decides when the
-executor may continue. Neither knows more of the other than this.
+The executor *is* the advance run: it runs ahead of the arm, statement by statement, and returns a
+request (`interp.port.requests`) whenever it needs the controller. The controller owns the clock,
+the motion queue, interrupts, triggers, the submit interpreter, inputs and outputs, and system
+variables. It decides when the executor may continue. Executor and controller know nothing else of
+each other.
 """
 
 from __future__ import annotations
@@ -15,56 +16,56 @@ from interp.port.events import Sink
 from interp.port.requests import CodeHandle, Path, Request, Value
 from interp.values.faults import Fault
 
-#: Reads a system variable at once, for conditions; raises `interp.values.faults.Fault`.
+#: Returns the value of a system variable at once, for conditions; raises
+#: `interp.values.faults.Fault`.
 Reader = Callable[[Path], Value]
 
 
 class Executor(Protocol):
-    """Runs one program."""
+    """Runs one program, a step between two requests at a time."""
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the controller is needed.
+        """Run the program until it needs the controller, and return the request.
 
-        ``reply`` answers the request before; a fault as reply is raised in the program at the
-        statement that asked, where ON_ERROR_PROCEED may take it [TYP-13]. After `End` at depth 0
-        and after `Fail` the executor has ended and returns the same request again.
+        ``reply`` answers the previous request. If it is a fault, the fault is raised in the program
+        at the statement that made the request, where ON_ERROR_PROCEED may catch it [TYP-13]. After
+        `End` at depth 0 and after `Fail` the executor has ended and returns the same request again.
         """
         ...
 
     def enter(self, code: CodeHandle) -> None:
-        """Push a routine or action, which runs before the program continues.
+        """Push a routine or an action, which runs before the program continues.
 
-        Allowed between two requests only, and behind the End of the program as well, as long as the
-        arm is on its way. Its end is reported by `interp.port.requests.End`, after which the
-        request that was open before is asked again by the next ``advance(None)``.
+        This is allowed only between two requests. It is also allowed after the program's `End`, as
+        long as the arm still moves. When the pushed code has ended, the executor returns
+        `interp.port.requests.End`; the next ``advance(None)`` then returns the request again that
+        was open before.
         """
         ...
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
-        """The value of a condition, without side effects and without a request.
+        """Return the value of a condition, without side effects and without a request.
 
-        Raises `interp.values.faults.Fault`.
+        ``read`` supplies system variables. Raises `interp.values.faults.Fault`.
         """
         ...
 
     def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``; the program continues behind the call there.
-
-        [INT-10]
-        """
+        """Leave all routines deeper than ``depth``; continue after the call there [INT-10]."""
         ...
 
     def companion(self, routine: str, sink: Sink | None = None) -> Executor:
-        """Another executor over the same data lists, as the submit interpreter is [SUB-01].
+        """Return another executor over the same data lists, for the submit interpreter [SUB-01].
 
-        It begins with the routine of that name in any file, which has no parameters. Its codes are
-        its own. The two take turns: neither is called while the other computes. Raises `LinkError`.
+        It begins with the routine of that name, which may be in any file and has no parameters. Its
+        code handles are its own. The two executors take turns: neither is called while the other
+        runs. Raises `LinkError`.
         """
         ...
 
     @property
     def depth(self) -> int:
-        """How many calls deep the program is; 0 in the routine it began with."""
+        """The number of open calls; 0 in the routine that the program began with."""
         ...
 
 
@@ -74,26 +75,27 @@ class Counting(Protocol):
 
     @property
     def begun(self) -> int:
-        """How many statements have begun, those of conditions included."""
+        """The number of statements that have begun, those in conditions included."""
         ...
 
 
 @runtime_checkable
 class Recurrent(Counting, Protocol):
-    """An executor that can say whether its state recurs."""
+    """An executor that can detect that its state recurs, so that idle loops can be skipped."""
 
     @property
     def spare(self) -> int:
-        """How many statements may be skipped before the limits have a say."""
+        """The number of statements that may be skipped before a limit of the run is reached."""
         ...
 
     def standing(self) -> object | None:
-        """All that its next requests depend on, but for the replies; ``None`` if it is unknown.
+        """Return the state on which all further requests depend, apart from the replies.
 
-        Where two are equal, equal replies lead from both through the same requests.
+        If two such states are equal, equal replies lead to the same requests from both. Return
+        ``None`` if the state cannot be determined.
         """
         ...
 
     def skip(self, statements: int) -> None:
-        """Count so many statements as begun that have led back to here."""
+        """Count ``statements`` as begun: the statements of a loop that led back to this state."""
         ...

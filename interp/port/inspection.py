@@ -1,7 +1,7 @@
 """Inspection of an executor by a debugger: read, change, stop, jump.
 
-All is for the moment between two statements, while a `interp.port.requests.Slice` is open, and for
-an executor that has ended.
+All of it is allowed only between two statements, while an `interp.port.requests.Slice` is open, and
+after the executor has ended.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """A variable or a part of one: its type and its value, ``None`` where it has none.
+    """A variable, or a part of one: its type and a copy of its value.
 
-    The value is a copy. ``home`` is ``MODULE.NAME`` for data of a data list, in upper case, and
-    empty for parameters and local data of the routine that runs.
+    ``value`` is ``None`` if the variable has none. ``home`` is ``MODULE.NAME`` in upper case for
+    data of a data list; it is empty for parameters and local data of a routine.
     """
 
     type: Type
@@ -31,10 +31,10 @@ class Seen:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """A relation of a variable, named as in `Inspectable.look`, to a constant.
+    """A comparison of a variable with a constant, as the condition of a breakpoint.
 
-    ``relation`` is one of `RELATIONS`. The constant is an INT, a BOOL, or the name of one of an
-    enumeration in upper case.
+    ``name`` is the variable as `Inspectable.look` names it, ``relation`` one of `RELATIONS`. The
+    constant is an INT, a BOOL, or the name of an enumeration constant in upper case.
     """
 
     name: str
@@ -44,61 +44,70 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class StackFrame:
-    """A routine that is open and where it is, or an action of an interrupt or a trigger in one."""
+    """An open routine, or an open action of an interrupt or trigger, and the place it has reached.
+
+    ``is_action`` is set for an action.
+    """
 
     name: str
     at: At
     is_action: bool = False
 
 
-#: Files and lines, each with what has to hold there if anything has.
+#: Breakpoints by file and line, each with its condition or ``None``.
 Breaks = Mapping[tuple[str, int], Guard | None]
 RELATIONS: Final = ("==", "<>", "<", ">", "<=", ">=")
 
 
 class Inspectable(Executor, Protocol):
-    """An executor that can be debugged. Frames are counted from the innermost, which is 0."""
+    """An executor that can be debugged. Frame 0 is the innermost frame."""
 
     @property
     def begun(self) -> int:
-        """How many statements have begun, those of conditions included."""
+        """The number of statements that have begun, those in conditions included."""
         ...
 
     def ask_at(self, count: int) -> None:
-        """Ask for time before the next statement once so many have begun, instead of later.
+        """Return a slice before the statement that follows the first ``count`` statements.
 
-        It holds until the next request: then a slice is as long as the limits have it.
+        This replaces the usual end of the present slice. It applies until the next request; the
+        slices after that have the length that the limits say.
         """
         ...
 
     def break_at(self, places: Breaks) -> bool:
-        """Ask for time before each statement that begins in one of these lines, and in no others.
+        """Return a slice before each statement that begins in one of these lines, and at no other.
 
-        It need not ask where the guard of a line is FALSE. Whether it does all that: else it has to
-        be asked at every statement.
+        The executor may skip a line while the condition of its breakpoint is FALSE. Return whether
+        it supports all this; if not, the debugger has to stop it at every statement.
         """
         ...
 
     def frames(self) -> tuple[StackFrame, ...]:
-        """What is open, the innermost first."""
+        """Return the call stack, innermost frame first."""
         ...
 
     def look(self, text: str, frame: int = 0) -> Seen | None:
-        """A variable of the program, or a part of one, by what it is called in a frame.
+        """Return the variable of the program, or its part, that ``text`` denotes in a frame.
 
-        ``"I"``, ``"F.X"``, ``"A[2,1]"``, ``"T[]"``; ``None`` where there is no such.
+        ``text`` is for example ``"I"``, ``"F.X"``, ``"A[2,1]"`` or ``"T[]"``. Return ``None`` if
+        there is no such variable.
         """
         ...
 
     def put(self, text: str, value: Value, frame: int = 0) -> None:
-        """Give such a variable a value; raises `interp.values.faults.Fault`, `LinkError`."""
+        """Assign a value to a variable that is named as for `look`.
+
+        Raises `interp.values.faults.Fault` and `LinkError`.
+        """
         ...
 
     def select(self, line: int) -> None:
-        """Go on with the statement that begins in a line of the routine that runs.
+        """Continue with the statement that begins in a line of the running routine.
 
-        Raises `ValueError` where none does. Blocks around it are entered without their conditions
-        being looked at; a FOR must be around the present statement as well, else its counter and
-        limit are not known (`interp.debugging.selection` sees to it).
+        Raises `ValueError` if no statement begins there. The blocks around the statement are
+        entered without evaluating their conditions. If one of them is a FOR, it must also surround
+        the present statement: otherwise its counter and limit are unknown
+        (`interp.debugging.selection` checks this).
         """
         ...

@@ -1,11 +1,12 @@
-"""The requests of an executor to its controller.
+"""The requests that an executor makes to its controller.
 
-An executor computes until it needs the controller, returns a request, and gets the reply with the
-next call of `interp.port.executor.Executor.advance`. Requests are plain data: they hold values,
-never nodes of a tree or places in an image, so that executors look the same to a controller.
+An executor runs until it needs the controller, returns a request, and receives the reply as the
+argument of the next call of `interp.port.executor.Executor.advance`. Requests are plain data: they
+hold values, never nodes of a syntax tree or addresses in a bytecode image. So all executors look
+the same to the controller.
 
-Code that the controller may have run later (the condition of an interrupt, the action of a trigger)
-is handed over as a `CodeHandle`, which only the executor understands.
+Code that the controller may have executed later (the condition of an interrupt, the action of a
+trigger) is passed as a `CodeHandle`, which only the executor can interpret.
 """
 
 from __future__ import annotations
@@ -14,21 +15,22 @@ from typing import Any
 
 from support.lazy_dataclass import dataclass
 
-#: INT, REAL, BOOL, CHAR, an enumeration, a structure or an array, as `interp.values.values` has
-#: them.
+#: An INT, REAL, BOOL, CHAR, enumeration, structure or array, represented as in
+#: `interp.values.values`.
 Value = Any
-#: A system variable, or a part of one: its name in upper case, then indices and names of members.
+#: A system variable, or a part of one: its name in upper case, then indices and member names, as in
 #: ``("$IN", 3)``, ``("$VEL", "CP")``, ``("$TOOL",)``.
 Path = tuple[str | int, ...]
-#: What the program has in an array of CHAR; any other ``str`` is a word of the source.
+#: The content of an array of CHAR. Any other ``str`` in a request is a word of the source.
 Text = str
 
 
 @dataclass(frozen=True, slots=True)
 class At:
-    """Where a request comes from: the file as people know it, its line, and the call depth.
+    """The place in the program that a request comes from.
 
-    Depth 0 is the routine the program began with.
+    ``file`` is the path as the user knows it, ``line`` counts from 1, and ``depth`` is the number
+    of open calls: 0 in the routine that the program began with.
     """
 
     file: str
@@ -38,14 +40,14 @@ class At:
 
 @dataclass(frozen=True, slots=True)
 class CodeHandle:
-    """A piece of program that can be entered or evaluated later, by its number in the executor."""
+    """Code of the program that can be entered or evaluated later, by its number in the executor."""
 
     number: int
 
 
 @dataclass(frozen=True, slots=True)
 class Asking:
-    """What every request has."""
+    """Base of all requests: the place that the request comes from."""
 
     at: At
 
@@ -55,14 +57,14 @@ class Asking:
 
 @dataclass(frozen=True, slots=True)
 class Read(Asking):
-    """The value of a system variable. Reply: the value, or a `interp.values.faults.Fault`."""
+    """Read a system variable. Reply: its value, or a `interp.values.faults.Fault`."""
 
     path: Path
 
 
 @dataclass(frozen=True, slots=True)
 class Write(Asking):
-    """A system variable gets a value. Reply: ``None`` or a fault."""
+    """Assign a value to a system variable. Reply: ``None`` or a fault."""
 
     path: Path
     value: Value
@@ -70,12 +72,12 @@ class Write(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Invoke(Asking):
-    """A predefined routine of the controller (PULSE, CWRITE, SET_KRLMSG …), by its name.
+    """Call a predefined routine of the controller (PULSE, CWRITE, SET_KRLMSG …) by its name.
 
-    An argument left out is ``None``. ``paths`` has one entry for each argument: the system variable
-    that it is, where it is passed :OUT and is one, so that PULSE knows its output; else ``None``.
-    Reply: the result (``None`` for procedures) and the new values of the arguments that it sets, by
-    their places from 0; or a fault.
+    An omitted argument is ``None``. ``paths`` has one entry for each argument: the path of the
+    system variable if one is passed :OUT (this is how PULSE knows its output), else ``None``.
+    Reply: the result (``None`` for a procedure) and the new values of the arguments that the
+    routine sets, by their positions counted from 0; or a fault.
     """
 
     name: str
@@ -85,7 +87,7 @@ class Invoke(Asking):
 
 @dataclass(frozen=True, slots=True)
 class SetCyclicFlag(Asking):
-    """``$CYCFLAG[number] = condition``: what is assigned is the condition, not its value [IOT-11].
+    """``$CYCFLAG[number] = condition``: the condition is assigned, not its value [IOT-11].
 
     Reply: ``None`` or a fault.
     """
@@ -98,9 +100,9 @@ class SetCyclicFlag(Asking):
 class StopAdvance(Asking):
     """An imported variable is accessed or a text formatted, which stops the advance run [ADV-05].
 
-    Where the reply is a number, nothing is ahead that it would wait for: so many more may pass
-    before the executor asks again, up to its next other request; it may ask sooner. ``count`` are
-    those that this one stands for.
+    If the reply is a number, no motion is ahead that the executor would have to wait for. It may
+    then pass up to that many more such places without a request, until it makes another request;
+    it may also ask sooner. ``count`` is the number of such places that this request stands for.
     """
 
     count: int = 1
@@ -111,17 +113,17 @@ class StopAdvance(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Wait(Asking):
-    """WAIT SEC: stops the advance run, then lets so many seconds pass [CTL-12, TIM-06]."""
+    """WAIT SEC: stops the advance run, then waits for ``seconds`` [CTL-12, TIM-06]."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
 class Poll(Asking):
-    """WAIT FOR: asked before the condition is looked at, and whenever it was FALSE [CTL-12].
+    """WAIT FOR: requested before the condition is evaluated, and each time it was FALSE [CTL-12].
 
-    The ``is_first`` one stops the advance run [ADV-04]; for each of the others an interpolation
-    cycle passes before the reply.
+    The request with ``is_first`` stops the advance run [ADV-04]. To each of the others, the
+    controller replies after one interpolation cycle.
     """
 
     is_first: bool
@@ -139,10 +141,11 @@ class Continue(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Slice(Asking):
-    """So many statements were executed without any other request: time has to pass.
+    """The executor has run a full slice of statements without another request: time must pass.
 
-    Where the reply is a number, as many slices may pass before the executor asks again, or makes
-    another request; it may ask sooner. ``count`` are those that have passed since the last one.
+    If the reply is a number, that many slices may pass before the executor makes this request
+    again, unless it makes another one first; it may also ask sooner. ``count`` is the number of
+    slices that have passed since the previous request.
     """
 
     count: int = 1
@@ -160,10 +163,10 @@ class Confirm(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Move(Asking):
-    """A motion is planned. Words as in `grammar.syntax.ast.Motion`; targets are structures.
+    """Plan a motion. The words are those of `grammar.syntax.ast.Motion`; targets are structures.
 
-    ``values`` are what stands behind WITH: system variables and the values they have for this
-    motion only. Reply: ``None`` or a fault. The executor continues while the arm moves.
+    ``values`` are the assignments after WITH: system variables and their values for this motion
+    only. Reply: ``None`` or a fault. The executor continues while the arm moves.
     """
 
     kind: str
@@ -177,9 +180,9 @@ class Move(Asking):
 
 @dataclass(frozen=True, slots=True)
 class SplineRange:
-    """CONST_VEL or TIME_BLOCK between segments of a block [SPL-05, SPL-10].
+    """CONST_VEL or TIME_BLOCK between the segments of a spline block [SPL-05, SPL-10].
 
-    Its words as in the program; ``value`` is in mm or seconds.
+    ``keyword`` and ``edge`` are the words of the program; ``value`` is in mm or seconds.
     """
 
     keyword: str
@@ -199,11 +202,11 @@ class SplineStop:
 
 @dataclass(frozen=True, slots=True)
 class SetTrigger(Asking):
-    """A trigger for the next motion; ``action`` is entered when it fires [TRG-01 to TRG-06].
+    """A trigger of the next motion; ``action`` is entered when it fires [TRG-01 to TRG-06].
 
-    ``place`` is 0 or 1 for DISTANCE, millimetres for PATH; ``delay`` in ms; ``priority`` is
-    ``None`` where none was given. ``output`` is the assignment of a constant value to a system
-    variable, where the action is no more than that: it is switched with exact timing.
+    ``place`` is 0 or 1 for DISTANCE, and in mm for PATH; ``delay`` is in ms. ``priority`` is
+    ``None`` if the program gives none. ``output`` is set if the action only assigns a constant
+    value to a system variable: the controller then makes the assignment itself, with exact timing.
     """
 
     place_kind: str
@@ -230,7 +233,7 @@ class MoveSpline(Asking):
 
 @dataclass(frozen=True, slots=True)
 class MoveEmily(Asking):
-    """MOVE_EMI: a path that an option package holds."""
+    """MOVE_EMI: a motion along a path that an option package has recorded."""
 
     device: Text
     action: Text
@@ -252,7 +255,7 @@ class DeclareInterrupt(Asking):
 
 @dataclass(frozen=True, slots=True)
 class SwitchInterrupt(Asking):
-    """ON, OFF, ENABLE or DISABLE; ``number`` is ``None`` for all of them [INT-07]."""
+    """INTERRUPT ON, OFF, ENABLE or DISABLE; ``number`` is ``None`` for all interrupts [INT-07]."""
 
     action: str
     number: int | None
@@ -267,14 +270,15 @@ class BrakeArm(Asking):
 
 @dataclass(frozen=True, slots=True)
 class Resume(Asking):
-    """RESUME: the controller answers with `Executor.unwind` [INT-10]."""
+    """RESUME: the controller responds by calling `Executor.unwind` [INT-10]."""
 
 
 @dataclass(frozen=True, slots=True)
 class SwitchSignal(Asking):
     """ANIN, ANOUT or DIGIN, ON or OFF [IOT-04, IOT-05, IOT-09].
 
-    ``cycle`` computes and assigns once; it is entered every interpolation cycle while ON.
+    ``cycle`` is the code that computes and assigns the value once; the controller enters it in
+    every interpolation cycle while the signal is ON.
     """
 
     keyword: str
@@ -291,26 +295,26 @@ class SwitchSignal(Asking):
 
 @dataclass(frozen=True, slots=True)
 class End(Asking):
-    """The routine that was entered last has ended; at depth 0, the program."""
+    """The routine or action that was entered last has ended; at depth 0, the program has ended."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fail(Asking):
-    """The program cannot continue: a fault that nothing took [design section 8]."""
+    """The program cannot continue because of a fault that it did not catch [design section 8]."""
 
     fault: Exception
 
 
 @dataclass(frozen=True, slots=True)
 class Skip(Asking):
-    """A statement has failed, and the program continues behind it. Reply: ``None``."""
+    """A statement has failed, and the program continues after it. Reply: ``None``."""
 
     fault: Exception
 
 
 @dataclass(frozen=True, slots=True)
 class Crash(Asking):
-    """The executor itself has failed, which cannot happen."""
+    """A defect of the executor itself: it has failed in a way that should be impossible."""
 
     reason: str
 

@@ -1,1 +1,1 @@
-"""A checked program as executors see it: files loaded, variables, statements."""
+"""A checked program in the form that executors need: loaded files, variables, statements."""

@@ -1,4 +1,4 @@
-"""The values of literals, one table for all that evaluate or translate expressions."""
+"""The values of literals, for all code that evaluates or translates expressions."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from interp.values.values import EnumValue, Value, constant, integer, letters, s
 
 
 def _bits(node: ast.BitLiteral) -> int:
-    """32 bits as a number with sign [TYP-04]."""
+    """Return 32 bits as a signed number [TYP-04]."""
     return integer(node.value - 2**32 if node.value > INT_MAX else node.value)
 
 
-#: By their nodes; a number that is too large faults ``overflow`` [ARI-12].
+#: The value of a literal by the class of its node. A number that is too large faults ``overflow``
+#: [ARI-12].
 LITERALS: Final[Mapping[type[Any], Callable[[Any], int | float | bool | str]]] = {
     ast.IntegerLiteral: lambda node: integer(node.value),
     ast.RealLiteral: lambda node: single(node.value),
@@ -30,20 +31,26 @@ LITERALS: Final[Mapping[type[Any], Callable[[Any], int | float | bool | str]]] =
 
 
 def enumeration_constant(unit: Unit, node: ast.EnumConstant, wanted: Type) -> EnumValue:
-    """``#NAME`` for a place of this type; raises `LinkError` where it is unknown [TYP-16]."""
+    """Return ``#NAME`` as a value of the type that its context wants [TYP-16].
+
+    Raises `LinkError` if the enumeration is unknown.
+    """
     kind = unit.checked.enumerations.get(node, wanted)
     return constant(known_enumeration(node, kind), node.name.key)
 
 
 def known_enumeration(node: ast.EnumConstant, found: object) -> Enumeration:
-    """What was found as the enumeration of a constant; raises `LinkError` where it is none."""
+    """Return ``found`` if it is the enumeration of a constant, else raise `LinkError`."""
     if not isinstance(found, Enumeration):
         raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
     return found
 
 
 def literal_value(unit: Unit, node: ast.Expression, wanted: Type) -> Value:
-    """A literal or constant with its operators; raises `LinkError` for all else, and `Fault`."""
+    """Return the value of a literal or an enumeration constant, with unary operators around it.
+
+    Raises `LinkError` for any other expression, and `Fault`.
+    """
     match node:
         case ast.Parenthesised():
             return literal_value(unit, node.inner, wanted)

@@ -1,8 +1,9 @@
-"""Loading: files are read, linked and checked, and become a program that can run.
+"""The loader: reads, links and checks files, and returns a program that can run.
 
-`load` gives all that an interpreter or a compiler needs of a project: its files with their trees
-and the results of the checker, its routines by symbol, and the meaning of names. An error anywhere
-in the project is a `LinkError`. A missing routine is no error: its call fails [SCO-10].
+`load` returns all that an interpreter or a compiler needs of a project: its files with their syntax
+trees and the results of the check, its routines by symbol, and what each name refers to. An error
+anywhere in the project is a `LinkError`. A missing routine is no error: the call fails when the
+program reaches it [SCO-10].
 """
 
 from __future__ import annotations
@@ -33,18 +34,19 @@ from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 
 _TYPES = frozenset({Kind.STRUCTURE, Kind.ENUMERATION, Kind.PLAIN_TYPE})
-#: Blocks within blocks that are run: so many that nothing people write comes near, and so few that
-#: an interpreter may use Python's own stack for them.
+#: The deepest nesting of blocks that is run. It is far above what people write, and low enough for
+#: an interpreter that recurses on Python's stack.
 MOST_BLOCKS = 50
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How much a program may do.
+    """The limits of a run.
 
-    ``statements`` until it counts as endless, ``per_slice`` until time has to pass, ``depth`` of
-    calls until the stack overflows [SCO-12]. Where it ``skips_failures``, a statement that fails is
-    reported as `interp.port.requests.Skip`, and the program continues after it.
+    A program counts as endless after ``statements`` statements. Time must pass after ``per_slice``
+    statements without another request. The stack overflows at ``depth`` calls [SCO-12]. If
+    ``skips_failures`` is set, a statement that fails is reported as `interp.port.requests.Skip`,
+    and the program continues after it.
     """
 
     statements: int = 10_000_000
@@ -53,35 +55,35 @@ class Limits:
     skips_failures: bool = False
 
     def exhausted(self) -> BudgetExhausted:
-        """What is raised where one more statement would begin."""
+        """Return the exception to raise when a statement beyond the limit would begin."""
         return BudgetExhausted(f"it has not ended after {self.statements:,} statements")
 
 
 @dataclass(frozen=True, eq=False)
 class Unit:
-    """A file of the program with all that is known of it."""
+    """A file of the program: its module, its text, and the results of its check."""
 
     module: Module
     source: Source
     checked: Checked
 
     def line(self, node: ast.Node) -> int:
-        """The line that a node begins in."""
+        """Return the line in which a node begins, counted from 1."""
         return self.source.place(node.span[0])[0]
 
     def found(self, name: ast.Name) -> Found | None:
-        """What a name in this file means, if that is known."""
+        """Return what a name in this file refers to, or ``None`` if that is unknown."""
         return self.checked.resolution.found(name)
 
     @staticmethod
     def undeclared(name: ast.Name) -> str:
-        """What to say of a line with a name that nothing declares, when a run comes to it."""
+        """Return the error text for a line with an undeclared name, when a run reaches it."""
         return f"{name.text} is declared nowhere"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Routine:
-    """A routine that can be called; ``scope`` is what is known inside it."""
+    """A routine that can be called; ``scope`` is the scope of its body."""
 
     unit: Unit
     node: ast.Routine
@@ -90,17 +92,18 @@ class Routine:
 
     @property
     def name(self) -> str:
-        """As declared."""
+        """The name as written in the declaration."""
         return self.node.name.text
 
 
 @dataclass(frozen=True, eq=False)
 class CheckedProgram:
-    """A project, and the file that it begins with; without errors if it ``is_strict``.
+    """A linked project and the file with which it begins.
 
-    ``stand_ins`` are those for all files of the project, see `used_stand_ins`. ``callers`` are the
-    routines that were added to begin with one that has parameters, by its name in upper case.
-    ``damaged`` are the paths of files with lines that cannot be read.
+    If ``is_strict`` is set, the project has no errors. ``stand_ins`` are those of all files of the
+    project; `used_stand_ins` says which of them a run can reach. ``callers`` are the routines that
+    were added to call a routine with parameters, by the name of the called routine in upper case.
+    ``damaged`` has the paths of the files with unreadable lines.
     """
 
     project: Project
@@ -113,13 +116,13 @@ class CheckedProgram:
 
     @cached_property
     def routines(self) -> Mapping[Symbol, Routine]:
-        """All routines by the symbols that names lead to."""
+        """All routines, by their symbols."""
         return {
             one.table.routine: one for unit in self.units.values() for one in self.routines_of(unit)
         }
 
     def routines_of(self, unit: Unit) -> tuple[Routine, ...]:
-        """The routines of a file in their order; none in a data list."""
+        """Return the routines of a file in their order; a data list has none."""
         syntax, table = unit.module.syntax, unit.module.table
         assert syntax is not None, "only what can be read is loaded"
         assert table is not None, "what can be read has its table"
@@ -132,10 +135,10 @@ class CheckedProgram:
         )
 
     def start(self, name: str | None = None) -> Routine:
-        """The routine of a name in the first file, by default its first one.
+        """Return the routine of that name in the main file, by default the file's first routine.
 
-        One that the first file has not may be the first of another file. Raises `LinkError` where
-        there is none, or where it needs arguments.
+        If the main file has no such routine, it may be the first routine of another file. Raises
+        `LinkError` if there is none, or if it needs arguments.
         """
         others = (self.routines_of(one)[:1] for one in self.units.values() if one is not self.main)
         found = [
@@ -153,13 +156,13 @@ class CheckedProgram:
         return found[0]
 
     def starts(self, routine: str | None, submit: str | None = None) -> list[Routine]:
-        """The routines that a run begins with; raises `LinkError` as `start` does."""
+        """Return the routines with which a run begins; raise `LinkError` as `start` does."""
         return [self.start(routine), *([self.start(submit)] if submit else [])]
 
     def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
-        """The stand-ins that files reached from some routines use, in their order.
+        """Return the stand-ins that the files reachable from some routines use, in their order.
 
-        Each is listed with its first use there, where a file of the project uses it.
+        Each has the place of its first use, if a file of the project itself uses it.
         """
         if not self.stand_ins:
             return ()
@@ -185,9 +188,9 @@ class CheckedProgram:
         )
 
     def reached(self, *routines: Routine) -> tuple[Unit, ...]:
-        """The files that some routines lie in, and all that these use, with their data lists.
+        """Return the files with these routines, and all files that they use, with their data lists.
 
-        They come in the order of the project's.
+        The files are in the order of the project.
         """
         reached: set[Module] = set()
         todo = [routine.unit for routine in routines]
@@ -204,24 +207,27 @@ class CheckedProgram:
         return tuple(unit for module, unit in self.units.items() if module in reached)
 
     def can_begin(self, routine: Routine) -> bool:
-        """Whether a program can begin with a routine: no caller has to give or take values."""
+        """Return whether a program can begin with a routine.
+
+        It can if the routine has no parameters and its result is no structure or array.
+        """
         result = self.result_of(routine)
         return not routine.node.parameters and not isinstance(result, Structure | Array)
 
     def type_of(self, found: Found) -> Type:
-        """The type of a variable, or of what a function gives; `UNKNOWN` where it is not known."""
+        """Return the type of a variable or of a function's result; `UNKNOWN` if it is not known."""
         return self.project.types.of(found)
 
     def result_of(self, routine: Routine) -> Type | None:
-        """The type of what a function gives; ``None`` for a procedure."""
+        """Return the type of a function's result; ``None`` for a procedure."""
         if routine.node.result is None:
             return None
         return self.type_of(Found(routine.table.routine, self.project.scope(routine.unit.module)))
 
     def declaration(self, found: Found) -> Found:
-        """What a name means in the end, where it may be the name of an IMPORT [ADV-05].
+        """Follow IMPORT declarations, and return the declaration that a name refers to [ADV-05].
 
-        Raises `LinkError` where it leads nowhere.
+        Raises `LinkError` if an import leads nowhere.
         """
         seen: set[Symbol] = set()
         while found.symbol.kind is Kind.IMPORT:
@@ -237,19 +243,19 @@ class CheckedProgram:
 
 
 def _is_own(module: Module | None) -> bool:
-    """Whether it is a file of the project itself, and no stand-in."""
+    """Return whether a module is a file of the project itself, and no stand-in."""
     if module is None or module.folder == FOLDER:
         return False
     return module.table is None or not module.table.key.startswith(LIST_OF_ONE)
 
 
 def _declares_stand_ins(unit: Unit) -> bool:
-    """Whether it is the data list of all stand-ins, most of which other programs may need."""
+    """Return whether a file is the data list of all stand-ins, of which a run uses only some."""
     return unit.module.folder == FOLDER and unit.module.suffix == ".dat"
 
 
 def _has_no_index(node: ast.Expression) -> bool:
-    """Whether it is a whole array, ``NAME[]``."""
+    """Return whether an expression denotes a whole array, as ``NAME[]`` does."""
     return (
         isinstance(node, ast.Subscript)
         and isinstance(node.base, ast.Variable)
@@ -267,14 +273,16 @@ def load(
     stands_in: bool = False,
     unread: list[str] | None = None,
 ) -> CheckedProgram:
-    """Link and type files, of which ``main`` is the path of the one to begin with.
+    """Link and type files, and return the program that begins with the file ``main``, a path.
 
-    Only the project that it belongs to counts. With ``strict`` it is checked; without, errors that
-    the checker would find are no obstacle: what they are about fails when it is reached. With
-    ``stands_in`` the project gets stand-ins for what none of its files has, and a file with syntax
-    errors is run as far as it can be read (`interp.standins.unreadable_lines`). Raises `LinkError`
-    with the first thing that is wrong; where ``unread`` is given, it receives why other files
-    cannot be read, which then are left out.
+    Only the project to which ``main`` belongs is loaded. With ``strict`` the project is checked.
+    Without it, errors that the check would report are accepted: the statements concerned fail when
+    they are reached. With ``stands_in`` the project gets stand-ins for names that none of its files
+    declares, and a file with syntax errors is run as far as it can be read
+    (`interp.standins.unreadable_lines`).
+
+    Raises `LinkError` with the first error. If ``unread`` is given, other files that cannot be read
+    are left out, and the reasons are added to that list.
     """
     by_path, files, wrong = _files(sources, stands_in=stands_in)
     for path, (error, found) in wrong.items():
@@ -293,10 +301,11 @@ def load(
 def load_all(
     sources: Iterable[Source], system: System | None = None, *, stands_in: bool = False
 ) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
-    """Link and type files of any number of projects; gives a program for each file with routines.
+    """Link and type files of any number of projects.
 
-    It is loaded as without ``strict`` in `load`, each project once. A file that cannot be read is
-    listed with the reason, after the programs; without ``stands_in`` it is left out of its project.
+    Return a program for each file with routines, loaded as by `load` without ``strict``, and a pair
+    (path, reason) for each file that cannot be read. Each project is loaded once. Without
+    ``stands_in``, a file that cannot be read is left out of its project.
     """
     by_path, files, wrong = _files(sources, stands_in=stands_in)
     programs: list[CheckedProgram] = []
@@ -314,7 +323,10 @@ def load_all(
 def _files(
     sources: Iterable[Source], *, stands_in: bool
 ) -> tuple[dict[str, Source], list[File], dict[str, tuple[LinkError, Readable | None]]]:
-    """The texts by path, the files of them, and the errors with what can be read all the same."""
+    """Return the sources by path, the files to link, and the errors by path.
+
+    An error is paired with the readable part of its file if ``stands_in`` is set and there is one.
+    """
     by_path = {source.path: source for source in sources}
     files: list[File] = []
     wrong: dict[str, tuple[LinkError, Readable | None]] = {}
@@ -354,7 +366,7 @@ def _checked(
 
 
 def with_main(program: CheckedProgram, source: Source) -> CheckedProgram:
-    """A program in which things stand in, with another text of its first file."""
+    """Return a program with stand-ins after replacing the text of its main file."""
     project = with_returns(extended(program.project, [File(source.path, _read(source))]))
     sources = {unit.source.path: unit.source for unit in program.units.values()}
     units = _units(project, sources | {source.path: source}, typed_module)

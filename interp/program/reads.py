@@ -1,4 +1,4 @@
-"""What executors derive from syntax before it is run."""
+"""Properties of syntax that executors need before a program runs."""
 
 from __future__ import annotations
 
@@ -25,13 +25,16 @@ _CONSTANT = (
 
 
 def is_constant_output(action: ast.Assignment) -> bool:
-    """Whether an action assigns a literal to what has literal indices: it needs no program."""
+    """Return whether an action assigns a literal to a target with literal indices.
+
+    The controller can then make the assignment without running program code.
+    """
     parts = [action.value, *_indices(action.target)]
     return all(isinstance(one, _CONSTANT) for part in parts for one in walk(part))
 
 
 def _indices(node: ast.Expression) -> Iterator[ast.Expression]:
-    """All indices in what is written to."""
+    """Yield all indices in the target of an assignment."""
     while isinstance(node, ast.Subscript | ast.Member):
         if isinstance(node, ast.Subscript):
             yield from (one for one in node.indices if one is not None)
@@ -39,7 +42,7 @@ def _indices(node: ast.Expression) -> Iterator[ast.Expression]:
 
 
 def is_variable(unit: Unit, node: ast.Expression) -> bool:
-    """Whether it is something that can be changed, as what is passed :OUT has to be [SCO-06]."""
+    """Return whether an expression denotes a changeable variable, as needed for :OUT [SCO-06]."""
     root = root_variable(node)
     if root is None:
         return False
@@ -47,12 +50,15 @@ def is_variable(unit: Unit, node: ast.Expression) -> bool:
     return found is None or found.symbol.kind is not Kind.CONSTANT
 
 
-#: Why an aggregate has no value where `structure_of` gives none.
+#: The message if `structure_of` returns ``None``.
 UNKNOWN_STRUCTURE = "nothing tells which structure an aggregate is"
 
 
 def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | None:
-    """The structure that an aggregate makes in a place of type ``wanted`` [TYP-19]."""
+    """Return the structure type of an aggregate in a context of type ``wanted`` [TYP-19].
+
+    Return ``None`` if it is unknown.
+    """
     type_: Type | None = unit.checked.types.get(node, UNKNOWN)
     if isinstance(type_, Aggregate):
         type_ = type_.structure
@@ -64,7 +70,10 @@ def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | N
 
 
 def signal_name(unit: Unit, node: ast.Expression) -> str | None:
-    """The signal, or else the system variable, in an expression, by its name here."""
+    """Return the name of the first signal in an expression, else of its first system variable.
+
+    The name is as in this file, in upper case. Return ``None`` if there is neither.
+    """
     names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
     for name in names:
         found = unit.found(name)

@@ -1,7 +1,7 @@
-"""Programs for routines with parameters, so that each routine can be run by itself.
+"""Callers for routines with parameters, so that each routine can be run by itself.
 
-A program cannot begin with a routine that has parameters. So a routine is added behind its file
-that declares a variable for each of them, gives these values and calls it.
+A program cannot begin with a routine that has parameters. So a routine is appended to its file that
+declares a variable for each parameter, assigns values to these variables, and calls the routine.
 """
 
 from __future__ import annotations
@@ -33,38 +33,39 @@ from interp.robot.models.stand_in import Places
 from interp.standins.completion import StandIn
 from interp.standins.signatures import Signatures
 
-#: The size of an array where a parameter has none.
+#: The size of an array if the parameter has none.
 _LENGTH: Final = 8
-#: So many values at most are given to one variable.
+#: The largest number of assignments to one variable.
 _MOST_VALUES: Final = 200
-#: A letter, a number, a truth value for each scalar; 1 is an index of any array.
+#: A value for each scalar type, as source; the INT 1 is an index of every array.
 _VALUES: Final[Mapping[Type, str]] = {INT: "1", REAL: "1.0", BOOL: "TRUE", CHAR: '"A"'}
 _PREFIX: Final = "KRL_CALLS_"
 
-#: Makes a value of a structure as it is written, for a name; ``""`` where its parts are given some.
+#: Returns a value of a structure type as source, for a variable of that name; ``""`` if its members
+#: are to be assigned one by one.
 _MakeValue = Callable[[Structure, str], str]
 
 
 @dataclass(frozen=True, slots=True)
 class Callers:
-    """The file of a program with routines added, and which of them calls which routine."""
+    """The main file of a program with callers appended, and the routine that each of them calls."""
 
     source: Source
     called: Mapping[str, str]
 
 
 def with_callers(program: CheckedProgram) -> Callers:
-    """Add routines to the first file of a program that call those with parameters."""
+    """Append callers to the main file of a program, one for each routine that needs one."""
     return _added(program, lambda one: not program.can_begin(one))
 
 
 def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProgram:
-    """A program that can begin with a routine of its first file, by default the first one.
+    """Return a program that can begin with a routine of its main file, by default the first one.
 
-    Parameters get what calls in the project have in their place, if that is a constant, or the
-    first value that a SWITCH of the routine asks for; points get places. All are listed as
-    stand-ins. A program that can begin as it is, or whose parameters have unknown types, comes back
-    unchanged.
+    A parameter gets the constant that a call in the project passes for it, or the first value that
+    a SWITCH of the routine compares it with; points get places within reach. All of them are listed
+    as stand-ins. A program is returned unchanged if it can begin without a caller, or if its
+    parameters have unknown types.
     """
     found = program.routines_of(program.main)
     if name is not None:
@@ -96,7 +97,7 @@ def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProg
 
 
 def _constants(program: CheckedProgram, routine: Routine) -> Mapping[str, str]:
-    """Values that parameters are known to have, by their names in upper case."""
+    """Return the constants that parameters are known to receive, by their names in upper case."""
     names = [one.name.key for one in routine.node.parameters]
     known: dict[str, str] = {}
     for unit in program.units.values():
@@ -121,7 +122,7 @@ def _added(
     known: Mapping[str, str] | None = None,
     point: _MakeValue = lambda _type, _name: "",
 ) -> Callers:
-    """The first file with callers of some of its routines; ``known`` are values of parameters."""
+    """Return the main file with callers appended; ``known`` are values of parameters."""
     unit = program.main
     parts, called = [unit.source.text], {}
     routines = program.routines_of(unit)
@@ -181,7 +182,7 @@ def _sizes(type_: Array) -> list[int]:
 
 
 def _given(place: str, type_: Type, point: _MakeValue) -> Iterator[str]:
-    """Assignments of a value to every part."""
+    """Yield assignments that give every part of a variable a value."""
     match type_:
         case Array(element=element) if element == CHAR and len(type_.sizes) == 1:
             yield f'{place}[]="A"'

@@ -1,4 +1,4 @@
-"""Paths to statements: the blocks around a line, for jumps to it."""
+"""Paths to statements in the syntax tree: the blocks around a line, for a jump to that line."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from interp.program.load import CheckedProgram, Routine
 
 
 def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
-    """A routine of a file by its name."""
+    """Return the routine of a file by its name, or ``None`` if there is none."""
     for unit in program.units.values():
         if unit.module.path == file:
             for routine in program.routines_of(unit):
@@ -20,7 +20,7 @@ def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
 
 
 def statement_lines(routine: Routine) -> set[int]:
-    """The lines in which statements of a routine begin; UNTIL is one, as a loop tests there."""
+    """Return the lines in which statements of a routine begin, UNTIL conditions included."""
     found: set[int] = set()
     todo = [routine.node.body]
     while todo:
@@ -34,7 +34,10 @@ def statement_lines(routine: Routine) -> set[int]:
 
 
 def way_to(routine: Routine, line: int) -> tuple[ast.Statement, ...]:
-    """The blocks around the first statement of a line, and that statement; empty without one."""
+    """Return the blocks around the first statement of a line, outermost first, and that statement.
+
+    Return an empty tuple if no statement begins there.
+    """
     return next(_ways(routine, line, routine.node.body), ())
 
 
@@ -52,5 +55,5 @@ def _ways(
 
 
 def _bodies(statement: ast.Statement) -> Iterator[tuple[ast.Statement, ...]]:
-    """The lists of statements in a block; a spline block holds parts of its own motion."""
+    """Return the statement lists of a block; a spline block has none, its items are one motion."""
     return iter(()) if isinstance(statement, ast.SplineBlock) else bodies(statement)

@@ -1,7 +1,7 @@
-"""Statements that only make a request: which one, and what it holds.
+"""Statements that only make a request, in one table for all executors.
 
-Both executors execute these statements by this table: each part is evaluated in turn, and is a
-field of the request behind ``at``.
+Each part of the statement is evaluated in turn. The results are the fields of the request after
+``at``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,10 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A field of a node; an expression has the INT or REAL that it is converted to, a word none."""
+    """A field of a statement node.
+
+    An expression is converted to ``type``, INT or REAL. ``type`` is ``None`` for a plain word.
+    """
 
     field: str
     type: Type | None = None
@@ -25,7 +28,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class StatementRequest:
-    """The class of a request, and the parts of the node that are its fields behind ``at``."""
+    """The class of a request, and the parts of the statement that are its fields after ``at``."""
 
     request: type[requests.Request]
     parts: tuple[Part, ...] = ()

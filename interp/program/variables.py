@@ -1,8 +1,8 @@
-"""Variables as every executor has them: which types they can be of, and what data lists declare.
+"""Variables as every executor sees them: their possible types, and what data lists declare.
 
-A variable whose type is not known in every part has no place: what is written in terms of it ends
-the program with a `LinkError` when it is reached. So have all that is read of the world without a
-type, and a variable passed :OUT as another type.
+A variable has no storage unless its type is known completely. A statement that uses a variable
+without storage ends the program with a `LinkError` when it is reached. The same holds for reading a
+system variable of unknown type, and for passing a variable :OUT as another type.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from grammar.syntax.references import Space
 from interp.program.load import CheckedProgram, Routine, Unit
 from interp.values.faults import LinkError
 
-#: All variables of a program together hold at most so many scalars.
+#: The largest number of scalars in all variables of a program together.
 MOST_CELLS = 1 << 20
 
 
 @cache
 def is_complete(type_: Type) -> bool:
-    """Whether a variable can be of a type: all its parts and sizes are known."""
+    """Return whether a variable can have a type: all its members and array sizes are known."""
     match type_:
         case Scalar():
             return True
@@ -45,7 +45,7 @@ def _are_distinct(names: Sequence[str]) -> bool:
 
 
 def is_complete_parameter(type_: Type) -> bool:
-    """Whether a parameter can be of a type: a formal array has its sizes from what it receives."""
+    """Return whether a parameter can have a type; an array takes its sizes from the argument."""
     return is_complete(
         Array(type_.element, (1,) * len(type_.sizes)) if isinstance(type_, Array) else type_
     )
@@ -53,7 +53,7 @@ def is_complete_parameter(type_: Type) -> bool:
 
 @cache
 def cells(type_: Type) -> int:
-    """How many scalars a variable holds; what has no known type or size counts as 1."""
+    """Return the number of scalars in a variable; a part of unknown type or size counts as 1."""
     match type_:
         case Structure():
             return sum(cells(one.type) for one in type_.members)
@@ -63,7 +63,7 @@ def cells(type_: Type) -> int:
 
 
 def cells_of_routine(program: CheckedProgram, routine: Routine) -> int:
-    """How many scalars the parameters and local data of a routine hold."""
+    """Return the number of scalars in the parameters and local data of a routine."""
     found = (
         routine.scope.own(space, symbol.key)
         for space, symbol in routine.table.table.symbols()
@@ -73,12 +73,12 @@ def cells_of_routine(program: CheckedProgram, routine: Routine) -> int:
 
 
 def too_large(routine: Routine) -> LinkError:
-    """A program begins with a routine that has more variables than fit."""
+    """Return the error for a routine whose variables exceed `MOST_CELLS`."""
     return LinkError(f"the variables of {routine.name} are too large")
 
 
 def is_referable(parameter: Type, variable: Type) -> bool:
-    """Whether a variable can be passed :OUT: only the sizes of arrays may differ [SCO-06]."""
+    """Return whether a variable can be passed :OUT: only array sizes may differ [SCO-06]."""
     if isinstance(parameter, Array) and isinstance(variable, Array):
         is_alike = len(parameter.sizes) == len(variable.sizes)
         return is_alike and parameter.element == variable.element
@@ -89,27 +89,27 @@ def is_referable(parameter: Type, variable: Type) -> bool:
 
 
 def untyped(name: str) -> LinkError:
-    """A variable, or a part of one, is needed of which no type is known."""
+    """Return the error for a variable, or a part of one, of unknown type."""
     return LinkError(f"the type of {name} is not known")
 
 
 def untyped_parameter(name: str, routine: str) -> LinkError:
-    """A routine is called that has a parameter of no known type."""
+    """Return the error for a call of a routine with a parameter of unknown type."""
     return LinkError(f"the type of {name}, a parameter of {routine}, is not known")
 
 
 def untyped_result(routine: str) -> LinkError:
-    """A function is called whose result is unknown."""
+    """Return the error for a call of a function with a result of unknown type."""
     return LinkError(f"the type that {routine} gives is not known")
 
 
 def untyped_value(path: Sequence[str | int]) -> LinkError:
-    """A system variable, or a part of one, is read of which no type is known."""
+    """Return the error for reading a system variable, or a part of one, of unknown type."""
     return untyped(str(path[0]) if len(path) == 1 else f"a part of {path[0]}")
 
 
 def mismatched(parameter: Type) -> LinkError:
-    """A variable is passed :OUT that is not `is_referable`."""
+    """Return the error for a variable that is passed :OUT but is not `is_referable`."""
     return LinkError(f"an argument :OUT of another type than {parameter}")
 
 
@@ -117,7 +117,7 @@ def mismatched(parameter: Type) -> LinkError:
 
 
 def data_lists(program: CheckedProgram) -> Iterator[tuple[Unit, ast.DataList]]:
-    """The data lists of a program, in the order of its files."""
+    """Yield the data lists of a program, in the order of its files."""
     for unit in program.units.values():
         content = unit.module.syntax.content if unit.module.syntax else None
         if isinstance(content, ast.DataList):
@@ -125,10 +125,10 @@ def data_lists(program: CheckedProgram) -> Iterator[tuple[Unit, ast.DataList]]:
 
 
 def data_variables(program: CheckedProgram, unit: Unit) -> Iterator[tuple[Found, Type]]:
-    """The variables that a data list declares, but those of no known type.
+    """Yield the variables that a data list declares, with their types, unless a type is unknown.
 
-    The controller's own are among them, because others may begin with their values; it is the world
-    that has them when the program runs.
+    System variables that the list declares are included, because the initial values of other
+    variables may depend on theirs. When the program runs, the controller holds them.
     """
     scope = program.project.scope(unit.module)
     assert unit.module.table is not None, "it was checked"
@@ -145,7 +145,7 @@ def data_variables(program: CheckedProgram, unit: Unit) -> Iterator[tuple[Found,
 def first_values(
     unit: Unit, content: ast.DataList
 ) -> Iterator[tuple[int, ast.Expression, ast.Expression]]:
-    """The assignments that fill a data list: line, target, value."""
+    """Yield the assignments that initialise a data list, as (line, target, value)."""
     for item in content.items:
         line = unit.line(item)
         match item:
@@ -158,9 +158,9 @@ def first_values(
 
 
 def signal_ends(symbol: SignalSymbol) -> Iterator[tuple[ast.Name, list[int]]]:
-    """What a signal begins and ends with: the name of a variable, and the index of an element.
+    """Yield the first and the last variable of a signal, each with the index of its element if any.
 
-    What is neither, which the check refuses, is left out [IOT-03].
+    An end that is neither a variable nor an element, which the check rejects, is left out [IOT-03].
     """
     for node in (symbol.first, symbol.last):
         match node:

@@ -1,1 +1,1 @@
-"""The values of KRL: operators, built-in functions, text forms, faults, frames."""
+"""The values of KRL: operators, predefined functions, text formats, faults and poses."""

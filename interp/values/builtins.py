@@ -1,12 +1,12 @@
-"""The predefined functions: those that only compute, and the names of those that need the world.
+"""The predefined functions of KRL, and the names of those that need the controller.
 
-`FUNCTIONS` are functions of numbers and poses, as primitives that machines have as instructions.
-`BUILTINS` are all that only compute; `call` carries one out, whatever it takes and changes. `WORLD`
-are the rest, which an executor hands over as `interp.port.requests.Invoke`.
+`FUNCTIONS` are functions of numbers and poses, in the form of primitives that the machines have as
+instructions. `BUILTINS` are all functions that only compute; `call` executes one of them. `WORLD`
+are the others, which an executor passes to the controller as `interp.port.requests.Invoke`.
 
-Angles are in degrees [FCT-02]. Functions of the C library compute in double, and the result is
-rounded to single once. Angles are reduced to less than a full circle before, so that they stay
-exact however large they are.
+Angles are in degrees [FCT-02]. The functions of the C library compute in double precision, and the
+result is rounded to single once. An angle is reduced to less than a full circle first, so that
+large angles stay exact.
 """
 
 from __future__ import annotations
@@ -112,16 +112,16 @@ FUNCTIONS: Mapping[str, Primitive] = MappingProxyType(
 
 
 class Randomness:
-    """Random numbers that are the same on every executor: Marsaglia's xorshift of 32 bits.
+    """A random number generator that all executors share: Marsaglia's 32-bit xorshift.
 
-    ``state`` is never 0; a seed of 0 is taken as 1.
+    ``state`` is never 0; a seed of 0 is replaced by 1.
     """
 
     def __init__(self, seed: int = 1) -> None:
         self.state = seed & 0xFFFFFFFF or 1
 
     def __call__(self) -> float:
-        """The next number, from 0 to below 1, a multiple of 2**-32."""
+        """Return the next number in [0, 1), a multiple of 2**-32."""
         state = self.state
         state ^= state << 13 & 0xFFFFFFFF
         state ^= state >> 17
@@ -132,10 +132,10 @@ class Randomness:
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What the functions need of the executor that calls them.
+    """What predefined functions need from the executor that calls them.
 
-    ``random`` gives numbers from 0 to below 1. ``find`` gives the type and the value of a variable
-    by the text that names it (``"I"``, ``"F.X"``, ``"T[]"``); ``None`` where it is not declared.
+    ``random`` returns a number in [0, 1). ``find`` returns the type and the value of a variable by
+    its name as text (``"I"``, ``"F.X"``, ``"T[]"``), or ``None`` if it is not declared.
     """
 
     random: Callable[[], float]
@@ -147,7 +147,7 @@ def _frand(surroundings: Surroundings, least: float, most: float) -> Outcome:
 
 
 def _varstate(surroundings: Surroundings, name: Value) -> Outcome:
-    """A variable is initialised when it has a value in any part [TYP-18]."""
+    """Return INITIALIZED if any part of the variable has a value [TYP-18]."""
     found = surroundings.find(text_of(name))
     if found is None:
         return _word("VAR_STATE", "UNKNOWN"), {}
@@ -158,7 +158,7 @@ _SCALARS: Mapping[Type, str] = {INT: "INT", REAL: "REAL", BOOL: "BOOL", CHAR: "C
 
 
 def _vartype(surroundings: Surroundings, name: Value) -> Outcome:
-    """An array has the type of its elements (unconfirmed) [TYP-18]."""
+    """Return the type of a variable; for an array that of its elements (unconfirmed) [TYP-18]."""
     found = surroundings.find(text_of(name))
     type_ = None if found is None else found[0]
     if isinstance(type_, Array):
@@ -188,7 +188,8 @@ def _word(type_name: str, name: str) -> EnumValue:
 class PredefinedFunction:
     """A predefined function that only computes.
 
-    ``changes_more`` says that the arguments after those of the table are passed :OUT too.
+    ``has_more`` allows arguments after ``parameters``; ``changes_more`` says that they are passed
+    :OUT. A function that ``uses_surroundings`` receives a `Surroundings` before its arguments.
     """
 
     name: str
@@ -200,7 +201,7 @@ class PredefinedFunction:
     uses_surroundings: bool
 
     def is_out(self, place: int) -> bool:
-        """Whether the argument of a place, counted from 0, may be changed."""
+        """Return whether the function may change its argument at ``place``, counted from 0."""
         if place < len(self.parameters):
             return self.parameters[place].is_out
         return self.changes_more
@@ -236,13 +237,13 @@ def _builtin(name: str) -> PredefinedFunction:
     )
 
 
-#: All predefined functions that only compute, by name.
+#: All predefined functions that only compute, by their names in upper case.
 BUILTINS: Mapping[str, PredefinedFunction] = MappingProxyType(
     {name: _builtin(name) for name in sorted({*_COMPUTING, *_ASKING})}
 )
 
-#: All predefined routines that need the world, or act on it. CAST_FROM and CAST_TO are among them
-#: because no rule says how values lie in a buffer.
+#: All predefined routines that need the controller. CAST_FROM and CAST_TO are among them because
+#: no rule says how values are laid out in a buffer.
 WORLD: frozenset[str] = frozenset(
     """
     ACTIVATE_FORCE_MODE ADVANCEDVECTORMOVEON CAL_TO_RDC CANCELPROGSYNC CAST_FROM CAST_TO CCLOSE
@@ -263,12 +264,14 @@ WORLD: frozenset[str] = frozenset(
 
 
 def call(name: str, arguments: Sequence[Value | None], surroundings: Surroundings) -> Outcome:
-    """Carry out a function of `BUILTINS`; an argument left out is ``None``.
+    """Execute a function of `BUILTINS` and return its result and the new values of its arguments.
 
-    What is passed :IN is converted to the parameter's type [ARI-04]. Faults ``uninitialised`` where
-    it has no value, ``argument`` where there are too few or too many arguments or a wrong one, and
-    what the function faults. The arguments themselves are not changed: the caller assigns the new
-    values as any value is, a text to an array of CHAR, an INT to a REAL.
+    An omitted argument is ``None``. An argument passed :IN is converted to the parameter's type
+    [ARI-04]. The arguments are not modified: the caller assigns the new values by the usual rules
+    of assignment (a text to an array of CHAR, an INT to a REAL).
+
+    Faults ``uninitialised`` if an argument has no value, ``argument`` if there are too few or too
+    many arguments or one has the wrong type, and whatever the function faults.
     """
     builtin = BUILTINS[name.upper()]
     least = len(builtin.parameters)
@@ -285,16 +288,16 @@ def call(name: str, arguments: Sequence[Value | None], surroundings: Surrounding
 
 
 def reads_text(type_: Type) -> bool:
-    """Whether a function reads a text by a parameter :IN of this type [FCT-04].
+    """Return whether a function reads a text through a parameter :IN of this type [FCT-04].
 
-    There an array of CHAR that the caller of a routine has left out is the empty text, as one is
-    that never had a value (unconfirmed: the message routines in backups of three independent
-    controllers ask for STRLEN of a parameter that is left out, and continue only if it is not 0).
+    For such a parameter, an omitted array of CHAR is the empty text, and so is one that never had
+    a value (unconfirmed: the message routines in backups of three independent controllers call
+    STRLEN of an omitted parameter, and continue only if it is not 0).
     """
     return isinstance(type_, Array) and type_.element == CHAR and len(type_.sizes) == 1
 
 
 def _passed(type_: Type, argument: Value | None) -> Value:
-    """An argument passed :IN; a text stays as it is, whatever the size of the parameter."""
+    """Return an argument passed :IN as the parameter's type; arrays are not converted."""
     value = known(argument)
     return value if isinstance(type_, Array) else converted(value, type_)

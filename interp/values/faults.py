@@ -1,7 +1,7 @@
-"""The catalogue of all faults of a running program [design section 8].
+"""The catalogue of the faults of a running program [design section 8].
 
-A fault is made from its slug by `fault` and from nothing else. Its text contains no values and no
-names, so that every executor, the one in C included, stops a program with an equal fault.
+Only `fault` creates faults, from their slugs. The text of a fault contains no values and no names,
+so that every executor, including the one in C, stops a program with an equal fault.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from types import MappingProxyType
 
 
 class RuntimeFailure(Exception):
-    """Anything that ends a run; its text is one clear line."""
+    """Base of everything that ends a run; its text is one clear line."""
 
     @property
     def is_of_statement(self) -> bool:
-        """Whether one statement has failed, so that others may do."""
+        """Return whether only one statement has failed, so that later ones may still succeed."""
         return False
 
 
 class LinkError(RuntimeFailure):
-    """The program cannot be run: something it calls is nowhere, or it does not check."""
+    """The program cannot run: a name it uses is declared nowhere, or the check found an error."""
 
     @property
     def is_of_statement(self) -> bool:
@@ -32,8 +32,8 @@ class LinkError(RuntimeFailure):
 class Fault(RuntimeFailure):
     """A message of the controller that stops the program.
 
-    ``slug`` names the fault in words that stay, ``number`` is that of the KSS message where one
-    fits, else ``None``; ``rules`` are IDs of the rules it follows from.
+    ``slug`` is the permanent name of the fault. ``number`` is that of the KSS message, or ``None``
+    if no message fits. ``rules`` are the IDs of the rules from which the fault follows.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Fault(RuntimeFailure):
 
     @property
     def is_of_statement(self) -> bool:
-        """Whether one statement has failed: not where calls never come to an end."""
+        """Return whether only one statement has failed: not so for a stack overflow."""
         return self.slug != "stack"
 
     def __eq__(self, other: object) -> bool:
@@ -62,14 +62,15 @@ class Fault(RuntimeFailure):
 
 
 class BudgetExhausted(RuntimeFailure):
-    """The program has used up the statements it was allowed: it may never end."""
+    """The program has executed as many statements as it may: it may never end."""
 
 
 @dataclass(frozen=True, slots=True)
 class FaultKind:
-    """An entry of the catalogue; ``code`` is its place, by which a machine without texts names it.
+    """An entry of the fault catalogue.
 
-    ``number`` is that of the KSS message, ``None`` where no message at hand fits.
+    ``code`` is its index, by which a machine without texts identifies it. ``number`` is that of the
+    KSS message, or ``None`` if no known message fits.
     """
 
     code: int
@@ -79,7 +80,7 @@ class FaultKind:
     rules: tuple[str, ...]
 
 
-#: All faults that executors raise, by slug. New entries come last: images and C know the codes.
+#: All faults of executors, by slug. Append new entries: images and the machine in C use the codes.
 FAULTS: Mapping[str, FaultKind] = MappingProxyType(
     {
         slug: FaultKind(code, slug, text, number, tuple(rules.split()))
@@ -105,6 +106,6 @@ FAULTS: Mapping[str, FaultKind] = MappingProxyType(
 
 
 def fault(slug: str) -> Fault:
-    """A fault from the catalogue, ready to be raised; `KeyError` for an unknown slug."""
+    """Return a fault of the catalogue, to be raised; raise `KeyError` for an unknown slug."""
     kind = FAULTS[slug]
     return Fault(kind.slug, kind.text, number=kind.number, rules=kind.rules)

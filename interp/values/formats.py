@@ -1,30 +1,31 @@
-"""SWRITE and SREAD: values into a text and out of it, by a format [FCT-09].
+"""SWRITE and SREAD: formatted output to a text and formatted input from a text [FCT-09].
 
 A format is text with specifications ``%[flags][width][.precision]letter``, as in C's printf:
 
 =====  ==================================================================================
-``+``  a sign before positive numbers too
-``-``  aligned to the left
-``0``  filled up with zeros instead of blanks
-``#``  ``0x`` before hexadecimal numbers but zero; always a point in e, f, g
+``+``  write a sign before positive numbers too
+``-``  align to the left
+``0``  fill with zeros instead of blanks
+``#``  ``0x`` before hexadecimal numbers except zero; always a point in e, f, g
 =====  ==================================================================================
 
-The width is the least number of characters. It counts the point but not the sign, which is where
-KUKA's format differs from C's: 1.56 in ``%+8.4f`` is two blanks, then ``+1.5600``.
+The width is the least number of characters. It counts the point but not the sign. Here KUKA's
+format differs from C's: 1.56 in ``%+8.4f`` is two blanks, then ``+1.5600``.
 
 =============  ===============================================================================
 ``d i``        INT; a REAL as by ``f``; BOOL as 1 or 0
-``u x``        INT as a number of 32 bits without sign, decimal or hexadecimal
+``u x``        INT as an unsigned 32-bit number, decimal or hexadecimal
 ``e f g``      REAL, INT
-``c``          CHAR, or INT as its code
-``s``          text; the precision is the most characters. BOOL as TRUE or FALSE, ``#NAME``
+``c``          CHAR, or INT as its character code
+``s``          text; the precision is the largest number of characters. BOOL as TRUE or FALSE,
+               an enumeration constant as ``#NAME``
 ``%``          a percent sign
 =============  ===============================================================================
 
 The flags, the width, the offset and the limit of ten variables are from a transcription of the
-manual on CREAD and CWRITE; the letters but ``d``, BOOL, enumerations, STATE and all of SREAD are
-recollection (unconfirmed). Both stop at what cannot be converted: STATE then has #FMT_ERR and the
-number of conversions before, and what was written or read before stays.
+manual on CREAD and CWRITE. All letters but ``d``, BOOL, enumerations, STATE and all of SREAD are
+from memory (unconfirmed). Both functions stop at a value that cannot be converted: STATE then holds
+#FMT_ERR and the number of conversions before it, and what was written or read until then stays.
 """
 
 from __future__ import annotations
@@ -49,16 +50,16 @@ from interp.values.values import (
     text_of,
 )
 
-#: No text is longer [FCT-04], so no width or precision needs to be.
+#: The longest text [FCT-04], so also the largest width and precision.
 _LONGEST = 2047
-#: The most variables of one call.
+#: The largest number of variables in one call.
 _MOST = 10
 
 _SPECIFICATION = re.compile(r"%([-+#0]*)([0-9]{0,4})(?:\.([0-9]{1,4}))?([a-zA-Z])")
 
 
 class _Mismatch(Exception):
-    """A value or a text does not fit its specification."""
+    """A value or a text does not match its format specification."""
 
 
 #: Flags, width, precision, letter.
@@ -66,7 +67,7 @@ _Specification = tuple[str, int | None, int | None, str]
 
 
 def _pieces(pattern: str) -> Iterator[str | _Specification]:
-    """Texts and specifications in order; `_Mismatch` at a wrong one."""
+    """Yield literal texts and specifications in order; raise `_Mismatch` at an invalid one."""
     place = 0
     while place < len(pattern):
         if pattern.startswith("%%", place):
@@ -99,7 +100,7 @@ def _count(digits: str | None) -> int | None:
 
 
 def _state(word: str, hits: int, length: int) -> StructureValue:
-    """A STATE_T: the result, how many conversions, how many characters [FCT-08]."""
+    """Return a STATE_T with the result and the numbers of conversions and characters [FCT-08]."""
     types = System.load().types
     structure, results = types["STATE_T"], types["CMD_STAT"]
     assert isinstance(structure, Structure)
@@ -119,11 +120,11 @@ def _state(word: str, hits: int, length: int) -> StructureValue:
 def swrite(
     target: Value | None, _state_before: Value | None, offset: Value, pattern: Value, *values: Value
 ) -> Outcome:
-    """Write values into a text from behind the first ``offset`` characters on.
+    """Write values to a text, after its first ``offset`` characters.
 
-    The offset is moved behind what was written. What stood elsewhere in the text stays: a program
-    that wants it gone clears it first (unconfirmed). An offset outside the text gives #CMD_ABORT
-    (unconfirmed).
+    The offset is then increased by what was written. The rest of the text stays: a program that
+    does not want it clears the text first (unconfirmed). An offset outside the text results in
+    #CMD_ABORT (unconfirmed).
     """
     if not isinstance(target, ArrayValue):
         raise fault("argument")
@@ -188,7 +189,7 @@ def _characters(letter: str, precision: int | None, value: Value) -> str:
 
 
 def _digits(specification: _Specification, value: Value) -> tuple[str, str, str]:
-    """Sign, prefix and digits of a number."""
+    """Return sign, prefix and digits of a number."""
     flags, _, precision, letter = specification
     if not isinstance(value, int | float):
         raise _Mismatch
@@ -212,7 +213,7 @@ def _digits(specification: _Specification, value: Value) -> tuple[str, str, str]
 
 # ------------------------------------------------------------------------------- SREAD
 
-#: What a number looks like, by letter.
+#: The syntax of a number by the letter of its specification.
 _NUMBERS: Mapping[str, re.Pattern[str]] = {
     **dict.fromkeys("di", INTEGER),
     "u": re.compile(r"[0-9]+"),
@@ -228,12 +229,11 @@ def sread(
     pattern: Value,
     *variables: Value | None,
 ) -> Outcome:
-    """Read values from a text from behind the first ``offset`` characters on.
+    """Read values from a text, after its first ``offset`` characters, as C's scanf does.
 
-    It reads as C's scanf does: blanks of the format stand for any number of blanks, other
-    characters for themselves; before all but ``c`` blanks are skipped; the width is the most
-    characters. The offset is moved behind what was read. An offset outside the text gives
-    #CMD_ABORT.
+    A blank in the format matches any number of blanks, any other character matches itself. Blanks
+    before a value are skipped, except for ``c``. The width is the largest number of characters. The
+    offset is increased by what was read. An offset outside the text results in #CMD_ABORT.
     """
     given = text_of(text)
     start = converted(known(offset), INT)
@@ -261,7 +261,7 @@ def sread(
 
 
 def _skipped(text: str, place: int, expected: str) -> int:
-    """The place behind what the format expects literally."""
+    """Return the place after the literal text that the format expects."""
     for letter in expected:
         if letter == " ":
             place = _blanks(text, place)
@@ -279,7 +279,7 @@ def _blanks(text: str, place: int) -> int:
 
 
 def _read(text: str, place: int, specification: _Specification) -> tuple[Value, int]:
-    """A value, and the place behind it."""
+    """Return a value and the place after it."""
     flags, width, precision, letter = specification
     if flags or precision is not None or width == 0:
         raise _Mismatch
@@ -303,7 +303,7 @@ def _read(text: str, place: int, specification: _Specification) -> tuple[Value, 
 
 
 def _number(letter: str, digits: str) -> int | float | None:
-    """The number; ``None`` where it is too large."""
+    """Return the number that the digits denote, or ``None`` if it is too large."""
     if letter in "efg":
         return real_of(digits)
     if letter in "di":

@@ -1,9 +1,10 @@
-"""The geometric operator and the inverse of a pose, for values of KRL [ARI-08, ARI-09].
+"""The geometric operator and the inverse of a pose, on values of KRL [ARI-08, ARI-09].
 
-All is computed in double on `interp.values.poses.Pose`, and each result is rounded to single once.
-Sines, cosines and angles are those of the C library in one order of operations, which the machine
-in C repeats to the bit. The angles of a result are A and C in (-180, 180], B in [-90, 90]. Where
-the x axis is upright (B = ±90) only the sum or difference of A and C is defined: then A is 0.
+The computation uses `interp.values.poses.Pose` in double precision, and each result is rounded to
+single once. Sines, cosines and angles are those of the C library, in a fixed order of operations
+that the machine in C repeats to the bit. In a result, A and C are in (-180, 180] and B is in
+[-90, 90]. If the x axis is vertical (B = ±90, gimbal lock), only the sum or the difference of A and
+C is defined; then A is 0.
 """
 
 from __future__ import annotations
@@ -19,22 +20,22 @@ from interp.values.values import StructureValue, copied, known, single
 #: A degree in radians, and a radian in degrees.
 DEGREE = math.pi / 180
 RADIAN = 180 / math.pi
-#: The x axis is upright when its part in the plane is shorter than this: what singles leave of
-#: zero is a tenth of it.
+#: The x axis counts as vertical if its projection on the xy plane is shorter than this. Rounding to
+#: single leaves a tenth of it instead of zero.
 _UPRIGHT = 1e-6
 
 
 def radians(degrees: float) -> float:
-    """An angle in radians; full circles are taken off before, so that large angles stay exact."""
+    """Return an angle in radians, reduced by full circles first so that large angles stay exact."""
     return math.fmod(degrees, 360.0) * DEGREE
 
 
 def composed(left: StructureValue, right: StructureValue) -> StructureValue:
-    """``left : right``, the pose ``right`` that is given in ``left``, given in what ``left`` is in.
+    """Return ``left : right``: the pose ``right``, relative to ``left``, in the base of ``left``.
 
-    It has the type of ``right``, and all of its members but X to C: Status, Turn and external axes
-    are carried over as they are. Faults ``uninitialised`` where one of X to C is missing,
-    ``operand`` where an operand is no pose.
+    The result has the type of ``right`` and all its members except X to C: Status, Turn and
+    external axes are carried over. Faults ``uninitialised`` if one of X to C has no value, and
+    ``operand`` if an operand is not a pose.
     """
     product = _pose(left) @ _pose(right)
     result: StructureValue = copied(right)
@@ -43,10 +44,10 @@ def composed(left: StructureValue, right: StructureValue) -> StructureValue:
 
 
 def inverted(pose: StructureValue) -> StructureValue:
-    """The pose that composed with ``pose`` gives zero, in the same type [FCT-03].
+    """Return the inverse of ``pose``, in the same type [FCT-03].
 
     Its other members have no value: Status, Turn and external axes have no inverse. Faults as
-    `composed`.
+    `composed` does.
     """
     back = _pose(pose).inverse()
     result = StructureValue(pose.type, [None] * len(pose.members))
@@ -55,7 +56,7 @@ def inverted(pose: StructureValue) -> StructureValue:
 
 
 def _pose(value: StructureValue) -> Pose:
-    """X to C, which are the first six members of all poses."""
+    """Return X to C of a value, the first six members of every pose type, as a transform."""
     if not is_cartesian(value.type):
         raise fault("operand")
     numbers: list[Any] = [known(member) for member in value.members[:6]]
@@ -65,7 +66,7 @@ def _pose(value: StructureValue) -> Pose:
 
 
 def _components(pose: Pose) -> tuple[float, ...]:
-    """X to C as REAL."""
+    """Return X to C of a pose as six REAL values."""
     (m00, m01, m02, x), (m10, m11, m12, y), (m20, _, _, z) = pose.rows
     across, along = m10, m00
     if math.sqrt(along * along + across * across) < _UPRIGHT:

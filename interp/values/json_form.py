@@ -1,4 +1,4 @@
-"""Values as JSON, and back: the one form that traces, watches and reports show.
+"""Conversion of values to JSON and back, in the one form that traces, watches and reports use.
 
 ==============  ===============================================================================
 no value        ``null``
@@ -11,7 +11,7 @@ CHAR array      ``"abc"``, the used part, when nothing behind it has a value
 other arrays    ``[1,2,null]``; of more dimensions, ``[[1,2],[3,4]]``
 ==============  ===============================================================================
 
-Equal values have equal texts, with one exception that is meant: -0.0 is written as 0.0.
+Equal values have equal texts. There is one deliberate exception: -0.0 is written as 0.0.
 """
 
 from __future__ import annotations
@@ -35,24 +35,24 @@ from interp.values.values import (
     text_of,
 )
 
-#: What `json.dumps` takes.
+#: Anything that `json.dumps` accepts.
 Json = Any
 
-#: Below this a REAL has lost digits (it is subnormal).
+#: The smallest normal single; a subnormal REAL has fewer digits.
 _NORMAL = 1.1754943508222875e-38
 
 
 def real_text(number: float) -> str:
-    """A REAL in the fewest significant digits that, read and rounded to single, give it again.
+    """Return a REAL with the fewest significant digits that read back as the same single.
 
-    With so many digits it is rounded as C's ``%g`` does, then written as Python writes a float.
+    The number is rounded to these digits as C's ``%g`` does, then written as Python writes a float.
     """
     return repr(_shortest(number))
 
 
 def _shortest(number: float) -> float:
-    # Six digits always tell apart what six digits can write, so fewer need not be tried; not so
-    # below the normal range.
+    # All numbers of up to six digits differ as singles, so fewer digits than six need not be tried,
+    # except below the normal range.
     fewest = 6 if abs(number) >= _NORMAL else 1
     for digits in range(fewest, 9):
         found = float(f"{number:.{digits}g}")
@@ -66,12 +66,12 @@ _LARGEST = 3.4028235677973362e38
 
 
 def rendered(value: Value | None) -> str:
-    """The value as a line of JSON."""
+    """Return the value as JSON, in one line."""
     return json.dumps(to_json(value), ensure_ascii=False, separators=(",", ":"))
 
 
 def to_json(value: Value | None) -> Json:
-    """The value as `json.dumps` takes it."""
+    """Return the value in the form that `json.dumps` accepts."""
     match value:
         case float():
             return _shortest(value)
@@ -93,9 +93,10 @@ def to_json(value: Value | None) -> Json:
 
 
 def from_json(type_: Type, data: Any) -> Value | None:
-    """The value of a type that is written so; raises `ValueError`, or a fault for its range.
+    """Return the value of a type from its JSON form.
 
-    A REAL may be written without a point. Members that are not there get no value.
+    A REAL may be written without a point. A missing member gets no value. Raises `ValueError`, and
+    a fault if a number is outside the range of its type.
     """
     match type_:
         case Structure() if isinstance(data, dict):

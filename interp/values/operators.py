@@ -1,14 +1,14 @@
-"""Operators on values: one table of typed primitives, and the way from operators to them.
+"""Operators on values: one table of typed primitives, and the choice of a primitive.
 
-A `Primitive` works on operands of fixed kinds; it is what becomes an instruction of the machines.
-`select` says, from the kinds that the checker knows, which primitive an operator is and how its
-operands are converted before; `apply` does the same for values at hand. Both read one table, so an
-operator has one meaning.
+A `Primitive` works on operands of fixed kinds; the machines have one instruction for each. `select`
+chooses the primitive of an operator from the kinds of its operands that the checker knows, and the
+conversions that the operands need first. `apply` does the same at run time from the values. Both
+use one table, so an operator has one meaning.
 
-Operands are evaluated from left to right and always both: AND and OR do not stop after the first,
-as no rule says that they would (unconfirmed). An INT beside a REAL becomes a REAL, and so is
-rounded to single, before anything else [ARI-01]; a CHAR in a relation or bit operation is its code
-[ARI-10]. That a value is missing is found when it is read, so primitives never see ``None``.
+Operands are evaluated from left to right, and always both: AND and OR do not stop after the first,
+as no rule says that they would (unconfirmed). An INT combined with a REAL is first converted to
+REAL, and so rounded to single [ARI-01]. A CHAR in a relation or bit operation is its code [ARI-10].
+A missing value is detected when the variable is read, so primitives never see ``None``.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from interp.values.geometric_operator import composed
 from interp.values.values import EnumValue, StructureValue, Value, integer, rounded, single
 from support.lazy_dataclass import dataclass
 
-#: What primitives distinguish. FRAME is any pose: FRAME, POS, E3POS, E6POS.
+#: The kinds of operands that primitives distinguish. FRAME is any pose: FRAME, POS, E3POS, E6POS.
 Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
 
 
@@ -45,7 +45,7 @@ Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
 class Primitive:
     """An operation on operands of fixed kinds.
 
-    ``faults`` are the slugs of the faults that it can raise, ``sentence`` says what it returns.
+    ``faults`` are the slugs of the faults that it can raise; ``sentence`` describes its result.
     """
 
     name: str
@@ -58,9 +58,9 @@ class Primitive:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """How an operator is carried out: the conversions of each operand, then the primitive.
+    """How an operator is executed: the conversions of each operand, then the primitive.
 
-    ``primitive`` is ``None`` where nothing is left to do: the sign ``+``.
+    ``primitive`` is ``None`` if the operator does nothing, as the sign ``+``.
     """
 
     conversions: tuple[tuple[Primitive, ...], ...]
@@ -85,7 +85,7 @@ def _quotient(left: float, right: float) -> float:
 
 
 def _code(letter: str) -> int:
-    if len(letter) != 1:  # the empty text, which the checker lets stand for a letter
+    if len(letter) != 1:  # the empty text, which the checker accepts as a CHAR
         raise fault("operand")
     return ord(letter)
 
@@ -100,8 +100,8 @@ def _letter(code: int) -> str:
 
 _Row = tuple[str, str, Callable[..., Any], str, str]
 
-# Name, kinds of the operands and of the result, function, faults, sentence. In double, + - * / and
-# the square root of singles are exact enough for one rounding to give what single arithmetic gives.
+# Name, kinds of the operands and of the result, function, faults, sentence. For + - * / and the
+# square root of singles, computing in double and rounding once equals single-precision arithmetic.
 _ROWS: tuple[_Row, ...] = (
     ("add_int", "INT INT INT", lambda a, b: integer(a + b), "overflow", "the sum"),
     ("sub_int", "INT INT INT", lambda a, b: integer(a - b), "overflow", "the difference"),
@@ -157,7 +157,7 @@ def _primitive(row: _Row) -> Primitive:
 #: All primitives by name, in a fixed order.
 PRIMITIVES: Mapping[str, Primitive] = MappingProxyType({row[0]: _primitive(row) for row in _ROWS})
 
-#: The primitives of an operator, most narrow first: the first whose operands can be had is taken.
+#: The primitives of an operator, from narrow to wide: the first to which its operands convert.
 BINARY: Mapping[str, tuple[str, ...]] = {
     "+": ("add_int", "add_real"),
     "-": ("sub_int", "sub_real"),
@@ -183,9 +183,9 @@ UNARY: Mapping[str, tuple[str, ...]] = {
     "B_NOT": ("not_bits",),
 }
 
-#: Operators that take a CHAR, by its code.
+#: Operators that accept a CHAR and use its code.
 _OF_LETTERS = operations.EQUALITY | operations.ORDER | operations.BITWISE | {"B_NOT"}
-#: How a kind becomes another.
+#: The primitives that convert one kind to another.
 _WAYS: Mapping[tuple[Kind, Kind], tuple[str, ...]] = {
     ("INT", "REAL"): ("int_to_real",),
     ("CHAR", "INT"): ("char_to_int",),
@@ -195,9 +195,10 @@ _WAYS: Mapping[tuple[Kind, Kind], tuple[str, ...]] = {
 
 @cache
 def select(operator: str, *kinds: Kind) -> Selection | None:
-    """How an operator works on one or two operands of these kinds; ``None`` where it does not.
+    """Return how an operator works on one or two operands of these kinds.
 
-    Raises `ValueError` for what is no such operator.
+    Return ``None`` if it does not accept such operands. Raises `ValueError` if there is no such
+    operator with that number of operands.
     """
     table = BINARY if len(kinds) == 2 else UNARY
     if operator == "+" and len(kinds) == 1:
@@ -237,7 +238,7 @@ _PYTHON: Mapping[type, Kind] = {
 
 
 def kind_of(type_: Type) -> Kind | None:
-    """The kind of a type; ``None`` where no operator takes it: arrays, other structures."""
+    """Return the kind of a type; ``None`` for arrays and other types that no operator accepts."""
     match type_:
         case Enumeration() | Constant():
             return "ENUM"
@@ -251,7 +252,7 @@ def kind_of(type_: Type) -> Kind | None:
 
 
 def kind_of_value(value: Value) -> Kind:
-    """The kind of a value; faults ``operand`` where no operator takes it."""
+    """Return the kind of a value; faults ``operand`` if no operator accepts the value."""
     kind = _PYTHON.get(type(value))
     if kind is None or (isinstance(value, StructureValue) and not is_cartesian(value.type)):
         raise fault("operand")
@@ -262,12 +263,12 @@ def kind_of_value(value: Value) -> Kind:
 
 
 def apply(operator: str, left: Value, right: Value) -> Value:
-    """``left operator right``; faults ``operand`` where it does not work on these."""
+    """Return ``left operator right``; faults ``operand`` if it does not accept such operands."""
     return _applied(select(operator, kind_of_value(left), kind_of_value(right)), (left, right))
 
 
 def apply_unary(operator: str, operand: Value) -> Value:
-    """``operator operand``; faults ``operand`` where it does not work on this."""
+    """Return ``operator operand``; faults ``operand`` if it does not accept such an operand."""
     return _applied(select(operator, kind_of_value(operand)), (operand,))
 
 

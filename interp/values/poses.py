@@ -1,8 +1,8 @@
-"""Poses: the position and orientation of a frame in another one, and their composition.
+"""Poses: position and orientation of one frame relative to another, and their composition.
 
-Lengths are millimetres and angles degrees, as KRL has them. A, B and C turn about Z, then about the
-new Y, then about the new X: ``R = Rz(A) Ry(B) Rx(C)`` [ARI-09]. With ``left @ right``, ``right`` is
-given in the frame ``left`` [ARI-08].
+Lengths are in mm and angles in degrees, as in KRL. A, B and C are Z-Y'-X'' Euler angles: a rotation
+about Z, then about the new Y, then about the new X, so ``R = Rz(A) Ry(B) Rx(C)`` [ARI-09]. In
+``left @ right``, ``right`` is relative to the frame ``left`` [ARI-08].
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from dataclasses import dataclass
 Row = tuple[float, float, float, float]
 
 _LOCKED = 1e-12
-"""Cosine of B below which A and C turn about the same axis; the orientation is off by no more."""
+"""Cosine of B below which A and C rotate about the same axis; the orientation errs by no more."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A pose as the upper three rows of its homogeneous matrix: rotation, and position in mm."""
+    """A pose as the upper three rows of its homogeneous 4 x 4 matrix; the position is in mm."""
 
     rows: tuple[Row, Row, Row]
 
@@ -33,7 +33,7 @@ class Pose:
         b: float = 0.0,
         c: float = 0.0,
     ) -> Pose:
-        """The pose of a FRAME: mm and degrees. Multiples of 90 degrees are exact."""
+        """Return the pose of a FRAME in mm and degrees; multiples of 90 degrees are exact."""
         return cls.turned((x, y, z), sine_cosine(a), sine_cosine(b), sine_cosine(c))
 
     @classmethod
@@ -44,7 +44,7 @@ class Pose:
         b: tuple[float, float],
         c: tuple[float, float],
     ) -> Pose:
-        """The pose of a position in mm and of three angles, each as its sine and cosine."""
+        """Return the pose of a position in mm and of three angles, each as (sine, cosine)."""
         (x, y, z), (sa, ca), (sb, cb), (sc, cc) = position, a, b, c
         return cls(
             (
@@ -56,7 +56,7 @@ class Pose:
 
     @classmethod
     def from_matrix(cls, matrix: Sequence[Sequence[float]]) -> Pose:
-        """The pose of a homogeneous matrix of three or four rows."""
+        """Return the pose of a homogeneous matrix with three or four rows."""
         first, second, third = (
             (float(row[0]), float(row[1]), float(row[2]), float(row[3])) for row in matrix[:3]
         )
@@ -64,7 +64,7 @@ class Pose:
 
     @property
     def matrix(self) -> tuple[Row, Row, Row, Row]:
-        """The homogeneous matrix, four by four."""
+        """The homogeneous matrix, 4 x 4."""
         return (*self.rows, (0.0, 0.0, 0.0, 1.0))
 
     @property
@@ -74,27 +74,27 @@ class Pose:
 
     @property
     def angles(self) -> tuple[float, float, float]:
-        """A, B and C in degrees: A and C above -180 and up to 180, B from -90 to 90.
+        """A, B and C in degrees: A and C in (-180, 180], B in [-90, 90].
 
-        Composed again they give the same rotation, at and near B = ±90 as well. Where only the sum
-        or the difference of A and C counts, A is 0.
+        Composed again they give the same rotation, also at and near B = ±90. There only the sum or
+        the difference of A and C is defined, and A is 0.
         """
         (r00, r01, r02, _), (r10, r11, r12, _), (r20, _, _, _) = self.rows
         cb = math.hypot(r00, r10)
         a = math.atan2(r10, r00) if cb > _LOCKED else 0.0
-        # C from what A leaves over, so that rounding in A is made good.
+        # C is computed from A, so that it compensates for rounding in A.
         sa, ca = math.sin(a), math.cos(a)
         c = math.atan2(sa * r02 - ca * r12, ca * r11 - sa * r01)
         return _degrees(a), _degrees(math.atan2(-r20, cb)), _degrees(c)
 
     @property
     def components(self) -> tuple[float, float, float, float, float, float]:
-        """X, Y, Z in mm, and A, B, C in degrees: the components of a FRAME."""
+        """X, Y, Z in mm and A, B, C in degrees: the components of a FRAME."""
         return (*self.position, *self.angles)
 
     @property
     def is_finite(self) -> bool:
-        """Whether every number in it is one."""
+        """Whether no number in the matrix is infinite or NaN."""
         return all(math.isfinite(value) for row in self.rows for value in row)
 
     def __matmul__(self, other: Pose) -> Pose:
@@ -111,7 +111,7 @@ class Pose:
         return Pose((first, second, third))
 
     def inverse(self) -> Pose:
-        """The pose of the outer frame in this one."""
+        """Return the inverse: the pose of the outer frame relative to this one."""
         (r00, r01, r02, x), (r10, r11, r12, y), (r20, r21, r22, z) = self.rows
         return Pose(
             (
@@ -123,9 +123,10 @@ class Pose:
 
 
 def sine_cosine(degrees: float) -> tuple[float, float]:
-    """Sine and cosine of an angle in degrees, exact at multiples of 90; NaN where it is no number.
+    """Return sine and cosine of an angle in degrees, exact at multiples of 90.
 
-    Degrees are reduced before they become radians, so many turns cost no precision.
+    The angle is reduced before it is converted to radians, so full turns cost no precision. Both
+    are NaN if the angle is infinite or NaN.
     """
     if not math.isfinite(degrees):
         return math.nan, math.nan
@@ -142,4 +143,4 @@ def _degrees(radians: float) -> float:
 
 
 IDENTITY = Pose.of()
-"""The pose of a frame in itself, $NULLFRAME."""
+"""The pose of a frame relative to itself, $NULLFRAME."""

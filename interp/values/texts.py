@@ -1,9 +1,9 @@
 """The predefined functions on texts: STRLEN to STRTOE6AXIS [FCT-04 to FCT-06].
 
-Each takes its arguments as `interp.values.builtins.call` prepares them and gives its result and the
-new values of arguments passed :OUT, by place. Where a function fails it says so by its result and
-changes nothing; this and all that is marked *unconfirmed* is our decision, stated by no rule.
-Letter case is that of A to Z only, whatever the code page.
+Each function receives its arguments as `interp.values.builtins.call` prepares them, and returns its
+result and the new values of arguments passed :OUT, by position. A function that fails says so by
+its result and changes nothing. This, and all that is marked *unconfirmed*, is our decision and
+stated by no rule. Ignoring case affects A to Z only, whatever the code page.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from interp.values.values import (
     text_of,
 )
 
-#: The result, ``None`` for a procedure, and the new values of arguments that it sets, by their
-#: places from 0.
+#: The result (``None`` for a procedure), and the new values of the arguments that the function
+#: sets, by their positions counted from 0.
 Outcome = tuple[Value | None, Mapping[int, Value]]
 
 _UPPER = str.maketrans(ascii_lowercase, ascii_uppercase)
@@ -60,7 +60,7 @@ def _strclear(text: Value | None) -> Outcome:
 
 
 def _stradd(target: Value | None, text: Value) -> Outcome:
-    """The length of both; 0 where they do not fit, and then nothing changes (unconfirmed)."""
+    """Return the length of both texts; 0 without a change if they do not fit (unconfirmed)."""
     joined = text_of(_array(target)) + text_of(text)
     if len(joined) > len(_array(target)):
         return 0, {}
@@ -68,9 +68,9 @@ def _stradd(target: Value | None, text: Value) -> Outcome:
 
 
 def _strfind(start: int, text: Value, wanted: Value, mode: EnumValue) -> Outcome:
-    """The place, counted from 1, at ``start`` or behind it; 0 where it is nowhere.
+    """Return the first place at or after ``start``, counted from 1, or 0 if there is none.
 
-    Nothing is found before place 1 or when there is nothing to find (unconfirmed).
+    Return 0 also if ``start`` is below 1 or the wanted text is empty (unconfirmed).
     """
     what = _cased(text_of(wanted), mode)
     if start < 1 or not what:
@@ -83,7 +83,7 @@ def _strcomp(one: Value, other: Value, mode: EnumValue) -> Outcome:
 
 
 def _strcopy(target: Value | None, text: Value) -> Outcome:
-    """FALSE where it does not fit, and then nothing changes (unconfirmed)."""
+    """Return FALSE, without a change, if the text does not fit (unconfirmed)."""
     found = text_of(text)
     if len(found) > len(_array(target)):
         return False, {}
@@ -92,15 +92,15 @@ def _strcopy(target: Value | None, text: Value) -> Outcome:
 
 # ------------------------------------------------------------------------------- STRTO…
 
-#: How an INT and a REAL are written.
+#: The syntax of an INT and of a REAL.
 INTEGER = re.compile(r"[+-]?[0-9]+")
 DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-#: More digits than any number of 32 bits needs; longer ones are refused before they are read.
+#: More digits than any 32-bit number needs; longer texts are rejected before conversion.
 _DIGITS = 64
 
 
 def integer_of(text: str) -> int | None:
-    """A decimal INT; ``None`` for what is none or too large."""
+    """Return a decimal INT, or ``None`` if the text is not one or the number is too large."""
     if len(text) > _DIGITS or not INTEGER.fullmatch(text):
         return None
     number = int(text)
@@ -108,7 +108,7 @@ def integer_of(text: str) -> int | None:
 
 
 def real_of(text: str) -> float | None:
-    """A decimal number as REAL; ``None`` for what is none or too large."""
+    """Return a decimal REAL, or ``None`` if the text is not one or the number is too large."""
     if len(text) > _DIGITS or not DECIMAL.fullmatch(text):
         return None
     try:
@@ -122,10 +122,11 @@ def _bool_of(text: str) -> bool | None:
 
 
 def _structure_of(type_: Structure, text: str) -> StructureValue | None:
-    """``{X 1.0,Y 2.0}``, with or without braces, type and names [FCT-06].
+    """Return a structure from ``{X 1.0,Y 2.0}``, with or without braces, type and names [FCT-06].
 
-    Without names it is all components in order (unconfirmed); with names, those left out get no
-    value, as in an aggregate of a program [TYP-19].
+    Without names the text must have all components in order (unconfirmed). With names, components
+    that are left out get no value, as in an aggregate of a program [TYP-19]. Return ``None`` if the
+    text is malformed.
     """
     inner = re.fullmatch(rf"\{{(?:\s*{type_.name}\s*:)?(.*)\}}", text, re.IGNORECASE | re.DOTALL)
     parts = [part.split() for part in (inner[1] if inner else text).split(",")]
@@ -150,7 +151,7 @@ def _number_of(type_: Type, text: str) -> int | float | None:
 
 
 def _reader(read: Callable[[str], Value | None]) -> Callable[..., Outcome]:
-    """A function that reads a value from a text: FALSE where there is none."""
+    """Return a KRL function that reads a value from a text; its result is FALSE on failure."""
 
     def function(text: Value, _target: Value | None) -> Outcome:
         value = read(text_of(text).strip(" "))
@@ -171,7 +172,7 @@ def _strtostring(text: Value, target: Value | None) -> Outcome:
     return copied, {place + 1: value for place, value in changes.items()}
 
 
-#: The functions by name; what they do stands in ``grammar/system/functions.tsv``.
+#: The functions by name; ``grammar/system/functions.tsv`` describes them.
 TEXTS: Mapping[str, Callable[..., Any]] = {
     "STRLEN": _strlen,
     "STRDECLLEN": _strdecllen,

@@ -1,22 +1,22 @@
-"""Values of a running program: what they are made of, how they are converted, copied and written.
+"""Values of a running program: their representation in Python, conversion, copying and assignment.
 
 ======================  =======================================================================
-INT                     ``int`` of 32 bits with sign [TYP-01]
+INT                     ``int`` in 32 bits with sign [TYP-01]
 REAL                    ``float`` that is exactly an IEEE single, finite [TYP-02]
 BOOL                    ``bool``
 CHAR                    ``str`` of length 1 whose code point is the byte, 0 to 255 [TYP-03]
-a text in a program     ``str``; of length 1 it is a CHAR as well [TYP-11]
+text constant           ``str``; of length 1 it is a CHAR as well [TYP-11]
 enumeration constant    `EnumValue`
 structure               `StructureValue`
 array                   `ArrayValue`
 no value yet            ``None`` [TYP-13]
 ======================  =======================================================================
 
-A member or element without a value is ``None``, and `known` faults where it is needed. Structures
-and arrays are themselves never ``None``: one that was declared and not filled has no value in any
-part. They are mutable and have the semantics of values: assignment goes through `fill`, which
-copies part by part and so keeps references (OUT parameters, rows of arrays) intact. Parts without a
-value are copied as such, without a fault.
+A member or element without a value is ``None``; `known` faults if the program needs its value. A
+structure or array itself is never ``None``: after its declaration, no part of it has a value.
+Structures and arrays are mutable but have value semantics: assignment uses `fill`, which copies
+part by part, and so keeps references (OUT parameters, rows of arrays) intact. Parts without a value
+are copied as such, without a fault.
 
 The used part of a text ends before its first element that has no value or the code 0.
 """
@@ -56,15 +56,16 @@ REAL_MAX: Final = 3.4028234663852886e38
 
 # --------------------------------------------------------------------------------------- numbers
 
-# Storing a float as a C float and reading it back is the fastest exact rounding of those tried:
-# 0.11 µs, where struct takes 0.22, ctypes 0.17 and numpy 0.36 (docs/adr/0013-numbers.md).
+# A store to a C float and a load from it is the fastest exact rounding among those measured: 0.11
+# µs, against 0.22 with struct, 0.17 with ctypes and 0.36 with numpy (docs/adr/0013-numbers.md).
 _cell = memoryview(bytearray(4)).cast("f")
 
 
 def single(number: float) -> float:
-    """``number`` rounded to the nearest IEEE single, ties to even; faults ``overflow``.
+    """Return ``number`` rounded to the nearest IEEE single, ties to even.
 
-    What is too small becomes subnormal or zero. Infinity and NaN are ``overflow`` too.
+    A number that is too small becomes subnormal or zero. Faults ``overflow`` if the number is too
+    large, infinite or NaN.
     """
     _cell[0] = number
     result = _cell[0]
@@ -74,14 +75,14 @@ def single(number: float) -> float:
 
 
 def integer(number: int) -> int:
-    """``number`` itself; faults ``overflow`` when it does not fit into an INT [ARI-12]."""
+    """Return ``number``; faults ``overflow`` if it does not fit into an INT [ARI-12]."""
     if INT_MIN <= number <= INT_MAX:
         return number
     raise fault("overflow")
 
 
 def rounded(number: float) -> int:
-    """A REAL as INT: the nearest, halves away from zero; faults ``overflow`` [ARI-03, CON-02]."""
+    """Return the nearest INT, halves away from zero; faults ``overflow`` [ARI-03, CON-02]."""
     whole = math.floor(number + 0.5) if number >= 0 else -math.floor(0.5 - number)
     return integer(whole)
 
@@ -91,14 +92,14 @@ def rounded(number: float) -> int:
 
 @dataclass(frozen=True, slots=True)
 class EnumValue:
-    """A constant of an enumeration, by its place in it, counted from 0 [TYP-16]."""
+    """A constant of an enumeration, by its index in the declaration, counted from 0 [TYP-16]."""
 
     type: Enumeration
     index: int
 
     @property
     def name(self) -> str:
-        """The constant without ``#``, as declared."""
+        """The name of the constant without ``#``, as declared."""
         return self.type.constants[self.index]
 
     def __repr__(self) -> str:
@@ -107,27 +108,27 @@ class EnumValue:
 
 @dataclass(slots=True)
 class StructureValue:
-    """A structure: its members in the order of the type."""
+    """A structure: its members, in the order of the type."""
 
     type: Structure
     members: list[Any]
 
     def get(self, name: str) -> Value | None:
-        """The member of a name; `KeyError` where the structure has none."""
+        """Return the member of that name; raise `KeyError` if there is none."""
         found: Value | None = self.members[_places(self.type)[name.upper()]]
         return found
 
     def set(self, name: str, value: Value | None) -> None:
-        """Give a member a value, which is neither converted nor copied."""
+        """Set a member, without converting or copying the value."""
         self.members[_places(self.type)[name.upper()]] = value
 
 
 @dataclass(slots=True, eq=False)
 class ArrayValue:  # noqa: PLW1641  # it changes, so it has no hash, as StructureValue has none
-    """An array, or a part of one: elements in row-major order from ``base`` on.
+    """An array, or a part of one: elements in row-major order, from index ``base`` on.
 
-    ``type`` has all its sizes (else `LinkError`), which ``sizes`` repeats. A part shares
-    ``elements`` with the array it is a part of.
+    ``type`` has all its sizes (else `LinkError`), and ``sizes`` repeats them. A part shares
+    ``elements`` with its array.
     """
 
     type: Array
@@ -150,10 +151,10 @@ class ArrayValue:  # noqa: PLW1641  # it changes, so it has no hash, as Structur
         return self.type == other.type and list(self) == list(other)
 
     def place(self, indices: Sequence[int]) -> int:
-        """Where in ``elements`` an element is; faults ``index`` [TYP-09].
+        """Return the index of an element in ``elements``; faults ``index`` [TYP-09].
 
-        The indices count from 1. There is one for each dimension, or fewer: then it is the place
-        of the first element of that part.
+        The array indices count from 1, one for each dimension. With fewer indices, the result is
+        the index of the first element of the part that they select.
         """
         place = 0
         sizes = self.sizes
@@ -164,18 +165,18 @@ class ArrayValue:  # noqa: PLW1641  # it changes, so it has no hash, as Structur
         return self.base + place * math.prod(sizes[len(indices) :])
 
     def get(self, *indices: int) -> Value | None:
-        """An element; faults ``index``."""
+        """Return an element; faults ``index``."""
         found: Value | None = self.elements[self.place(indices)]
         return found
 
     def set(self, value: Value | None, *indices: int) -> None:
-        """Give an element a value, which is neither converted nor copied; faults ``index``."""
+        """Set an element, without converting or copying the value; faults ``index``."""
         self.elements[self.place(indices)] = value
 
     def part(self, *indices: int) -> ArrayValue:
-        """What is left when the first dimensions have these indices: ``NAMES[3,]`` [TYP-11].
+        """Return the part that indices of the first dimensions select: ``NAMES[3,]`` [TYP-11].
 
-        No copy. Faults ``index``.
+        The part shares its elements with the array. Faults ``index``.
         """
         left = self.type.sizes[len(indices) :]
         return ArrayValue(Array(self.type.element, left), self.elements, self.place(indices))
@@ -198,7 +199,7 @@ def _places(type_: Structure) -> Mapping[str, int]:
 
 
 def member_place(type_: Structure, name: str) -> int:
-    """Which member it is, counted from 0; raises `LinkError` where there is none of that name."""
+    """Return the index of a member, counted from 0; raise `LinkError` if there is none."""
     try:
         return _places(type_)[name.upper()]
     except KeyError:
@@ -207,7 +208,7 @@ def member_place(type_: Structure, name: str) -> int:
 
 @cache
 def constant(type_: Enumeration, name: str) -> EnumValue:
-    """``#NAME``; raises `LinkError` where the constant is not known."""
+    """Return the constant ``#NAME``; raise `LinkError` if the enumeration does not have it."""
     wanted = name.upper()
     for place, one in enumerate(type_.constants):
         if one.upper() == wanted:
@@ -217,9 +218,9 @@ def constant(type_: Enumeration, name: str) -> EnumValue:
 
 @cache
 def position_type(names: frozenset[str]) -> Structure | None:
-    """The smallest pose, else the smallest axis position, that has all these components.
+    """Return the smallest pose type, else the smallest axis type, with all these components.
 
-    It is what ``{X 1,Y 2}`` is where nothing else says it; ``None`` where no type fits.
+    This is the type of ``{X 1,Y 2}`` if the context gives none. Return ``None`` if no type fits.
     """
     types = System.load().types
     for name in ("FRAME", "POS", "E3POS", "E6POS", "AXIS", "E3AXIS", "E6AXIS"):
@@ -233,7 +234,7 @@ def position_type(names: frozenset[str]) -> Structure | None:
 
 
 def empty(type_: Type) -> Value | None:
-    """What a variable has after its declaration: no value, or a structure or array of such."""
+    """Return the content of a variable after its declaration, in which no part has a value."""
     match type_:
         case Structure():
             return StructureValue(type_, [empty(member.type) for member in type_.members])
@@ -252,7 +253,10 @@ _ZEROS: Mapping[Type, Value] = {INT: 0, REAL: 0.0, BOOL: False, CHAR: "\0"}
 
 
 def zero(type_: Type) -> Value:
-    """Zero, FALSE, code 0 or the first constant, in every part: for worlds that know no better."""
+    """Return a value whose parts are all zero, FALSE, code 0 or the first constant.
+
+    It serves as the value of a system variable about which nothing is known.
+    """
     match type_:
         case Structure():
             return StructureValue(type_, [zero(member.type) for member in type_.members])
@@ -268,7 +272,7 @@ def zero(type_: Type) -> Value:
 
 
 def copied(value: Any) -> Any:
-    """A value that shares no part with ``value``; a part of an array becomes an array."""
+    """Return a deep copy of a value; a part of an array becomes an array of its own."""
     match value:
         case StructureValue():
             return StructureValue(value.type, [copied(member) for member in value.members])
@@ -278,14 +282,14 @@ def copied(value: Any) -> Any:
 
 
 def known(value: Value | None) -> Value:
-    """The value; faults ``uninitialised`` where there is none [TYP-13, SCO-08]."""
+    """Return the value; faults ``uninitialised`` if it is ``None`` [TYP-13, SCO-08]."""
     if value is None:
         raise fault("uninitialised")
     return value
 
 
 def has_value(value: Value | None) -> bool:
-    """Whether it has a value in any part."""
+    """Return whether any part of a value is set."""
     match value:
         case StructureValue():
             return any(map(has_value, value.members))
@@ -298,7 +302,7 @@ def has_value(value: Value | None) -> bool:
 
 
 def type_of(value: Value) -> Type:
-    """The type of a value; a text that is no letter is no array but a `Text`."""
+    """Return the type of a value; a ``str`` that is no CHAR has the type `Text`, not an array."""
     match value:
         case bool():
             return BOOL
@@ -312,18 +316,18 @@ def type_of(value: Value) -> Type:
 
 
 def index(value: Value) -> int:
-    """A value as an index of an array: a REAL is rounded, a CHAR has its code."""
+    """Return a value as an array index: a REAL is rounded, a CHAR stands for its code."""
     found = converted(value, INT)
     assert isinstance(found, int)
     return found
 
 
 def converted(value: Value, to: Type) -> Value:
-    """A value as a variable of type ``to`` receives it; shares no part with ``value``.
+    """Return a value converted to the type ``to``, as in an assignment, sharing no part with it.
 
-    Faults ``inadmissible`` where that cannot be, ``overflow`` where a REAL is no INT [ARI-03,
-    ARI-11, TYP-12]. What may be converted is defined by
-    `grammar.semantics.assignability.assignable`.
+    Faults ``inadmissible`` if the conversion does not exist, ``overflow`` if a REAL is too large
+    for an INT [ARI-03, ARI-11, TYP-12]. `grammar.semantics.assignability.assignable` defines the
+    conversions.
     """
     if isinstance(to, Structure | Array):
         target = empty(to)
@@ -355,11 +359,12 @@ def converted(value: Value, to: Type) -> Value:
 
 
 def fill(target: StructureValue | ArrayValue, value: Value) -> None:
-    """Give a structure or array the value of another, or an array a text; all parts are copied.
+    """Assign a structure or array to a structure or array, or a text to an array, part by part.
 
-    Poses take from poses, and axis positions from axis positions, what both have; the rest then has
-    no value. An array of one dimension takes as many elements as it can hold, the rest then has
-    no value; with more dimensions the sizes must be equal. Faults ``inadmissible``.
+    Between two pose types, or two axis types, the common components are copied, and the others
+    lose their value. An array of one dimension receives as many elements as it can hold, and the
+    rest of its elements lose their value; with more dimensions the sizes must be equal. Faults
+    ``inadmissible``.
     """
     match target, value:
         case StructureValue(), StructureValue():
@@ -391,7 +396,7 @@ def _fill_structure(target: StructureValue, value: StructureValue) -> None:
 def _fill_parts(
     parts: list[Any], base: int, length: int, type_: Type, values: Sequence[Value | None]
 ) -> None:
-    """Put values, and no value where these end, into ``parts`` from ``base`` on."""
+    """Store ``values`` into ``parts`` from ``base`` on; clear the parts beyond their end."""
     for place in range(length):
         value = values[place] if place < len(values) else None
         old = parts[base + place]
@@ -407,15 +412,15 @@ def _fill_parts(
 
 
 def letters(text: str) -> str:
-    """A text of a source file as values have it, one character a byte of the controller's cp1252.
+    """Return a text of a source file as KRL characters, one for each byte of cp1252.
 
-    What cp1252 has not becomes a question mark.
+    Characters that cp1252 does not have become question marks.
     """
     return text.encode("cp1252", errors="replace").decode("latin-1")
 
 
 def text_of(value: Value) -> str:
-    """The used part of a CHAR array, or a text itself; faults ``argument`` for all else."""
+    """Return the used part of a CHAR array, or of a text; faults ``argument`` for other values."""
     if isinstance(value, str):
         return value.partition("\0")[0]
     if not (isinstance(value, ArrayValue) and value.type.element == CHAR):
@@ -429,7 +434,7 @@ def text_of(value: Value) -> str:
 
 
 def set_text(target: ArrayValue, text: str) -> None:
-    """Give a CHAR array a text: what does not fit is cut off, the rest has no value [TYP-11]."""
+    """Assign a text to a CHAR array: cut it to the size, clear the other elements [TYP-11]."""
     length = len(target)
     given: list[str | None] = list(text[:length])
     target.elements[target.base : target.base + length] = given + [None] * (length - len(given))
