@@ -20,15 +20,22 @@ READ = {
 #: Records of how long something takes, which no two runs share; what takes hours; what asks the
 #: network; and pictures, which are made by the parts that make the page.
 NEVER_THE_SAME = {
-    *("bench arm", "bench blends", "bench check", "bench conform", "bench fuzz", "bench growth"),
+    *("bench arm", "bench check", "bench conform", "bench fuzz", "bench growth"),
     *("bench mutation", "bench recover", "bench vm", "corpus fetch", "nightly", "demo"),
     *("construct propose", "run --video", "run --png", "run --observations"),
 }
 #: What these write holds no name and no text of others, but for a proposal, which is a TOML file of
 #: what krl makes of a record.
 NOTHING_STRANGE = {
-    *("bench arm", "bench blends", "bench check", "bench conform", "bench fuzz", "bench growth"),
-    *("bench mutation", "bench vm", "conform", "construct list", "construct oracle"),
+    *("bench arm", "bench check", "bench conform", "bench fuzz", "bench growth"),
+    *(
+        "bench mutation",
+        "bench recover",
+        "bench vm",
+        "conform",
+        "construct list",
+        "construct oracle",
+    ),
     *("construct propose", "construct replay", "corpus fetch", "corpus synth", "demo", "fuzz"),
     *("nightly", "run --observations", "run --png", "run --video"),
 }
