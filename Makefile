@@ -80,7 +80,7 @@ fuzz-readers: $(DEV)
 real-code: $(DEV)
 	@$(BIN)/krl bench real-code $(ARGS)
 
-killed hostile blends: $(DEV)
+killed hostile: $(DEV)
 	@$(BIN)/python -m pytest -q -s -m soak tests/soak/test_$@.py $(ARGS)
 
 # An editor as people have it: its own client of the language server, nvim-dap for the debugger.
@@ -93,6 +93,9 @@ editors: $(DEV)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" KRL_NVIM_DAP="$(CURDIR)/reports/out/editors/nvim-dap" \
 		$(BIN)/python -m pytest -q -n 0 -m soak tests/soak/test_editors.py $(ARGS)
 
+blends: $(DEV)
+	@HYPOTHESIS_PROFILE=search KRL_BLENDS_PROGRAMS=2000 $(BIN)/python -m pytest -q tests/interp/robot/planning/test_blend_laws.py $(ARGS)
+
 determinism: $(DEV)
 	@$(BIN)/python -m pytest -q -m soak tests/soak/test_$@.py $(ARGS)
 
@@ -102,7 +105,6 @@ bench: $(DEV)
 	@$(BIN)/krl bench check --json reports/out/bench/check.json $(ARGS)
 	@$(BIN)/krl bench vm --json reports/out/bench/vm.json
 	@$(BIN)/krl bench arm --json reports/out/bench/arm.json
-	@$(BIN)/krl bench blends --json reports/out/bench/blends.json
 	@$(BIN)/krl bench conform --json reports/out/bench/conform.json
 
 lock:

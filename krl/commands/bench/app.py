@@ -3,7 +3,6 @@
 import typer
 
 from krl.commands.bench.arm import arm
-from krl.commands.bench.blends import blends
 from krl.commands.bench.check import check
 from krl.commands.bench.conform import conform
 from krl.commands.bench.fuzz import fuzz
@@ -18,7 +17,6 @@ app = typer.Typer(help="Measure the tools themselves.")
 app.command("mutation")(mutation)
 app.command("vm")(vm)
 app.command("arm")(arm)
-app.command("blends")(blends)
 app.command("programs")(programs)
 app.command("conform")(conform)
 app.command("fuzz")(fuzz)

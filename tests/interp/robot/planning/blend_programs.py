@@ -1,19 +1,13 @@
-"""How well blends obey their laws, on programs drawn by seed.
+"""Programs of blended motions, drawn by seed, and what is measured of them.
 
-Five laws: no program is slower for its blends; a point on a straight line costs nothing; no axis
-exceeds its speed, acceleration or jerk; a path does not depend on the override; under a low one
-nothing is faster than its share of what is programmed. Motions are planned all at once, and axes
-differenced at every millisecond.
+Motions are planned all at once, and axes differenced at every millisecond.
 """
 
 from __future__ import annotations
 
 import math
-import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from time import process_time
-from typing import Any, Final
 
 import numpy as np
 
@@ -23,25 +17,10 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.values.faults import Fault
-
-#: What is measured of each program, and the most that keeps the law.
-LAWS: Final[dict[str, float]] = {
-    "time": 1.0,
-    "straight": 1.0,
-    "speed": 1.0,
-    "acceleration": 1.0,
-    "jerk": 1.0,
-    "override_mm": 1e-6,
-    "programmed": 1.0,
-}
 
 _HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
 _STEP = 1000  # µs
-_SLACK = 1e-3
-"""Share by which a figure may exceed a law: differences of sampled axes are no derivatives."""
 _SECOND = 1e6
-_LOW = 0.3  # the low override
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +31,6 @@ class Travelled:
     speed: float
     acceleration: float
     jerk: float
-    blends: int
 
 
 def draw(seed: int) -> list[Motion]:
@@ -153,8 +131,7 @@ def travel(program: Sequence[Motion], override: float = 100.0) -> tuple[Travelle
         arm.plan(now, motion)
     end = math.ceil(arm.path()[-1].ends * _SECOND)
     used = _used(machine, arm.sample(np.arange(now, end + 20 * _STEP, _STEP)).axes)
-    blends = len({leg.section.key for leg in arm.path() if leg.section.following is not None})
-    return Travelled((end - now) / _SECOND, *used, blends), arm
+    return Travelled((end - now) / _SECOND, *used), arm
 
 
 def _used(machine: MachineData, axes: Array) -> tuple[float, float, float]:
@@ -168,18 +145,7 @@ def _used(machine: MachineData, axes: Array) -> tuple[float, float, float]:
     return shares[0], shares[1], shares[2]
 
 
-def _override_mm(arm: PlannedArm, other: PlannedArm) -> float:
-    """By how much the paths of two runs differ, in mm or degrees of their sections."""
-    u = np.linspace(0.0, 1.0, 17)
-    ours, theirs = (
-        {leg.section.key: leg.section.curve for leg in each.path()} for each in (arm, other)
-    )
-    if ours.keys() != theirs.keys():
-        return math.inf
-    return max(float(np.abs(ours[key].axes(u) - theirs[key].axes(u)).max()) for key in ours)
-
-
-def _programmed_share(program: Sequence[Motion], arm: PlannedArm, override: float) -> float:
+def programmed_share(program: Sequence[Motion], arm: PlannedArm) -> float:
     """The greatest share of the programmed speed: of the tool on its paths, of axes between PTP."""
     kinds = {motion.number: motion.kind for motion in program}
     settings = program[0].settings
@@ -199,60 +165,7 @@ def _programmed_share(program: Sequence[Motion], arm: PlannedArm, override: floa
         elif {kinds[section.number], kinds[section.following or section.number]} == {"PTP"}:
             axes = np.abs(section.curve.rates(u)[0]) * speeds[:, None]
             shares.append(float((axes / most).max()))
-    return max(shares) / override
-
-
-def measure(
-    count: int = 300, seed: int = 1, on_step: Callable[[], None] = lambda: None
-) -> dict[str, Any]:
-    """The record of so many programs of each sort, from a seed on."""
-    found: dict[str, list[tuple[float, int]]] = {name: [] for name in LAWS}
-    refused = blends = 0
-    saved: list[float] = []
-    begun = process_time()
-    for number in range(seed, seed + count):
-        on_step()
-        program = draw(number)
-        try:
-            blended, arm = travel(program)
-            stopped, _ = travel(exact(program))
-            _, slow = travel(program, 100.0 * _LOW)
-        except Fault:
-            refused += 1
-        else:
-            blends += blended.blends
-            ratio = blended.seconds / stopped.seconds
-            saved.append(ratio)
-            found["time"].append((ratio, number))
-            found["override_mm"].append((_override_mm(arm, slow), number))
-            found["programmed"].append((_programmed_share(program, slow, _LOW), number))
-            for name in ("speed", "acceleration", "jerk"):
-                found[name].append((getattr(blended, name), number))
-        try:
-            whole, parts = (travel(row)[0].seconds for row in straight(number))
-        except Fault:
-            refused += 1
-        else:
-            found["straight"].append((parts / whole, number))
-    return {
-        "programs": count,
-        "seed": seed,
-        "refused": refused,
-        "blends": blends,
-        "python": platform.python_version(),
-        "seconds": process_time() - begun,
-        "median_time": float(np.median(saved)) if saved else None,
-        "laws": {
-            name: {
-                "most": LAWS[name],
-                "worst": max(values)[0] if values else None,
-                "seed": max(values)[1] if values else None,
-                "broken": sum(value > LAWS[name] * (1.0 + _SLACK) for value, _ in values),
-                "of": len(values),
-            }
-            for name, values in found.items()
-        },
-    }
+    return max(shares)
 
 
 def _point(rng: np.random.Generator, centre: Array, reach: float, turned: float) -> Target:

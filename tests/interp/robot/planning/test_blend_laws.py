@@ -1,6 +1,8 @@
-"""The laws of blends, on programs drawn by seed."""
+"""The laws of blends, on programs drawn by seed (`make blends`: on thousands of others)."""
 
 from __future__ import annotations
+
+import os
 
 import numpy as np
 import pytest
@@ -10,11 +12,20 @@ from hypothesis import strategies as st
 pytest.importorskip("scipy")
 pytest.importorskip("ruckig")
 
-from interp.bench.blends import draw, exact, measure, straight, travel
 from interp.values.faults import Fault
+from tests.interp.robot.planning.blend_programs import (
+    draw,
+    exact,
+    programmed_share,
+    straight,
+    travel,
+)
 
 SEEDS = st.integers(0, 10_000_000)
-FEW = settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
+FEW = settings(
+    max_examples=int(os.environ.get("KRL_BLENDS_PROGRAMS", "8")),
+    phases=[Phase.explicit, Phase.generate],
+)
 _DIFFERENCES = 1e-3  # what differences of samples miss of derivatives
 
 
@@ -57,10 +68,11 @@ def test_no_axis_exceeds_speed_acceleration_or_jerk(seed: int) -> None:
 @FEW
 @given(seed=SEEDS, override=st.floats(1.0, 99.0))
 def test_the_path_does_not_depend_on_the_override(seed: int, override: float) -> None:
-    """Each section is the same curve at any override."""
+    """Each section is the same curve at any override, and nothing is faster than it allows."""
     try:
-        _, fast = travel(draw(seed))
-        _, slow = travel(draw(seed), override)
+        program = draw(seed)
+        _, fast = travel(program)
+        _, slow = travel(program, override)
     except Fault:
         assume(False)
     u = np.linspace(0.0, 1.0, 9)
@@ -70,15 +82,4 @@ def test_the_path_does_not_depend_on_the_override(seed: int, override: float) ->
     assert curves[0].keys() == curves[1].keys()
     for key, axes in curves[0].items():
         assert np.array_equal(axes, curves[1][key])
-
-
-def test_the_record_counts_what_is_broken() -> None:
-    """Each law has its worst value, and the seed of the program that has it."""
-    record = measure(2, 1)
-    assert 2 == record["programs"]
-    assert record["laws"]["time"]["broken"] == 0
-    worst = record["laws"]["time"]["worst"]
-    seed = record["laws"]["time"]["seed"]
-    program = draw(seed)
-    ratio = travel(program)[0].seconds / travel(exact(program))[0].seconds
-    assert ratio == pytest.approx(worst)
+    assert programmed_share(program, slow) <= override / 100.0 * (1.0 + _DIFFERENCES)
