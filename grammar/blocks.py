@@ -8,7 +8,8 @@ follows from its node (`grammar.syntax.walk.bodies`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from support.lazy_dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

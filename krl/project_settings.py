@@ -8,12 +8,13 @@ import difflib
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 
 from krl.errors import InputError
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from grammar.diagnostics.baseline import Baseline

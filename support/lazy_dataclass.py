@@ -20,14 +20,18 @@ if TYPE_CHECKING:
     from dataclasses import dataclass
 else:
 
-    def dataclass(cls=None, /, *, frozen=False, eq=True, slots=False):
-        """A class as a dataclass; other options are not needed so far."""
+    def dataclass(cls=None, /, *, frozen=False, eq=True, slots=False, repr=True, order=False):
+        """A class as a dataclass; other options are not needed so far. Only orders are no later."""
         if cls is None:
-            return partial(dataclass, frozen=frozen, eq=eq, slots=slots)
+            return partial(dataclass, frozen=frozen, eq=eq, slots=slots, repr=repr, order=order)
         own = frozenset(vars(cls))
-        made = dataclasses.dataclass(init=False, repr=False, eq=False, slots=slots)(cls)
+        made = dataclasses.dataclass(init=False, repr=False, eq=order, order=order, slots=slots)(
+            cls
+        )
         init = _frozen_init if frozen else _init
-        added = {"__init__": _late(made, "__init__", init), "__repr__": _repr}
+        added = {"__init__": _late(made, "__init__", init)}
+        if repr:
+            added["__repr__"] = _repr
         if eq:
             added["__eq__"] = _late(made, "__eq__", _eq)
             added["__hash__"] = _late(made, "__hash__", _hash) if frozen else None

@@ -9,10 +9,11 @@ KRL9 the check itself. Code and *slug*, a name for people, both stand once.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Literal, get_args
+
+from support.lazy_dataclass import dataclass
 
 #: From the gravest to the mildest. An error is what the controller refuses.
 Severity = Literal["error", "warning", "note"]

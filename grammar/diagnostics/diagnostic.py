@@ -8,10 +8,10 @@ SARIF.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 from grammar.diagnostics.codes import Severity, code
+from support.lazy_dataclass import dataclass
 
 
 class Places(Protocol):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
@@ -20,6 +20,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.node_plans import TooDeep
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 # Every line that is blanked out costs a reading of the whole text.
 _MOST_ROUNDS = 60

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cached_property
 
 from grammar.diagnostics.diagnostic import Fix, Region
 from grammar.diagnostics.open_blocks import OpenBlock
 from grammar.syntax.build import SyntaxFailure
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 # Of a longer line only what is near the failure is looked at.
 _LONGEST_LINE = 2_000

@@ -7,7 +7,6 @@ routine or data list that is right otherwise. The edit that makes it readable is
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
@@ -16,6 +15,7 @@ from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.open_blocks import innermost, lead
 from grammar.parser.tree import Tree
 from grammar.syntax.build import builder
+from support.lazy_dataclass import dataclass
 
 # Longer lines are data, and trying takes as long as reading them.
 _LONGEST = 1_000

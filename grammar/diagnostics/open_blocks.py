@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.ASCII)
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from grammar.diagnostics.codes import by_code
 from grammar.diagnostics.diagnostic import Diagnostic
+from support.lazy_dataclass import dataclass
 
 _COMMENT = re.compile(
     r";+[ \t]*krl[ \t]*:[ \t]*(ignore(?:-file)?)(?![\w-])[ \t]*(?:\[([^\]]*)\])?(.*)",

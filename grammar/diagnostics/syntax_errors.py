@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
@@ -22,6 +21,7 @@ from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_lik
 from grammar.motion_kinds import CIRCLES, MOTIONS
 from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 #: Who has more lines that cannot be read has a file that is no KRL.
 MOST_LISTED = 1_000

@@ -19,13 +19,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from grammar.notation.model import Grammar
 from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack
 from grammar.parser.lexer import Lexer
 from grammar.parser.ordered_network import ordered_automaton
+from support.lazy_dataclass import dataclass
 
 _END = -1  # what comes after a rule, as a position
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from grammar.notation.model import (
@@ -28,6 +27,7 @@ from grammar.notation.model import (
     complement,
     normalised,
 )
+from support.lazy_dataclass import dataclass
 
 #: Character ranges that differ by case in ASCII; ANTLR's caseInsensitive adds the other case.
 _CASE_OFFSET = ord("a") - ord("A")

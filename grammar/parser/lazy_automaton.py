@@ -22,6 +22,7 @@ from __future__ import annotations
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable
+from functools import cached_property
 from itertools import islice
 
 # Deep stacks within one line (nested parentheses) are cut as well, so that each level does not
@@ -118,8 +119,7 @@ class Core(dict[int, "Core"]):
 class Automaton(ABC):
     """Builds cores; what their configurations can read is for the classes that derive from it.
 
-    ``line_kind`` is the kind of token after which stacks are cut, ``passing`` the positions from
-    which there is no way on but to return.
+    ``line_kind`` is the kind of token after which stacks are cut.
     """
 
     #: How a core keeps its configurations: as a set, or as a tuple where their order has a meaning.
@@ -128,13 +128,19 @@ class Automaton(ABC):
     #: that it is of no use; a token that would need them is not read. No limit by default.
     most_ways = sys.maxsize - 1
 
-    def __init__(self, line_kind: int, passing: Collection[int] = frozenset()) -> None:
+    def __init__(self, line_kind: int) -> None:
         self.line_kind = line_kind
-        self._bottom = Stack(-1, None, passing)
         self._cores: dict[Collection[Configuration], Core] = {}
         #: How many configurations its cores have: what it takes of memory goes with it.
         self.configurations = 0
-        self._no_tail = Stack(-1, None, passing)
+
+    @cached_property
+    def _bottom(self) -> Stack:
+        return Stack(-1, None, self._passing())
+
+    @cached_property
+    def _no_tail(self) -> Stack:
+        return Stack(-1, None, self._passing())
 
     @property
     def size(self) -> int:
@@ -155,6 +161,10 @@ class Automaton(ABC):
             stack = stacks.pop()
             stacks += stack.above.values()
             stack.above.clear()
+
+    def _passing(self) -> Collection[int]:
+        """The positions from which there is no way on but to return."""
+        return frozenset()
 
     @abstractmethod
     def _close(self, core: Core) -> None:

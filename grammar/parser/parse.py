@@ -14,12 +14,12 @@ loop then goes round for nothing is not laid down.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 from grammar.parser.derivation import Action, Begin, Deriver
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.tree import Outline, Tree
+from support.lazy_dataclass import dataclass
 
 # Memory stays flat on corpora of any size: lines that are built alike, and the outlines in them,
 # are remembered up to this number, and enormous lines not at all.

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from grammar.notation.model import Grammar
 from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack, Tail
-from grammar.parser.lexer import EOF, SKIPPED
+from grammar.parser.lexer import EOF, SKIPPED, lexer_of
 from grammar.parser.network import Network, Reach, may_be_empty, network_of
 
 #: A state without the automaton that holds it: each configuration as its position and the frames
@@ -32,17 +32,30 @@ class State(NamedTuple):
 
 
 class Recognizer(Automaton):
-    """Recognises the programs of one grammar; remembers what it has worked out."""
+    """Recognises the programs of one grammar; remembers what it has worked out.
+
+    The network is made when it is first needed: a text that `grammar.parser.parse` can read needs
+    none.
+    """
 
     def __init__(self, grammar: Grammar, network: Network | None = None) -> None:
         self.grammar = grammar
-        self.network = network or network_of(grammar)
-        self.lexer = self.network.lexer
-        super().__init__(self.lexer.line_kind, self.network.passing())
+        self.lexer = network.lexer if network else lexer_of(grammar)
+        if network:
+            self.network = network
+        super().__init__(self.lexer.line_kind)
         self._ways: dict[Core, list[tuple[Reach, Stack]]] = {}
-        self.start = State(
-            self._core(frozenset([(self.network.start, self._bottom)])), self._no_tail
-        )
+
+    @cached_property
+    def network(self) -> Network:
+        """The grammar as a transition network."""
+        return network_of(self.grammar, self.lexer)
+
+    @cached_property
+    def start(self) -> State:
+        """Where every text begins."""
+        kernel = frozenset([(self.network.start, self._bottom)])
+        return State(self._core(kernel), self._no_tail)
 
     @cached_property
     def empty_rules(self) -> frozenset[str]:
@@ -138,6 +151,9 @@ class Recognizer(Automaton):
         return self._ways[core]
 
     # ---------------------------------------------------------------------- the automaton
+
+    def _passing(self) -> frozenset[int]:
+        return self.network.passing()
 
     def _close(self, core: Core) -> None:
         """Follow returns from the kernel: what may come from where, and how deep returns reach.

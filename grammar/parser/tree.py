@@ -16,10 +16,11 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 from grammar.parser.lexer import Lexer
+from support.lazy_dataclass import dataclass
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 

@@ -11,7 +11,6 @@ Spans never take in the line end behind a statement, nor what follows it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from operator import add
 from typing import Any, NamedTuple
@@ -25,6 +24,7 @@ from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.node_plans import MAX_DEPTH, Plan, TooDeep, draft
 from grammar.syntax.statement_rules import CHAINS, RULES
+from support.lazy_dataclass import dataclass
 
 # Memory stays flat on corpora of any size: a plan takes some kilobytes.
 _MOST_REMEMBERED = 20_000

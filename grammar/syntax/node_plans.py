@@ -13,12 +13,12 @@ nesting meets the limit that is set here and no other.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any, NamedTuple
 
 from grammar.parser.tree import Outline
 from grammar.syntax.ast import Span
+from support.lazy_dataclass import dataclass
 
 #: How deep nodes may lie within a line, chains of operators counted once. Whoever walks an
 #: expression may rely on it and recurse, but for `grammar.syntax.walk.left_chain`.

@@ -15,9 +15,10 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
+
+from support.lazy_dataclass import dataclass
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 # A string that is not closed ends nowhere: its quotation mark is a token alone.

@@ -10,8 +10,9 @@ from __future__ import annotations
 import codecs
 import hashlib
 import re
-from dataclasses import dataclass
 from itertools import islice
+
+from support.lazy_dataclass import dataclass
 
 EVIDENCE_LINES = 2_000
 """Lines looked at for KRL statements when no line opens a module. Openers are sought everywhere."""

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import ParamSpec, Self, TypeVar
+from typing import TYPE_CHECKING, ParamSpec, Self, TypeVar
 
-from support.parallel.processes import process_pool
+if TYPE_CHECKING:
+    from concurrent.futures import ProcessPoolExecutor
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -24,7 +25,7 @@ class StickyPool:
 
     def __init__(self, count: int) -> None:
         self.count = max(1, count)
-        self._pools = [process_pool(1) for _ in range(self.count if count > 1 else 0)]
+        self._pools = _processes(self.count) if count > 1 else []
         self._loads = [0] * self.count
 
     def __enter__(self) -> Self:
@@ -52,3 +53,9 @@ class StickyPool:
         except BaseException as error:
             done.set_exception(error)
         return done
+
+
+def _processes(count: int) -> list[ProcessPoolExecutor]:
+    from support.parallel.processes import process_pool  # only here, as it takes 5 ms
+
+    return [process_pool(1) for _ in range(count)]

@@ -7,7 +7,6 @@ do later is passed on, as the time is unknown.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
@@ -16,6 +15,7 @@ from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import ParameterSymbol, RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, LEAVES, PLACES, children, left_chain
+from support.lazy_dataclass import dataclass
 
 
 class Use(Enum):

@@ -8,12 +8,12 @@ which variables and functions stop (`grammar.semantics.predefined`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from grammar.check.analysis.context import Context
 from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
+from support.lazy_dataclass import dataclass
 
 _IN_STEP = "it is read or set in step with the robot"
 _WAITS = "the program continues when the robot has reached it"

@@ -10,7 +10,6 @@ All of this is lawful, so it is reported as notes, and only on demand.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, RoutineBody
@@ -19,6 +18,7 @@ from grammar.check.analysis.statement_heads import head, line_of
 from grammar.check.flow.advance_stop_reasons import AdvanceStop, is_known_call, stop_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.syntax import ast
+from support.lazy_dataclass import dataclass
 
 #: So many statements behind an approximated motion are looked at.
 _FARTHEST_LOOK = 200

@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 from grammar.check.analysis.accesses import Access, Use, accesses, calls_of
 from grammar.check.analysis.constant_folding import constant
@@ -25,6 +24,7 @@ from grammar.semantics.types import BOOL, REAL
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import BODIES, root_variable, walk, without_parentheses
+from support.lazy_dataclass import dataclass
 
 _WORD = re.compile(r"[A-Za-z_$][\w$]*")
 # A text, or a comment, which is none.

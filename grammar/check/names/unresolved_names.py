@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 
 from grammar.check.analysis.spelling import Spelling
 from grammar.diagnostics.codes import Severity
@@ -20,6 +19,7 @@ from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import ModuleTable, TypeSymbol
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 #: The table of a file of the project, by its path, and what gives its text, which few findings
 #: need; ``None`` where it is gone.

@@ -13,7 +13,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from grammar.check.project.project_check import (
@@ -45,6 +45,7 @@ from support.files.decode import digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.gc_pause import gc_paused
+from support.lazy_dataclass import dataclass
 from support.parallel.progress import Progress, no_progress
 from support.parallel.sticky_pool import StickyPool
 

@@ -12,12 +12,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
 
 from grammar.semantics.link import Project, words_of
 from grammar.semantics.symbols import Kind, ModuleTable
+from support.lazy_dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

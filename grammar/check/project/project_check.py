@@ -9,7 +9,7 @@ again, and is checked again only where what it rests on has changed (`dependenci
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 
 from grammar.check.analysis.context import Context
@@ -33,6 +33,7 @@ from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 from support.files.decode import decode, digest
 from support.gc_pause import gc_paused
+from support.lazy_dataclass import dataclass
 
 #: Bytes of the largest file that is checked: a tree takes some hundred times the memory.
 LARGEST = 24_000_000

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 from typing import Any
 
 from grammar.check.project.project_check import CheckOptions, Content, KnownFile
@@ -18,6 +18,7 @@ from support.files.decode import digest
 from support.files.discovery import Skipped
 from support.files.restricted_pickle import dumps, loads
 from support.files.result_store import ResultStore
+from support.lazy_dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

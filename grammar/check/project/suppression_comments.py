@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.diagnostics.suppression import Malformed, Suppression, suppression, unsuppressed
 from grammar.syntax.source import Source
+from support.lazy_dataclass import dataclass
 
 # Most files have no such comment, and looking at each comment takes time.
 _MARK = re.compile(r";[ \t]*krl[ \t]*:", re.IGNORECASE)

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,6 +16,7 @@ from krl.terminal.options import JobsOption
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from support.files.user_cache import user_cache
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from grammar.check.project.batch import CheckOptions, CheckReport

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 _SKIPPED_SHOWN = 5
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
 _COMMANDS_OF_GITHUB = {"error": "error", "warning": "warning", "note": "notice"}
-#: What XML cannot have, not even as an escape.
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+#: What XML cannot have, not even as an escape. Compiled where it is used, as it takes 5 ms.
+_NOT_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 class Format(StrEnum):
@@ -121,11 +121,11 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
     for one in kept:
         if one.severity != "note":
             place = f"{one.region.line}:{one.region.column}"
-            said = _NOT_XML.sub("\ufffd", f"{place}: {one.severity} {one.code}: {_said(one)}")
+            said = re.sub(_NOT_XML, "\ufffd", f"{place}: {one.severity} {one.code}: {_said(one)}")
             by_path.setdefault(one.path, []).append(Failure(said, one.code))
     cases = []
     for path, failures in by_path.items():
-        folder, _, name = _NOT_XML.sub("\ufffd", path).rpartition("/")
+        folder, _, name = re.sub(_NOT_XML, "\ufffd", path).rpartition("/")
         case = TestCase(name, folder)
         case.result = [*failures]
         cases.append(case)
