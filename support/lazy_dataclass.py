@@ -20,17 +20,18 @@ if TYPE_CHECKING:
     from dataclasses import dataclass
 else:
 
-    def dataclass(cls=None, /, *, frozen=False, eq=True, slots=False, repr=True, order=False):
-        """A class as a dataclass; other options are not needed so far. Only orders are no later."""
+    def dataclass(cls=None, /, *, frozen=False, eq=True, slots=False, **options):
+        """A class as a dataclass, with ``order`` and ``repr`` too; only orders are no later."""
         if cls is None:
-            return partial(dataclass, frozen=frozen, eq=eq, slots=slots, repr=repr, order=order)
+            return partial(dataclass, frozen=frozen, eq=eq, slots=slots, **options)
         own = frozenset(vars(cls))
+        order = options.get("order", False)
         made = dataclasses.dataclass(init=False, repr=False, eq=order, order=order, slots=slots)(
             cls
         )
         init = _frozen_init if frozen else _init
         added = {"__init__": _late(made, "__init__", init)}
-        if repr:
+        if options.get("repr", True):
             added["__repr__"] = _repr
         if eq:
             added["__eq__"] = _late(made, "__eq__", _eq)

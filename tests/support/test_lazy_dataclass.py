@@ -44,6 +44,17 @@ class _Open:
     value: float
 
 
+@lazy_dataclass.dataclass(frozen=True, slots=True, order=True)
+class _Ordered:
+    first: int
+    second: str
+
+
+@lazy_dataclass.dataclass(frozen=True, eq=False, repr=False)
+class _Hidden:
+    value: int
+
+
 _GIVEN: tuple[tuple[tuple[Any, ...], dict[str, Any]], ...] = (
     ((1,), {}),
     ((1, [2]), {"fourth": 2.5}),
@@ -105,3 +116,15 @@ def test_frozen_means_frozen() -> None:
         del one.first
     assert one == copy.copy(one) == pickle.loads(pickle.dumps(one))
     assert 3 == dataclasses.replace(one, first=2).made
+
+
+def test_order_goes_by_the_fields() -> None:
+    """With ``order``, instances are compared field by field, and are equal and hashed so."""
+    made = [_Ordered(2, "a"), _Ordered(1, "b"), _Ordered(1, "a")]
+    assert [_Ordered(1, "a"), _Ordered(1, "b"), _Ordered(2, "a")] == sorted(made)
+    assert {_Ordered(1, "a")} == {_Ordered(1, "a"), _Ordered(1, "a")}
+
+
+def test_a_class_may_keep_the_text_of_any_object() -> None:
+    """Without ``repr`` no field is shown: a whole file may be in one."""
+    assert object.__repr__(hidden := _Hidden(3)) == repr(hidden)
