@@ -153,18 +153,20 @@ class PathExecution:
         """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
         while route and route[0].key < leg.section.key:
             route = route[1:]
-        for state, begins, rest in self._ahead_of(leg, route, time):
-            entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
-            profiles = braking(_steps(entries), state, is_hard=is_hard)
-            if profiles is None:  # it cannot before the leg ends
-                continue
-            legs, start = [], begins
-            for (section, step), profile in zip(entries, profiles, strict=False):
-                if step is not None:
-                    ends = start + profile.duration
-                    legs.append(Leg(section, step.stretch, profile, start, ends))
-                    start = ends
-            return begins, legs
+        # What is planned is no faster than allowed, so a brake that would be begins later.
+        for is_strict in (True, False):
+            for state, begins, rest in self._ahead_of(leg, route, time):
+                entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
+                profiles = braking(_steps(entries), state, is_hard=is_hard, is_strict=is_strict)
+                if profiles is None:
+                    continue
+                legs, start = [], begins
+                for (section, step), profile in zip(entries, profiles, strict=False):
+                    if step is not None:
+                        ends = start + profile.duration
+                        legs.append(Leg(section, step.stretch, profile, start, ends))
+                        start = ends
+                return begins, legs
         return self._timeline.end, []
 
     def _lay(

@@ -98,7 +98,7 @@ class Stretch:
     ``hardest`` and ``sharpest`` are acceleration and jerk for the hardest ramp there is [INT-09].
     ``size`` is a length in mm or degrees that u stands for: it keeps numbers of a sensible size.
     A blend may be passed at one speed up to ``even``, more than ``velocity``; ``hardest``
-    and ``sharpest`` are what is left at that speed.
+    and ``sharpest`` are what is left at that speed, so less than at others.
     """
 
     start: float
@@ -115,7 +115,7 @@ class Stretch:
     def bounds(self, override: float, is_hard: bool = False) -> Bounds:
         """Bounds under an override of 0 to 1."""
         speed = min(self.velocity, self.programmed * override)
-        if is_hard:
+        if is_hard and not self.even:
             return Bounds(speed, self.hardest, self.sharpest)
         return Bounds(speed, self.acceleration, self.jerk)
 

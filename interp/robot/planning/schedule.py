@@ -75,14 +75,16 @@ class _Span:
     """Stretches travelled as one, all in the unit of the first span behind a stop.
 
     ``scales`` are what the parameters of its stretches are multiplied with, ``ends`` where each of
-    them ends. A blend that is a span of its own ``is_blend``; ``even`` is the speed up to which it
-    may be passed at one speed, as it ``is_even``. ``bend`` times the square of the speed at its
-    start is by how much more the acceleration is there than at the end of the span before;
-    ``stands``: the arm stands before it. ``highest`` are the greatest bounds of its stretches.
+    them ends. A blend that is a span of its own ``is_blend``; ``even`` are its bounds where it is
+    passed at one speed, as it ``is_even``, or entered faster than ``eased``. ``bend`` times the
+    square of the speed at its start is by how much more the acceleration is there than at the end
+    of the span before; ``stands``: the arm stands before it. ``highest`` are the greatest bounds of
+    its stretches.
     """
 
     bounds: Bounds
-    even: float
+    even: Bounds
+    eased: float
     bend: float
     stands: bool
     is_blend: bool
@@ -97,7 +99,7 @@ class _Span:
 
     @property
     def fastest(self) -> float:
-        return self.even if self.is_even else self.bounds.velocity
+        return self.even.velocity if self.is_even else self.bounds.velocity
 
     def add(self, scale: float, length: float) -> None:
         self.scales.append(scale)
@@ -131,12 +133,10 @@ def schedule(
             continue
         known.append(lengths)
         start = _start(spans, state)
-        found = _speeds(spans, start, is_strict)
-        while found is not None and found.over and _slow(spans, found.ends):
-            found = _speeds(spans, start, is_strict)
+        found = _settled(spans, start, is_strict)
         best = _better(best, spans, start, found)
         if _ease(spans, found):
-            best = _better(best, spans, start, _speeds(spans, start, is_strict))
+            best = _better(best, spans, start, _settled(spans, start, is_strict))
     return None if best is None else _own_units(steps, best.spans, best.profiles)
 
 
@@ -180,6 +180,14 @@ def _better(
     return _Plan(spans, profiles, found.over, duration)
 
 
+def _settled(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool) -> _Speeds | None:
+    """Speeds with which no blend is entered too fast for how its speed changes."""
+    found = _speeds(spans, start, is_strict)
+    while found is not None and found.over and _slow(spans, found.ends):
+        found = _speeds(spans, start, is_strict)
+    return found
+
+
 def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool) -> _Speeds | None:
     allowed = _allowed(spans)
     speed, acceleration = start
@@ -190,7 +198,7 @@ def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool)
         found = _reached(spans, place, speed, acceleration, allowed[place], stood=stood)
         if found is None:
             return None
-        if found > allowed[place] * (1.0 + 1e-6) + 1e-9:
+        if not _keeps(found, allowed[place]):
             if is_strict:
                 return None
             over += span.length
@@ -200,30 +208,52 @@ def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool)
 
 
 def braking(
-    steps: Sequence[GearedStretch], state: PathState, *, is_hard: bool
+    steps: Sequence[GearedStretch], state: PathState, *, is_hard: bool, is_strict: bool = False
 ) -> list[SpeedProfile] | None:
     """Profiles that stand still as soon as can be; the last ends within its step.
 
-    The override has no part in it, as it scales no acceleration [MOT-09].
+    The override has no part in it, as it scales no acceleration [MOT-09]. Speeds change in blends
+    ahead only where else one would be entered too fast.
 
-    ``None`` where the acceleration cannot be taken back on the first span.
+    ``None`` where the acceleration cannot be taken back on the first span, or, with ``is_strict``,
+    a span would be passed faster than what follows allows.
     """
-    spans = _spans(steps, state, 1.0, is_hard=is_hard)
-    speed, acceleration = _start(spans, state)
+    for is_loose in (True, False):
+        spans = _spans(steps, state, 1.0, is_hard=is_hard, is_loose=is_loose)
+        for _ in range(2):
+            profiles = _braked(spans, _start(spans, state), is_strict)
+            if profiles is not None:
+                return _own_units(steps, spans, profiles)
+            for span in spans:
+                span.is_even = False
+    return None
+
+
+def _braked(
+    spans: Sequence[_Span], start: tuple[float, float], is_strict: bool
+) -> list[SpeedProfile] | None:
+    """Profiles of all stretches up to that on which the arm stands still, as `braking`."""
+    allowed = _allowed(spans) if is_strict else [math.inf] * len(spans)
+    speed, acceleration = start
     profiles: list[SpeedProfile] = []
     for place, span in enumerate(spans):
         way = ramp(speed, acceleration, 0.0, span.bounds).distance
-        if _fits(way, span.length):
+        is_slow = not span.is_even or _keeps(speed, span.bounds.velocity)
+        if is_slow and _fits(way, span.length):
             whole = stop(speed, acceleration, span.bounds)
             last = next(n for n, end in enumerate(span.ends) if _fits(way, end))
-            profiles += whole.split([*span.ends[:last], whole.length])
-            break
+            return profiles + whole.split([*span.ends[:last], whole.length])
         found = _reached(spans, place, speed, acceleration, 0.0)
-        if found is None:
+        if found is None or not _keeps(found, allowed[place]):
             return None
         profiles += _parts(span, _travelled(spans, place, speed, acceleration, found))
         speed, acceleration = found, _behind(spans, place, found)
-    return _own_units(steps, spans, profiles)
+    return profiles
+
+
+def _keeps(speed: float, allowed: float) -> bool:
+    """Whether a speed is no more than is allowed, but for rounding."""
+    return speed <= allowed * (1.0 + 1e-6) + 1e-9
 
 
 @lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
@@ -263,14 +293,14 @@ def _spans(
         bend = 0.0 if not place or stands else scale * step.bend / before**2
         is_blend, is_first = stretch.even > 0.0, place == 0
         own = stretch.bounds(override, is_hard)
-        if is_blend and is_first and state.speed * _ALIKE > own.velocity:
+        if is_blend and is_first and state.speed * _ALIKE > stretch.velocity:
             own = stretch.even_bounds(override)
         bounds = own.scaled(scale)
         is_alone = stands or is_blend or not spans or spans[-1].is_blend
         if is_alone or not spans[-1].takes(bounds, is_loose):
-            even = stretch.even_bounds(override).velocity * scale
+            even, eased = stretch.even_bounds(override).scaled(scale), stretch.velocity * scale
             is_even = is_blend and not is_first
-            spans.append(_Span(bounds, even, bend, stands, is_blend, is_even, bounds))
+            spans.append(_Span(bounds, even, eased, bend, stands, is_blend, is_even, bounds))
         length = stretch.end - (state.u if is_first else stretch.start)
         spans[-1].add(scale, length * scale)
     return spans
@@ -285,22 +315,22 @@ def _ease(spans: Sequence[_Span], found: _Speeds | None) -> bool:
     is_over = found is None or found.over > 0.0
     for place, span in enumerate(spans):
         if span.is_even:
-            held = is_over or found is None or found.ends[place] < _HELD * span.even
+            held = is_over or found is None or found.ends[place] < _HELD * span.even.velocity
             span.is_even = not held
             is_eased = is_eased or held
     return is_eased
 
 
-def _slow(spans: Sequence[_Span], speeds: Sequence[float]) -> bool:
-    """Let speeds change in blends that are entered too fast; whether there are any."""
-    fast = [
-        span
-        for span, speed in zip(spans, speeds, strict=True)
-        if span.is_even and not _fits(speed, span.even)
-    ]
-    for span in fast:
-        span.is_even = False
-    return bool(fast)
+def _slow(spans: Sequence[_Span], ends: Sequence[float]) -> bool:
+    """Let speeds change, and slowly, in blends that are entered too fast; whether there are any."""
+    is_any = False
+    for speed, span in zip(ends, spans[1:], strict=False):
+        if span.is_even and not _fits(speed, span.even.velocity):
+            span.is_even, is_any = False, True
+        elif not span.is_even and span.is_blend and not _fits(speed, span.eased):
+            is_any = is_any or span.bounds != span.even
+            span.bounds = span.even
+    return is_any
 
 
 def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
