@@ -110,7 +110,7 @@ def _computing_at_most(seconds: float) -> Iterator[None]:
     try:
         signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # again where a callback swallows it
         yield
-        if time.process_time() > end:  # a clock that ticks seldom tells too late
+        if time.process_time() > end:  # a coarse clock is late
             raise _ComputingOver
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)

@@ -49,7 +49,7 @@ def expected_errors() -> Iterator[None]:
 
 
 def print_evaluation(found: "Evaluation") -> None:
-    """Print the figures of a construct that was evaluated, and what speaks against it."""
+    """Print the figures of a construct that was evaluated, and the objections to it."""
     from recovery.ledger.overview import counts_of
 
     construct = found.construct

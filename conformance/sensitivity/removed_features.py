@@ -1,7 +1,7 @@
 """Features of KRL removed from cases: those that pass without what their title names are weak.
 
 A feature is what a program uses of the language: a statement by its keywords, a part that it may
-leave out, a system variable written or read, a predefined routine. None is listed by hand: the
+leave out, a system variable written or read, a predefined routine. There is no list of them: the
 syntax tree says which parts there are, the tables of the controller which names. It is removed from
 the text of a case, where blanks take its place, so that lines stay where they are; what is read
 gives zero or FALSE instead.

@@ -64,7 +64,7 @@ class _Way(NamedTuple):
     """A way on from a position: to read a token, or to leave the rule (``kind`` is ``None``).
 
     Reading leads to the position ``target`` with ``returns`` pushed on the stack, outermost first.
-    ``is_sole`` tells whether no other way does the same.
+    ``is_sole`` says whether no other way does the same.
     """
 
     kind: int | None

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 #: Of all waits the longest are reported, each with its first variables.
 _MOST_WAITS, _MOST_NAMES = 5, 4
-#: How long a WAIT SEC has to go on, in µs, for a program to count as one that pauses.
+#: How long a WAIT SEC has to last, in µs, for a program to count as one that pauses.
 _PAUSE = 1_000_000
 
 

@@ -6,7 +6,7 @@ the arm, a script or a wait with an end does something. Nothing of that is seen 
 
 Loops and submit programs go round and round meanwhile, and their slices end anywhere in them. Where
 all programs are at a tick where they were at an earlier one, and nothing has changed since, so it
-goes on: whole periods pass at once. Their statements count as if they had been begun.
+continues: whole periods pass at once. Their statements count as if they had been begun.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class QuietTime:
     _since: int = -1
 
     def begin_tick(self, robot: Task) -> None:
-        """A tick begins: what changes from here on is its doing; a run may go on in its middle."""
+        """A tick begins: what changes from here on is its doing; a run may resume in its middle."""
         if self._since == self.state.clock.now:
             return
         self._since, self._begun = self.state.clock.now, _begun(robot)
@@ -117,7 +117,7 @@ class QuietTime:
         return count * period
 
     def _place(self, task: Task) -> tuple[object, ...] | None:
-        """All that a program goes on from, its times relative to now; ``None`` if that is unknown.
+        """What a program continues from, its times relative to now; ``None`` if that is unknown.
 
         A level on top of it may end, and an executor that is debugged shows every statement.
         """

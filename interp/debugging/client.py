@@ -76,12 +76,12 @@ Way = Literal["into", "over", "out", "motion"]
 
 @dataclass(frozen=True, slots=True)
 class Go:
-    """Go on to the next stop; behind a fault and the end, end the session."""
+    """Continue to the next stop; behind a fault and the end, end the session."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepCommand:
-    """Go on by a statement of a program, by default the one that has stopped.
+    """Continue by a statement of a program, by default the one that has stopped.
 
     That is into calls, over them, or out of the routine.
 

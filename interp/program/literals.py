@@ -42,7 +42,7 @@ def enumeration_constant(unit: Unit, node: ast.EnumConstant, wanted: Type) -> En
 def known_enumeration(node: ast.EnumConstant, found: object) -> Enumeration:
     """Return ``found`` if it is the enumeration of a constant, else raise `LinkError`."""
     if not isinstance(found, Enumeration):
-        raise LinkError(f"nothing tells which enumeration #{node.name.text} is of")
+        raise LinkError(f"nothing says which enumeration #{node.name.text} is of")
     return found
 
 

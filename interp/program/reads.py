@@ -51,7 +51,7 @@ def is_variable(unit: Unit, node: ast.Expression) -> bool:
 
 
 #: The message if `structure_of` returns ``None``.
-UNKNOWN_STRUCTURE = "nothing tells which structure an aggregate is"
+UNKNOWN_STRUCTURE = "nothing says which structure an aggregate is"
 
 
 def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | None:

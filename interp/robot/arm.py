@@ -230,7 +230,7 @@ class Arm(Protocol):
         ...
 
     def override(self, now: int, percent: float) -> None:
-        """$OV_PRO changes; 0 stops on the path, and more goes on."""
+        """$OV_PRO changes; 0 stops on the path, and any more continues from there."""
         ...
 
     def brake(self, now: int, is_hard: bool) -> None:
@@ -238,7 +238,7 @@ class Arm(Protocol):
         ...
 
     def proceed(self, now: int) -> None:
-        """Go on with what a brake interrupted."""
+        """Continue with what a brake interrupted."""
         ...
 
     def discard(self, now: int) -> None:

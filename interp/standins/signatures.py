@@ -1,7 +1,7 @@
 """Declarations for names that nothing declares, derived from their uses.
 
 A routine becomes its signature alone: it does nothing, gives variables passed to it a value where
-they have none, and returns a default. The defaults are those with which a program goes on: TRUE for
+they have none, and returns a default. With the defaults a program continues: TRUE for
 a function that reports whether something has worked, but what ends a loop where one asks for it, as
 for a truth value that nothing assigns; 0 for a function's numbers; for a number that nothing
 assigns the first that a SWITCH asks for, else 1; for a point a place of its own that the arm

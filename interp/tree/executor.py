@@ -125,7 +125,7 @@ class TreeExecutor:
         return request
 
     def enter(self, code: CodeHandle) -> None:
-        """Push an action, which runs before the program goes on."""
+        """Push an action, which runs before the program continues."""
         handed, run = self._run.handed(code), self._run
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
         node: Any = handed.node
@@ -223,7 +223,7 @@ class TreeExecutor:
         place.set(value)
 
     def select(self, line: int) -> None:
-        """Go on at a line of the routine that runs; see `interp.port.inspection`."""
+        """Continue at a line of the routine that runs; see `interp.port.inspection`."""
         frame = self._stack[-1].frame
         routine = routine_at(self._run.program, frame.unit.module.path, frame.name)
         way = () if routine is None else way_to(routine, line)
@@ -235,7 +235,7 @@ class TreeExecutor:
     # ----------------------------------------------------------------------- the stack
 
     def _advanced(self, reply: Any) -> Request:
-        """Go on with the routine on top until something asks, or nothing is left to run."""
+        """Continue with the routine on top until something asks, or nothing is left to run."""
         while True:
             active = self._stack[-1]
             try:
@@ -333,5 +333,5 @@ class TreeExecutor:
 
 
 def _sent(steps: Steps[Any], reply: Any) -> Request | Call:
-    """Go on with the reply, or with what is raised where the routine waits."""
+    """Continue with the reply, or with what is raised where the routine waits."""
     return steps.throw(reply) if isinstance(reply, Exception) else steps.send(reply)

@@ -163,5 +163,5 @@ class Motions(Calls):
         """The signal that is meant, by its name here."""
         name = signal_name(self.frame.unit, node)
         if name is None:
-            raise LinkError("nothing tells which signal is meant")
+            raise LinkError("nothing says which signal is meant")
         return name

@@ -44,12 +44,12 @@ class _Return(Exception):
 
 
 class Resumed(Exception):
-    """The program comes back here by RESUME, and goes on behind the statement [INT-10]."""
+    """The program comes back here by RESUME, and continues behind the statement [INT-10]."""
 
 
 @dataclass(slots=True, eq=False)
 class Selected(Exception):
-    """The program goes on elsewhere in the routine by block selection [ADV-14].
+    """The program continues elsewhere in the routine by block selection [ADV-14].
 
     ``way`` are the blocks around the statement, and the statement.
     """

@@ -118,7 +118,7 @@ def recover_auto(
 def _begun(
     start: "Grammar", out: Path, strike: Sequence[str], *, resume: bool
 ) -> "tuple[Growth, list[tuple[Edit, ...]]]":
-    """Where to go on, and the edits that are not to be taken again."""
+    """Where to continue, and the edits that are not to be taken again."""
     from grammar.notation.edits import from_data
     from grammar.notation.g4 import read_file
     from recovery.induction.growth_record import Growth, without

@@ -163,7 +163,7 @@ class Adapter:
         return {"targets": [{"id": len(self._targets), "label": f"line {shown}", "line": shown}]}
 
     def _goto(self, arguments: Arguments) -> Json:
-        """Go on at a line of the routine, without executing what lies between."""
+        """Continue at a line of the routine, without executing what lies between."""
         number = arguments.get("targetId", int, 0)
         if not 0 < number <= len(self._targets):
             raise Refused("there is no such target")

@@ -1,7 +1,7 @@
 """The program being debugged: its thread, where it has stopped, and how it continues.
 
 Requests are read on one thread. The program runs on another one, which waits where it has stopped
-until a request lets it go on; only meanwhile is it looked into.
+until a request lets it continue; only meanwhile is it looked into.
 """
 
 import contextlib
@@ -141,7 +141,7 @@ class Debuggee:
             self._thread.join(1.0)
 
     def go(self, command: Command) -> Json:
-        """Let the program go on, once the client has its answer; `Refused` where it runs."""
+        """Let the program continue, once the client has its answer; `Refused` where it runs."""
         self.wait_for_stop()
 
         def then() -> None:

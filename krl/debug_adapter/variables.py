@@ -40,7 +40,7 @@ class _Node:
 
 
 class Variables:
-    """Those of a stop: numbers hold until the program goes on."""
+    """Those of a stop: numbers hold until the program continues."""
 
     def __init__(self, debugger: Debugger) -> None:
         self._debugger = debugger

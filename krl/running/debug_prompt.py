@@ -67,7 +67,7 @@ class _WrongCommand(Exception):
 class Prompt(cmd.Cmd):
     """Asks for commands where a program has stopped: the client of a debugger.
 
-    Each ``do_`` method is a command and its docstring the help; one that lets the program go on
+    Each ``do_`` method is a command and its docstring the help; one that lets the program continue
     gives the command for the debugger. ``has_failed``: a command was wrong that came from a file.
     ``is_running`` while the program runs.
     """
@@ -88,7 +88,7 @@ class Prompt(cmd.Cmd):
         self._stop: Stop
 
     def stopped(self, debugger: Debugger, stop: Stop) -> Command:
-        """The command of the person, once there is one that lets the program go on."""
+        """The command of the person, once there is one that lets the program continue."""
         self._debugger, self._stop, self.is_running = debugger, stop, False
         self._task, self._frame = stop.task, 0
         self._tell_stop()
@@ -100,7 +100,7 @@ class Prompt(cmd.Cmd):
     # ----------------------------------------------------------------------- lines
 
     def onecmd(self, line: str) -> bool:
-        """Carry out a line, an empty one in a terminal like the last; whether to go on."""
+        """Carry out a line, an empty one in a terminal like the last; whether to continue."""
         line = line.strip() or self._last
         self._last = line if self._is_terminal else ""
         words = line.split()
@@ -199,7 +199,7 @@ class Prompt(cmd.Cmd):
         return Back("go", self._task) if way == "go" else Back(cast(Way, way), self._task)
 
     def do_goto(self, rest: str) -> Command:
-        """`goto LINE`: go on at a line of this routine, without executing what lies between."""
+        """`goto LINE`: continue at a line of this routine, without executing what lies between."""
         return Select(_number(rest, "goto"))
 
     def do_restart(self, _rest: str) -> Command:

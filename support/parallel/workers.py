@@ -36,4 +36,4 @@ class Workers(Protocol):
         """Have the function called with the arguments of a task; all of it must be picklable."""
 
     def restart(self) -> None:
-        """Go on after a death."""
+        """Continue after a death."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.soak import (
     bench_entries,
     cell_entries,
-    judge_entries,
+    conformance_entries,
     language_entries,
     ledger_entries,
     scheduler_entries,
@@ -19,7 +19,7 @@ ENTRIES: dict[str, Entry] = {
     **survey_entries.ENTRIES,
     **ledger_entries.ENTRIES,
     **cell_entries.ENTRIES,
-    **judge_entries.ENTRIES,
+    **conformance_entries.ENTRIES,
     **bench_entries.ENTRIES,
     **scheduler_entries.ENTRIES,
     **word_entries.ENTRIES,

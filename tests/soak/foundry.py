@@ -51,7 +51,7 @@ class Foundry:
 
     @cached_property
     def cases(self) -> list[bytes]:
-        """Programs of the judge, which say what they expect and can be run."""
+        """Conformance cases: programs that say what they expect and can be run."""
         folder = REPOSITORY / "conformance" / "cases"
         return [file.read_bytes() for file in sorted(folder.rglob("*.src"))]
 

@@ -59,12 +59,12 @@ ENTRIES = {
     "check archive": Entry(80, "an archive", lambda d, f: krl("check", archive(d, f))),
     "check sarif": Entry(
         40,
-        "a program, told as SARIF",
+        "a program, findings as SARIF",
         lambda d, f: krl("check", "--format", "sarif", "--", program(d, f)),
     ),
     "check json": Entry(
         30,
-        "a program, told as JSON",
+        "a program, findings as JSON",
         lambda d, f: krl("check", "--format", "json", "--", program(d, f)),
     ),
     "check cache": Entry(20, "findings kept from an earlier check", check_again),

@@ -68,7 +68,7 @@ def weighed(folder: Path, foundry: Foundry) -> Given:
 
 
 def accepted(folder: Path, foundry: Foundry) -> Given:
-    """A construct that somebody sent, and that is taken in if nothing speaks against it."""
+    """A construct that somebody sent, accepted if there is no objection."""
     return krl("construct", "accept", *_sent(folder, foundry))
 
 
@@ -119,7 +119,7 @@ def oracle(folder: Path, foundry: Foundry) -> Given:
 ENTRIES = {
     "ledger": Entry(50, "constructs, grammar and journal of an acceptance", ledger),
     "construct try": Entry(15, "constructs that somebody proposes, and a corpus", weighed),
-    "construct accept": Entry(15, "the same, taken in where nothing speaks against it", accepted),
+    "construct accept": Entry(15, "the same, accepted where there is no objection", accepted),
     "construct oracle": Entry(40, "a form with verdicts of a controller", oracle),
     "construct propose": Entry(35, "a survey that somebody changed", propose),
 }

@@ -293,7 +293,7 @@ class Motions(CodeMaker):
         """The signal that is meant, by its name here."""
         name = signal_name(self._context.unit, node)
         if name is None:
-            raise self._emitter.unlinked("nothing tells which signal is meant")
+            raise self._emitter.unlinked("nothing says which signal is meant")
         return name
 
 

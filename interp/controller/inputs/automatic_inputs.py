@@ -4,7 +4,7 @@ Behind real programs stand grippers, spindles and a PLC whose scripts are not av
 ``fulfil waits after 1`` stands for all of them: once the robot's program has waited so long, the
 digital inputs that its condition has read change one at a time, a cycle each, through all their
 combinations, beginning with the one it read first. Inputs that a script sets itself stay as they
-are. Where no combination makes the condition TRUE, they end as they began, and the program goes on
+are. If no combination makes the condition TRUE, they end as they began, and the program continues
 waiting. Flags that nothing has set by five times then are set by an option package, for a message
 that has come for instance: they change like inputs, but last.
 """

@@ -134,7 +134,7 @@ class ScriptStep:
 class Script:
     """The steps in their order, and the time in µs at which the run stops, if it says one.
 
-    ``fulfils``: after so many µs of a WAIT FOR its inputs change until it goes on, if at all
+    ``fulfils``: after so many µs of a WAIT FOR its inputs change until it continues, if at all
     (`interp.controller.inputs.automatic_inputs`).
     """
 

@@ -54,10 +54,10 @@ class OperatorPanel:
         self._messages.answer(button)
 
     def is_holding(self, task: Task) -> bool:
-        """Whether a program must not go on: it was stopped, or a message is to be acknowledged."""
+        """Whether a program must wait: it was stopped, or a message is to be acknowledged."""
         return task.name == "robot" and (self._is_stopped or bool(self._messages.unacknowledged))
 
     def free_arm(self) -> None:
-        """Let the arm go on, unless the operator has stopped it or must acknowledge a message."""
+        """The arm continues, unless the operator has stopped it or must acknowledge a message."""
         if not self._is_stopped and not self._messages.unacknowledged:
             self._arm.end_halt()

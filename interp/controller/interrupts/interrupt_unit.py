@@ -97,7 +97,7 @@ class InterruptUnit:
     # ---------------------------------------------------------------------- BRAKE and RESUME
 
     def brake(self, task: Task, request: BrakeArm) -> Answer:
-        """BRAKE: the routine goes on when the arm stands [INT-09]. Raises `Fault`."""
+        """BRAKE: the routine continues when the arm stands [INT-09]. Raises `Fault`."""
         level = task.level
         if level is None or level.kind != "interrupt" or task.name == "submit":
             raise own_fault("brake_place")

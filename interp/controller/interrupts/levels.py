@@ -1,7 +1,7 @@
 """Levels above a program: interrupt routines, actions of triggers, cyclic signals.
 
 Everything is entered at a request of the executor that is not answered yet, and only the top level
-runs. When it ends the request below is made again, and what it waited for goes on.
+runs. When it ends the request below is made again, and what it waited for continues.
 """
 
 from __future__ import annotations

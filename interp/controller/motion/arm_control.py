@@ -34,7 +34,7 @@ class ArmControl:
         self.core.brake(self._clock.now, is_hard=is_hard)
 
     def proceed(self) -> None:
-        """Go on after a brake."""
+        """Continue after a brake."""
         self.core.proceed(self._clock.now)
 
     def discard(self) -> None:
@@ -50,7 +50,7 @@ class ArmControl:
             self.brake(is_hard=is_hard)
 
     def end_halt(self) -> None:
-        """Go on after `halt`."""
+        """Continue after `halt`."""
         if self._is_halted:
             self._is_halted = False
             self.proceed()
@@ -63,7 +63,7 @@ class ArmControl:
         self.core.override(self._clock.now, 0.0)
 
     def release(self) -> None:
-        """ROB_STOP_RELEASE: go on with $OV_PRO."""
+        """ROB_STOP_RELEASE: continue with $OV_PRO."""
         self._is_held = False
         self._apply_override()
 

@@ -270,7 +270,7 @@ class MotionQueue:
     def own_pending(self, task: Task) -> int:
         """How many motions of the program, or of the routine that interrupted it, have not ended.
 
-        An interrupt routine runs while the program's motions go on, so these do not hold it up
+        An interrupt routine runs while the program's motions continue, so these do not hold it up
         [INT-08] (unconfirmed for its advance stops).
         """
         if task.name == "submit":

@@ -18,7 +18,7 @@ class MotionRequests:
         self._queue = queue
 
     def move(self, task: Task, request: Move | MoveSpline) -> Answer:
-        """A motion is planned; the program goes on once it is at most $ADVANCE motions ahead.
+        """A motion is planned; the program continues once it is at most $ADVANCE motions ahead.
 
         Of a motion that runs and three that are planned, $ADVANCE=3 makes the program wait behind
         the third. With $ADVANCE=0 it waits for each motion's end [ADV-01, ADV-02, INT-12].
@@ -77,7 +77,7 @@ class MotionRequests:
         return self._skip(task, request.at, own_fault("motion_kind"))
 
     def _skip(self, task: Task, at: At, error: Fault) -> Answer:
-        """Go on without a motion if the profile is tolerant; else raises its `Fault`.
+        """Continue without a motion if the profile is tolerant; else raises its `Fault`.
 
         One that is skipped again ends the slice: a loop in which all fails lets time pass.
         """

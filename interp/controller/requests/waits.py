@@ -108,7 +108,7 @@ class Waits:
             self._automatic.begin()
 
     def slice(self, task: Task, request: Slice) -> Answer:
-        """The program has used up its statements: it goes on in the next slice."""
+        """The program has used up its statements: it continues in the next slice."""
         more = (request.count - 1) * self._state.clock.cycle
         return self.until(request, self.next_slice(task) + more, lambda: None)
 

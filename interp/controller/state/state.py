@@ -59,7 +59,7 @@ class ControllerState:
         return value.name.upper() if isinstance(value, EnumValue) else "AUT"
 
     def skip(self, task: TaskName, at: At, error: Exception) -> None:
-        """Go on behind a statement that has failed, with a message the first time."""
+        """Continue behind a statement that has failed, with a message the first time."""
         if (at.file, at.line) not in self.skipped:
             self.skipped[at.file, at.line] = error
             number = getattr(error, "number", None) or 0

@@ -22,7 +22,7 @@ class BatchCore(ControlCore):
 
     The batch goes when its last motion has no approximation criterion, with `release`, or once so
     many motions are held that it might never. What has no motion and no link to the batch is loaded
-    at once. Motions that are held are not `pending`: the program goes on, however deep its advance
+    at once. Held motions are not `pending`: the program continues, however deep its advance
     run may be.
     """
 

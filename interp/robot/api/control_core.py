@@ -129,7 +129,7 @@ class ControlCore:
         return events
 
     def run_out(self) -> list[CoreEvent]:
-        """Go on until nothing more happens by itself; returns what happened, as `run_until`."""
+        """Continue until nothing more happens by itself; returns what happened, as `run_until`."""
         while (time := self.next_time()) is not None:
             self._advance(time)
         return self.run_until(self.now)
@@ -163,7 +163,7 @@ class ControlCore:
         self.arm.brake(now, is_hard)
 
     def proceed(self, now: int) -> None:
-        """The arm goes on after a brake, unless that is to end its motions."""
+        """The arm continues after a brake, unless that is to end its motions."""
         self._advance(now)
         if not self._is_ending:
             self.arm.proceed(now)

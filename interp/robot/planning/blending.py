@@ -209,7 +209,7 @@ def _straight_on(
     limits: AxisLimits,
     run: StraightRun | None,
 ) -> Joint | None:
-    """The joint of two straight ways of which the second goes on where the first leads.
+    """The joint of two straight ways of which the second continues where the first leads.
 
     It is a piece of straight way itself. ``None`` where that would miss the point between.
     """
@@ -297,7 +297,7 @@ def _course(
     zone: Zone,
     limits: AxisLimits,
 ) -> tuple[tuple[float, float], bool]:
-    """The lengths of both sides of a zone, and whether the second path goes on where the first led.
+    """The lengths of both sides of a zone, and whether the second path continues the first.
 
     Lengths are mm of the tool where both have that, else seconds of axes.
     """

@@ -90,7 +90,7 @@ class DeferredArm:
         self._arm.brake(now, is_hard)
 
     def proceed(self, now: int) -> None:
-        """Go on."""
+        """Continue."""
         self._arm.proceed(now)
 
     def discard(self, now: int) -> None:

@@ -119,7 +119,7 @@ class PathExecution:
         return leg if leg is not None and leg.ends > time + _INSTANT else None
 
     def _waiting(self, section: Section, time: float) -> tuple[float, float]:
-        """When and where on a section to go on, with an arm that stands, or will do before that.
+        """When and where on a section to continue, with an arm that stands, or will do before that.
 
         Legs that are planned behind the stop are those of an earlier plan, and count for nothing.
         """

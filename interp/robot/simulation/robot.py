@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class RobotFault(Fault):
-    """The robot cannot go on: it has touched something, or was sent where nothing can be.
+    """The robot cannot continue: it has touched something, or was sent where nothing can be.
 
     ``time`` is when, in µs. The arm has to stop; the robot itself stands from then on.
     """
@@ -55,7 +55,7 @@ class Robot(Protocol):
         ...
 
     def follow(self, samples: Samples) -> Measured | None:
-        """Follow set-points that are ``step`` apart and go on where the last ones ended.
+        """Follow set-points that are ``step`` apart and continue where the last ones ended.
 
         ``None`` where nothing is measured and the set-points stand for it. Raises `RobotFault`.
         """

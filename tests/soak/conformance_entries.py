@@ -1,4 +1,4 @@
-"""Entry points of the judge: `krl conform`, `krl fuzz`, `krl nightly`."""
+"""Entry points of the conformance suite: `krl conform`, `krl fuzz`, `krl nightly`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STEPS = {
 }
 
 
-def case_of_the_judge(folder: Path, foundry: Foundry) -> Given:
+def conformance_case(folder: Path, foundry: Foundry) -> Given:
     """A case, damaged."""
     cases = sorted((REPOSITORY / "conformance" / "cases" / "control").glob("*.src"))
     text = foundry.chance.choice(cases).read_text(encoding="utf-8")
@@ -62,7 +62,7 @@ def _cases() -> list[tuple[str, str]]:
 
 
 def night(folder: Path, foundry: Foundry) -> Given:
-    """Records of a night that are there already, and a history, both damaged."""
+    """Records of an earlier nightly run, and a history, both damaged."""
     for name, record in STEPS.items():
         put(folder / "out" / "2026-01-02", f"{name}.json", foundry.record(record))
     put(folder / "out" / "2026-01-01", "conform.json", foundry.record(STEPS["conform"]))
@@ -89,8 +89,8 @@ def fuzzed(folder: Path, foundry: Foundry) -> Given:
 
 
 ENTRIES = {
-    "conform": Entry(9, "a case of the judge", case_of_the_judge),
+    "conform": Entry(9, "a conformance case", conformance_case),
     "conform import": Entry(14, "a recording of a real controller", recording),
-    "nightly": Entry(50, "records of a night, and the history of nights", night),
+    "nightly": Entry(50, "records of a nightly run, and the history of all", night),
     "fuzz": Entry(10, "options", fuzzed),
 }
