@@ -1,1 +1,1 @@
-"""Debugging on every executor: stops, steps, watches, changes, block selection, going back."""
+"""The debugger for every executor: stops, steps, watches, changes, block selection, going back."""

@@ -1,7 +1,7 @@
-"""Clients of a debugger: what it reports when a program stops, and the commands it accepts.
+"""The interface of a debugger's client: the stops it is told about, and the commands it returns.
 
-A client is called where the program stops and answers with a command. It may take its time, as
-virtual time stands still meanwhile, so an adapter for an editor can wait there for its user.
+The debugger calls its client at each stop, and the client returns a command. Virtual time does not
+advance meanwhile, so the client may wait as long as it needs, for example for a user at an editor.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from interp.controller.state.trace import TaskName
 from interp.port.requests import At
 from interp.values.values import Value
 
-#: A moment of a run: how many statements of all programs have begun, and how many times a statement
-#: was about to begin since then. Moments of the same program and the same changes compare.
+#: A moment of a run: the number of statements of all programs that have begun, and the number of
+#: times that a statement was about to begin since then. Moments can be compared between runs of the
+#: same program with the same changes.
 Position = tuple[int, int]
 
-#: Why a program has stopped. ``refused`` follows a command that could not be carried out.
+#: Why a program has stopped. ``refused`` follows a command that could not be executed.
 Reason = Literal[
     "entry", "breakpoint", "step", "watch", "pause", "fault", "selected", "back", "refused", "ended"
 ]
@@ -25,13 +26,13 @@ Reason = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Breakpoint:
-    """Stop before the statement that begins in this line, if the condition is TRUE there.
+    """A breakpoint: stop before the statement that begins in this line, if the condition is TRUE.
 
-    ``file`` is a path or its end, letter case aside. The condition is an expression over what is
-    visible there; one that cannot be evaluated counts as TRUE, so that nothing is missed. ``hits``
-    says which of its hits count: ``3`` the third only, ``>=3`` from the third on, ``%3`` each
-    third. With ``log`` it does not stop: the text is reported, with values in place of what is in
-    braces.
+    ``file`` is a path or its end, ignoring case. The condition is an expression over the variables
+    visible there; one that cannot be evaluated counts as TRUE, so that no stop is missed. ``hits``
+    selects hits by their number: ``3`` the third only, ``>=3`` from the third on, ``%3`` every
+    third. With ``log`` the program does not stop: the text is logged, and expressions in braces are
+    replaced by their values.
     """
 
     file: str
@@ -43,10 +44,10 @@ class Breakpoint:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """Stop where an expression has got another value: a variable, a signal, anything of these.
+    """A watch: stop when the value of an expression over variables and signals has changed.
 
-    Data of a data list is watched wherever it is known by that name, data of a routine in the
-    routine and at the depth of calls where the watch was set.
+    A variable of a data list is watched wherever its name refers to it. A variable of a routine is
+    watched in that routine, at the call depth at which the watch was set.
     """
 
     text: str
@@ -56,8 +57,8 @@ class Watch:
 class Stop:
     """A program has stopped before the statement at ``at``, or at its fault or end.
 
-    ``watch`` is the one that changed, with the values before and now. ``text`` is the fault, what
-    was refused, or why the condition of the breakpoint could not be evaluated.
+    ``watch`` is the watch that changed, ``before`` and ``now`` its values. ``text`` is the fault,
+    the reason of a refusal, or why the condition of the breakpoint could not be evaluated.
     """
 
     reason: Reason
@@ -76,17 +77,16 @@ Way = Literal["into", "over", "out", "motion"]
 
 @dataclass(frozen=True, slots=True)
 class Go:
-    """Continue to the next stop; behind a fault and the end, end the session."""
+    """Continue to the next stop; after a fault or the end, end the session."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepCommand:
-    """Continue by a statement of a program, by default the one that has stopped.
+    """Continue by one statement of a program, by default the program that has stopped.
 
-    That is into calls, over them, or out of the routine.
-
-    Actions of interrupts and triggers that come up meanwhile are stepped into only with ``into``.
-    ``motion`` continues until a motion has ended, and to the next statement of the program then.
+    ``into`` steps into calls, ``over`` over them, ``out`` to the end of the routine. Only ``into``
+    also steps into actions of interrupts and triggers that begin meanwhile. ``motion`` continues to
+    the first statement of the program after a motion has ended.
     """
 
     way: Way = "over"
@@ -95,10 +95,10 @@ class StepCommand:
 
 @dataclass(frozen=True, slots=True)
 class Back:
-    """Go back, with all variables, outputs, the arm and the clock.
+    """Go back to an earlier stop; variables, outputs, arm and clock are restored.
 
-    By a step as `StepCommand` has it, or with ``go`` to where it would have stopped last. Where
-    there is no such place, it is the first statement.
+    Go back by one step, as for `StepCommand`, or with ``go`` to the place where the program would
+    last have stopped. If there is no such place, go to the first statement.
     """
 
     way: Way | Literal["go"] = "over"
@@ -107,10 +107,10 @@ class Back:
 
 @dataclass(frozen=True, slots=True)
 class Select:
-    """Block selection: continue at a line of the present routine, and stop there.
+    """Block selection: continue at a line of the present routine, and stop there [ADV-14].
 
-    No statement between here and there is executed [ADV-14]. Refused where the line is one of
-    another file than ``file``, or another program than ``task`` has stopped.
+    No statement between the two places is executed. Refused if ``file`` is given and the line is in
+    another file, or if ``task`` is given and another program has stopped.
     """
 
     line: int
@@ -120,7 +120,7 @@ class Select:
 
 @dataclass(frozen=True, slots=True)
 class Restart:
-    """Begin anew, without the changes that were made."""
+    """Begin the run again, without the changes that were made."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
-"""Expressions over what is visible where a program has stopped: conditions and watches.
+"""Expressions in a debugger: conditions of breakpoints, watches and evaluated input.
 
-They are read as the language has them and evaluated with its operators. They call nothing, so that
-looking changes nothing.
+They are parsed as KRL and evaluated with its operators, over the variables that are visible where a
+program has stopped. Calls are rejected, so that an evaluation has no side effects.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from interp.values.values import (
 )
 
 _Look = Callable[[str], Seen | None]
-#: What a signal of a name stands for: one variable, or all from the first to the last.
+#: Returns the first and the last variable that a signal denotes, by the name of the signal.
 _Signal = Callable[[str], tuple[ast.Expression, ast.Expression | None] | None]
 
 
 @cache
 def parsed(text: str) -> ast.Expression:
-    """An expression; raises `LinkError` for what is none."""
+    """Return the syntax tree of an expression; raise `LinkError` if the text is not one."""
     module = read_module(f"DEF A()\nA={text}\nEND\n")
     if isinstance(module, ast.Module) and isinstance(module.content, ast.Program):
         match module.content.routines[0].body:
@@ -48,7 +48,7 @@ def parsed(text: str) -> ast.Expression:
 
 
 def guard_of(text: str) -> Guard | None:
-    """A condition as a machine can look at it; ``None`` for what is not as simple."""
+    """Return a condition in the simple form that an executor can evaluate itself, else ``None``."""
     try:
         match parsed(text):
             case ast.Binary(operator=relation, left=left, right=right) if relation in RELATIONS:
@@ -66,7 +66,7 @@ def guard_of(text: str) -> Guard | None:
 
 
 def root_of(node: ast.Expression) -> str | None:
-    """The variable that a path begins with, in upper case; ``None`` for what is no path."""
+    """Return the variable with which a designator begins, in upper case; else ``None``."""
     while isinstance(node, ast.Subscript | ast.Member | ast.Parenthesised):
         node = node.inner if isinstance(node, ast.Parenthesised) else node.base
     return node.name.key if isinstance(node, ast.Variable) else None
@@ -79,16 +79,17 @@ def evaluated(
     signal: _Signal = lambda _name: None,
     wanted: Type | None = None,
 ) -> Value:
-    """The value; ``read`` is for variables of the controller, ``signal`` for names of signals.
+    """Return the value of an expression.
 
-    ``wanted`` is the type that it is for, which gives the enumeration of a constant. Raises
-    `interp.values.faults.Fault` as the program would, and `LinkError` for what is not known here.
+    ``look`` finds variables of the program, ``read`` those of the controller, ``signal`` signals by
+    name. ``wanted`` is the type of the context, which an enumeration constant needs. Raises
+    `interp.values.faults.Fault` as the program would, and `LinkError` for unknown names.
     """
     return _Evaluation(look, read, signal).value(node, wanted)
 
 
 def place_of(node: ast.Expression, look: _Look, read: Reader | None, signal: _Signal) -> str | Path:
-    """What a value can be given: a variable by its text, or the path of a system variable."""
+    """Return the target of an assignment: a variable as text, or the path of a system variable."""
     evaluation = _Evaluation(look, read, signal)
     steps = evaluation.steps(node)
     path = evaluation.system_path(steps)
@@ -162,7 +163,7 @@ class _Evaluation:
         return known(seen.value)
 
     def system_path(self, steps: Path) -> Path | None:
-        """The path of a system variable, or of what a signal stands for."""
+        """Return the path of a system variable or of a signal; ``None`` for other variables."""
         if str(steps[0]).startswith("$"):
             return steps
         stands_for = self._signal(str(steps[0])) if len(steps) == 1 else None
@@ -173,7 +174,7 @@ class _Evaluation:
         return path if last is None else (*path, "TO", *self.steps(last)[1:])
 
     def steps(self, node: ast.Expression) -> Path:
-        """The way to a variable, with its indices evaluated; one left out ends it."""
+        """Return a designator as a path with evaluated indices; omitted indices are left out."""
         match node:
             case ast.Variable():
                 return (node.name.key,)
@@ -188,7 +189,7 @@ class _Evaluation:
 
 
 def _text(steps: Path) -> str:
-    """``("A", 1, 2, "X")`` as ``A[1,2].X``."""
+    """Return a path as text: ``("A", 1, 2, "X")`` becomes ``A[1,2].X``."""
     text, indices = str(steps[0]), list[int]()
     for step in (*steps[1:], ""):
         if isinstance(step, int):

@@ -1,7 +1,8 @@
-"""A debugger for all programs of a run: stops, steps, inspects, changes and steps back.
+"""A debugger for all programs of a run: it stops, steps, inspects, changes and steps back.
 
-It runs what it is given to run, and calls its client where a program stops; until that answers
-nothing continues. To go back is to run once more and to stop earlier (`interp.debugging.history`).
+The debugger runs a function that it is given, and calls its client where a program stops; nothing
+continues until the client has returned. To go back, it repeats the run and stops earlier
+(`interp.debugging.history`).
 """
 
 from __future__ import annotations
@@ -43,38 +44,39 @@ from interp.program.statement_paths import routine_at, statement_lines
 from interp.values.faults import LinkError, RuntimeFailure
 from interp.values.values import converted
 
-#: Called where a program stops; may look around in the debugger, and set what it likes there.
+#: Called where a program stops; may inspect and change the run through the debugger.
 Client = Callable[["Debugger", Stop], Command]
 _T = TypeVar("_T")
 _NOWHERE: Final[Breaks] = {}
 
 
 class World(Protocol):
-    """What a debugger asks of the controller, as `interp.controller.controller.Controller`."""
+    """What a debugger needs of the controller (`interp.controller.controller.Controller`)."""
 
     @property
     def arm(self) -> ArmState:
-        """What the arm does."""
+        """The state of the arm."""
 
     def look(self, path: Path) -> Value:
-        """The value of a system variable."""
+        """Return the value of a system variable."""
 
     def assign(self, path: Path, value: Value) -> None:
-        """Give a system variable a value."""
+        """Assign a value to a system variable."""
 
     def type_of(self, path: Path) -> Type:
-        """The type of a system variable or a part of it."""
+        """Return the type of a system variable or of a part of it."""
 
     def levels(self, task: TaskName) -> list[tuple[LevelKind, int]]:
-        """What runs on top of a program."""
+        """Return the actions that run on top of a program, each as (kind, priority)."""
 
 
 @dataclass(slots=True)
 class _Watched:
-    """A watch as it was set: where its variable is at home, and what it had last.
+    """A watch with its last value, and where it applies.
 
-    ``place`` are program, height and routine for data of a routine. ``is_known``: it was looked at
-    in this run.
+    ``home`` is the data list variable that the watch is about, as in `interp.port.inspection.Seen`.
+    ``place`` is (program, height of the stack, routine) if it is about data of a routine.
+    ``is_known`` is set once the watch has been evaluated in this run.
     """
 
     watch: Watch
@@ -86,7 +88,7 @@ class _Watched:
 
 @dataclass(frozen=True, slots=True)
 class _Stepping:
-    """A step that was begun: its way, and program, height and motions that had ended then."""
+    """A step in progress: its kind, and program, stack height and ended motions at its start."""
 
     way: str
     task: TaskName
@@ -94,7 +96,7 @@ class _Stepping:
     ended: int
 
     def is_over(self, executor: DebuggedExecutor, ended: int) -> bool:
-        """Whether the step ends before the statement that a program is about to begin."""
+        """Return whether the step ends before the statement that a program is about to begin."""
         if executor.task != self.task:
             return False
         if self.way == "motion":
@@ -103,17 +105,17 @@ class _Stepping:
 
 
 class _Again(Exception):
-    """The run is left, as another one is to begin."""
+    """Leaves a run because another one is to begin."""
 
 
 class _Left(Exception):
-    """The run is left for good."""
+    """Leaves a run because the session ends."""
 
 
 class Debugger:
     """Debugs the runs of one program; it stops before the first statement.
 
-    ``log`` takes the texts of breakpoints that only report.
+    ``log`` receives the texts of log points.
     """
 
     def __init__(
@@ -136,10 +138,10 @@ class Debugger:
     # ----------------------------------------------------------------------- running
 
     def run(self, begin: Callable[[], _T]) -> _T | None:
-        """Run to the end, as often as the client wants; ``None`` where it does not wait for that.
+        """Run the program as often as the client wants, and return the result of the last run.
 
-        ``begin`` makes and runs the program, anew each time and each time the same; its executor is
-        one that this debugger is ``around``.
+        Return ``None`` if the client ends the session before the run has ended. ``begin`` creates
+        and executes a run, each time the same one; its executors come from `around`.
         """
         while True:
             self._tasks.clear()
@@ -158,23 +160,23 @@ class Debugger:
             return result
 
     def _end(self, text: str) -> None:
-        """A run has ended: leave it to the client whether that is the end."""
+        """Report the end of a run to the client, which may continue with another run."""
         self._history.ends(self._count())
         if self._history.is_searched():
             self._history.end_search()
             raise _Again
         robot = self._tasks["robot"]
-        self._history.arrived(robot)  # where no statement came that could be returned to
+        self._history.arrived(robot)  # if no statement came that could be returned to
         self._is_ended = True
         self._stopped(robot, Stop("ended", "robot", robot.at, text=text))
 
     def around(self, inside: Any, per_slice: int, task: TaskName = "robot") -> DebuggedExecutor:
-        """The executor that stops for this debugger; ``inside`` is an `Inspectable`."""
+        """Return an executor that stops for this debugger; ``inside`` is an `Inspectable`."""
         made = self._tasks[task] = DebuggedExecutor(self, task, inside, per_slice)
         return made
 
     def attach(self, world: World) -> None:
-        """The controller of the run that begins."""
+        """Set the controller of the run that begins."""
         self._world = world
 
     def pause(self) -> None:
@@ -183,13 +185,13 @@ class Debugger:
 
     @property
     def is_repeating(self) -> bool:
-        """Whether the run only comes back to where it was, so that its events are known."""
+        """Whether the run repeats what has happened before, so that its events are known."""
         return self._history.is_repeating
 
     # ----------------------------------------------------------------------- breakpoints
 
     def set_breakpoints(self, breakpoints: Sequence[Breakpoint]) -> None:
-        """These in place of all there were; raises `LinkError` for hits that cannot be read."""
+        """Replace all breakpoints; raise `LinkError` for invalid hits."""
         by_line: dict[int, list[Breakpoint]] = {}
         for one in breakpoints:
             is_hit(one.hits, 1)
@@ -209,17 +211,17 @@ class Debugger:
 
     @property
     def breakpoints(self) -> list[Breakpoint]:
-        """All there are, by lines."""
+        """All breakpoints, by lines."""
         return [one for _, found in sorted(self._breakpoints.items()) for one in found]
 
     def lines(self, file: str) -> tuple[int, ...]:
-        """The lines of a file at which a program can stop, in ascending order."""
+        """Return the lines of a file at which a program can stop, in ascending order."""
         units = [one for one in self._program.units.values() if _is_of(file, one.module.path)]
         routines = [one for unit in units for one in self._program.routines_of(unit)]
         return tuple(sorted({line for one in routines for line in statement_lines(one)}))
 
     def watch(self, text: str, task: TaskName = "robot", frame: int = 0) -> Watch:
-        """Stop where the value of an expression changes; raises `LinkError` for what is none."""
+        """Add a watch on an expression; raise `LinkError` if the text is not an expression."""
         root = root_of(parsed(text))
         seen = self._look(task, frame, root) if root is not None else None
         frames, place = self.frames(task), None
@@ -233,55 +235,55 @@ class Debugger:
 
     @property
     def watches(self) -> tuple[Watch, ...]:
-        """What is watched."""
+        """The watches that are set."""
         return tuple(one.watch for one in self._watches)
 
     def forget(self, watch: Watch) -> None:
-        """Watch something no longer."""
+        """Remove a watch."""
         self._watches = [one for one in self._watches if one.watch != watch]
 
     # ----------------------------------------------------------------------- looking around
 
     @property
     def tasks(self) -> tuple[TaskName, ...]:
-        """The programs of the run: that of the robot, and that of the submit where there is one."""
+        """The programs of the run: the robot's, and the submit interpreter's if there is one."""
         return tuple(self._tasks)
 
     @property
     def arm(self) -> ArmState:
-        """What the arm does."""
+        """The state of the arm."""
         return ArmState(0, None, 0, 0) if self._world is None else self._world.arm
 
     def frames(self, task: TaskName = "robot") -> tuple[StackFrame, ...]:
-        """What is open in a program, the innermost first."""
+        """Return the call stack of a program, innermost frame first."""
         frames = self._tasks[task].inside.frames()
         levels = [] if self._world is None else self._world.levels(task)
         return tuple(_named(one, levels) for one in frames)
 
     def names(self, task: TaskName = "robot", frame: int = 0) -> Names:
-        """What variables can be seen in a frame."""
+        """Return the names of the variables that are visible in a frame."""
         return names_in(self._program, self._tasks[task].inside.frames()[frame])
 
     def look(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value | None:
-        """The value of a variable that is known by its name, ``None`` where it has none.
+        """Return the value of a variable by its name; ``None`` if it has no value.
 
-        Raises `LinkError` where there is no such.
+        Raises `LinkError` if there is no such variable.
         """
         seen = self._look(task, frame, text)
         return self.value(text, task, frame) if seen is None else seen.value
 
     def value(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value:
-        """The value of an expression in a frame.
+        """Return the value of an expression in a frame.
 
-        Raises `LinkError` where it is none or names what is not known, and the fault that the
-        program would have.
+        Raises `LinkError` if it is not an expression or uses an unknown name, and `Fault` as the
+        program would.
         """
         return evaluated(parsed(text), *self._names_of(task, frame))
 
     def assign(self, text: str, value: str, task: TaskName = "robot", frame: int = 0) -> None:
-        """Give a variable, system variable or input the value of an expression.
+        """Assign the value of an expression to a variable, system variable or input.
 
-        Raises `LinkError`, and `Fault` for a value that it cannot have.
+        Raises `LinkError`, and `Fault` for a value that the variable cannot have.
         """
         if self._is_ended:
             raise LinkError("the program has ended")
@@ -310,7 +312,7 @@ class Debugger:
             self._world.assign(change.target, change.value)
 
     def _names_of(self, task: TaskName, frame: int) -> tuple[Any, Any, Any]:
-        """How `conditions` finds what names mean in a frame."""
+        """Return the functions with which `evaluated` looks up names in a frame."""
         read = None if self._world is None else self._world.look
         place = self._tasks[task].inside.frames()[frame]
         return partial(self._look, task, frame), read, partial(signal_in, self._program, place)
@@ -328,15 +330,15 @@ class Debugger:
 
     @property
     def places(self) -> Breaks:
-        """The lines whose statements have to be looked at, wherever `unseen` ends."""
+        """The breakpoints that the debugger wants to see, even where `unseen` allows more."""
         history = self._history
         is_idle = history.is_repeating and not history.is_looking(self._count())
         return _NOWHERE if is_idle else self._places
 
     def unseen(self, shows_places: bool) -> int:
-        """How many statements may begin before one has to be looked at.
+        """Return how many statements may begin before the debugger wants to see one.
 
-        With ``shows_places`` those of `places` are shown as well, and do not count.
+        With ``shows_places``, statements at `places` are shown anyway and need not be counted.
         """
         history = self._history
         if not history.is_repeating:
@@ -346,9 +348,10 @@ class Debugger:
         return history.unseen(self._count(), shows_places)
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
-        """A program is about to begin a statement; the line to continue at instead, if any.
+        """Decide what happens before a statement: return a line to continue at, else ``None``.
 
-        Only of what the debugger wants to see: whatever `unseen` says.
+        The executor calls this for every statement that the debugger wants to see, and possibly for
+        others (see `unseen`).
         """
         history = self._history
         history.comes(self._count())
@@ -366,7 +369,7 @@ class Debugger:
             self._is_begun = True
             for hits in self._hits.values():
                 del hits[bisect_right(hits, history.here[0]) :]
-            self._changed(executor)  # watches have now what they had then
+            self._changed(executor)  # the watches take the values of this moment
             return self._stopped(executor, arrived)
         if line is not None or history.is_repeating:
             return line
@@ -374,7 +377,7 @@ class Debugger:
         return None if stop is None else self._stopped(executor, stop)
 
     def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
-        """A program has come to a fault that it does not handle."""
+        """Stop at a fault that the program does not handle."""
         self._history.comes(self._count())
         self._end_search_at(None)
         if self.stops_at_faults and not self._history.is_repeating:
@@ -395,7 +398,7 @@ class Debugger:
     # ----------------------------------------------------------------------- why to stop
 
     def _why(self, executor: DebuggedExecutor) -> Stop | None:
-        """Why to stop here, if there is a reason."""
+        """Return why to stop here, or ``None``."""
         task, at = executor.task, executor.at
         if not self._is_begun:
             self._is_begun = True
@@ -418,7 +421,7 @@ class Debugger:
         return self.arm.ended if way == "motion" else 0
 
     def _broken(self, executor: DebuggedExecutor) -> Stop | None:
-        """The breakpoint that this statement has and that counts."""
+        """Return the stop of a breakpoint at this statement, if one applies."""
         at, task = executor.at, executor.task
         found: Stop | None = None
         for one in self._breakpoints.get(at.line, ()):
@@ -434,7 +437,7 @@ class Debugger:
         return found
 
     def _unmet(self, one: Breakpoint, task: TaskName) -> str | None:
-        """``None`` where the condition is FALSE; else empty, or why it cannot be evaluated."""
+        """Return ``None`` if the condition is FALSE, else "", or why it cannot be evaluated."""
         if one.condition is None:
             return ""
         try:
@@ -443,7 +446,7 @@ class Debugger:
             return str(error)
 
     def _counts(self, one: Breakpoint) -> bool:
-        """Whether this hit is one that counts; each is kept, so that going back undoes it."""
+        """Return whether this hit counts; all hits are stored, so that going back undoes them."""
         if one.hits is None:
             return True
         hits, count = self._hits[one], self._history.here[0]
@@ -452,7 +455,7 @@ class Debugger:
         return is_hit(one.hits, bisect_right(hits, count))
 
     def _log_text(self, text: str, task: TaskName) -> str:
-        """The text of a breakpoint with the values of what stands in braces."""
+        """Return the text of a log point, with the values of the expressions in braces."""
         parts = text.replace("}", "{").split("{")
         for place in range(1, len(parts), 2):
             try:
@@ -462,7 +465,10 @@ class Debugger:
         return "".join(parts)
 
     def _changed(self, executor: DebuggedExecutor) -> Stop | None:
-        """The first watch that changed; to be unknown here, or without a value, is no change."""
+        """Return the stop of the first watch that changed.
+
+        A watch that is unknown here, or has no value, has not changed.
+        """
         found: Stop | None = None
         for one in self._watches:
             if not self._is_here(one, executor):
@@ -477,7 +483,7 @@ class Debugger:
         return found
 
     def _is_here(self, one: _Watched, executor: DebuggedExecutor) -> bool:
-        """Whether the watched variable is known here, and not another one of its name."""
+        """Return whether a watch applies here: its name refers to the variable that was watched."""
         if one.place is not None:
             if one.place[:2] != (executor.task, executor.height):
                 return False
@@ -491,7 +497,10 @@ class Debugger:
     # ----------------------------------------------------------------------- commands
 
     def _stopped(self, executor: DebuggedExecutor, stop: Stop) -> int | None:
-        """Do what the client wants: continue, and if so at which line, or leave this run."""
+        """Execute commands of the client; return a line to continue at, else ``None``.
+
+        Raises `_Again` or `_Left` to leave this run.
+        """
         while True:
             self._stepping = None
             match self._client_command(stop):
@@ -533,7 +542,7 @@ class Debugger:
         return _Stepping(way, executor.task, executor.height, self._ended_motions(way))
 
     def _fitting(self, way: str, executor: DebuggedExecutor) -> Fits:
-        """What statement to go back to."""
+        """Return the test for the statement to go back to."""
         if way == "go":
             return lambda one: self._changed(one) or self._broken(one)
         step = self._step(way, executor)
@@ -548,7 +557,7 @@ class Debugger:
         return fits
 
     def _against(self, selected: Select, executor: DebuggedExecutor, stop: Stop) -> str:
-        """Why a line cannot be selected; empty where it can."""
+        """Return why a line cannot be selected; "" if it can."""
         if self._is_ended or stop.reason == "fault":
             return "the program has ended"
         if selected.task not in (None, executor.task):
@@ -565,7 +574,7 @@ class Debugger:
 
 
 def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame:
-    """A frame by its name, an action by what has entered it: the last of ``levels``."""
+    """Return a frame with its name; an action is named after its cause, the last of ``levels``."""
     if not frame.is_action or not levels:
         return frame
     kind, priority = levels.pop()
@@ -573,7 +582,7 @@ def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame
 
 
 def _is_of(wanted: str, file: str) -> bool:
-    """Whether a file is meant by its path or the end of it."""
+    """Return whether ``wanted`` is the path of a file or the end of that path."""
     wanted, file = wanted.replace("\\", "/").upper(), file.upper()
     return file == wanted or file.endswith(f"/{wanted}")
 

@@ -1,8 +1,8 @@
-"""An executor around another one, which a debugger can stop before every statement.
+"""An executor around another one, which lets a debugger stop it before any statement.
 
-The executor inside is asked to ask for time where the debugger wants to look. Slices that would
-not have come are kept from the outside: there, a program that is debugged makes the same requests
-as without a debugger.
+The inner executor is made to return a slice wherever the debugger wants to look. The outer executor
+hides these extra slices: to the controller, a debugged program makes the same requests as without a
+debugger.
 """
 
 from __future__ import annotations
@@ -18,33 +18,33 @@ from interp.values.faults import Fault
 
 
 class Hook(Protocol):
-    """What is shown the statements and faults of debugged executors: the debugger."""
+    """The debugger, as a debugged executor calls it."""
 
     @property
     def places(self) -> Breaks:
-        """The lines whose statements are shown, at least where the guard of a line holds.
+        """The breakpoints whose statements must be shown if their conditions hold.
 
-        It is the same object while they stay.
+        The object stays the same as long as its content does.
         """
 
     def unseen(self, shows_places: bool) -> int:
-        """How many statements may begin before one has to be shown, but for those of `places`.
+        """Return how many statements may begin before one must be shown.
 
-        Without ``shows_places`` these count too.
+        Statements at `places` do not count with ``shows_places``; without it they count too.
         """
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
-        """A statement is about to begin; the line to continue at instead, if any."""
+        """Called before a statement begins; return a line to continue at instead, or ``None``."""
 
     def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
-        """The program has come to a fault that it does not handle."""
+        """Called when the program has come to a fault that it does not handle."""
 
     def around(self, inside: Any, per_slice: int, task: TaskName) -> DebuggedExecutor:
-        """An executor that is shown too."""
+        """Return a debugged executor around another one."""
 
 
 class DebuggedExecutor:
-    """Runs ``inside``, and shows ``hook`` every statement it wants to see; see `Executor`."""
+    """Runs ``inside`` and shows ``hook`` the statements that it wants to see; see `Executor`."""
 
     def __init__(self, hook: Hook, task: TaskName, inside: Inspectable, per_slice: int) -> None:
         self.task: TaskName = task
@@ -54,38 +54,38 @@ class DebuggedExecutor:
         self._per_slice = per_slice
         self._places: Breaks = {}
         self._shows_places = True
-        #: When the slice ends that the outside has given.
+        #: The number of begun statements at which the controller's slice ends.
         self._due = inside.begun + per_slice
         self._open: Request | None = None
         self._again: Request | None = None
-        #: For each action that runs: the depth it was entered at, and the request it interrupted.
+        #: For each running action: the depth when it was entered, and the request it interrupted.
         self._actions: list[tuple[int, Request | None]] = []
 
     @property
     def height(self) -> int:
-        """How many calls and actions are open."""
+        """The number of open calls and actions."""
         return self.at.depth + len(self._actions)
 
     # ----------------------------------------------------------------------- the port
 
     @property
     def depth(self) -> int:
-        """How many calls deep the program is."""
+        """The number of open calls."""
         return self.inside.depth
 
     @property
     def begun(self) -> int:
-        """How many statements have begun."""
+        """The number of statements that have begun."""
         return self.inside.begun
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the controller is needed."""
+        """Run until the controller is needed; see `Executor`."""
         inside, hook = self.inside, self._hook
-        if self._again is not None:  # behind an action, as it was asked before
+        if self._again is not None:  # after an action: the interrupted request comes again
             self._open, self._again = self._again, None
             return inside.advance(None)
         if isinstance(self._open, Slice | StopAdvance):
-            reply = None  # it may ask sooner than the controller would have it
+            reply = None  # an executor may ask sooner than the reply allows
         while True:
             if self._places is not (places := hook.places):
                 self._places, self._shows_places = places, inside.break_at(places)
@@ -95,7 +95,7 @@ class DebuggedExecutor:
             self.at = request.at
             if isinstance(request, Slice):
                 line = hook.begins(self)
-                if line is not None:  # its statement asks before it begins, as every one does
+                if line is not None:  # the selected statement asks before it begins, as all do
                     inside.select(line)
                     continue
                 if inside.begun < self._due:
@@ -117,16 +117,16 @@ class DebuggedExecutor:
         self.inside.enter(code)
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
-        """The value of a condition; nothing stops in it."""
+        """Return the value of a condition; the debugger never stops in one."""
         return self.inside.evaluate(code, read)
 
     def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``, and what was entered there."""
+        """Leave all routines deeper than ``depth``, and the actions that were entered there."""
         self._actions = [one for one in self._actions if one[0] < depth]
         self._open = self._again = None
         self.inside.unwind(depth)
 
     def companion(self, routine: str, sink: Sink | None = None) -> Executor:
-        """A second executor over the same data lists, the submit's, which is debugged too."""
+        """Return a debugged executor over the same data lists, for the submit interpreter."""
         companion = self.inside.companion(routine, sink)
         return self._hook.around(companion, self._per_slice, "submit")

@@ -1,10 +1,11 @@
-"""Going back: a run is repeated up to an earlier moment.
+"""Going back: the run is repeated up to an earlier moment.
 
-A program and its setup have one run. So to go back is to begin anew and to stop earlier: all that
-makes up the state is as it was, the arm and the clock too, and nothing has to be kept but the
-changes that were made from outside, which are made again at their moments. Where exactly to
-go back to, to the last breakpoint for instance, a first repetition finds out: it looks at the
-statements of the last stretch, and where it finds nothing there, at those of a longer one.
+Runs are deterministic: a program and its setup have exactly one run. So the debugger goes back by
+starting again and stopping earlier. Every part of the state is then as it was, including the arm
+and the clock. Only the changes that the user made have to be stored; they are made again at their
+moments. A search for the place to go back to, such as the last breakpoint, is a repetition of its
+own: it examines the statements of the last stretch and, if it finds nothing, repeats with a longer
+stretch.
 """
 
 from __future__ import annotations
@@ -20,17 +21,17 @@ from interp.port.requests import Path
 from interp.values.values import Value
 
 START: Final[Position] = (0, 0)
-#: More than there are.
+#: More statements than any run has.
 _MANY: Final = 1 << 62
-#: Statements that are looked at first, and by what that grows.
+#: The number of statements that a search examines first, and the factor by which it grows.
 _STRETCH, _GROWTH = 2_000, 100
 
 
 @dataclass(frozen=True, slots=True)
 class Assigned:
-    """A variable was given a value from outside.
+    """The user assigned a value to a variable.
 
-    It is one of the program, by its name in a frame of a task, or the path of a system variable.
+    ``target`` is the name of a variable in a frame of ``task``, or the path of a system variable.
     """
 
     task: TaskName
@@ -41,19 +42,23 @@ class Assigned:
 
 @dataclass(frozen=True, slots=True)
 class Selected:
-    """A line was selected, with which the program continues."""
+    """The user selected the line with which the program continues."""
 
     line: int
 
 
 Change = Assigned | Selected
-#: Why to go back to the moment at which a program is about to begin a statement, if at all.
+#: Returns the stop to go back to if the statement that is about to begin is the wanted one.
 Fits = Callable[[DebuggedExecutor], Stop | None]
 
 
 @dataclass(slots=True)
 class _Search:
-    """For the last moment before ``end`` that ``fits``, from so many statements on."""
+    """A search for the last moment before ``end`` that ``fits``.
+
+    It examines the statements from number ``first`` on, only those at breakpoints if it
+    ``is_of_places``. ``found`` is the last match so far.
+    """
 
     fits: Fits
     is_of_places: bool
@@ -63,7 +68,7 @@ class _Search:
 
 
 class History:
-    """Where a run is, what was changed in it from outside, and where a repetition is to stop."""
+    """The present moment of a run, the user's changes, and where a repetition stops."""
 
     def __init__(self) -> None:
         self.here: Position = START
@@ -74,34 +79,35 @@ class History:
 
     @property
     def is_repeating(self) -> bool:
-        """Whether what happens has happened before."""
+        """Whether the run repeats what has happened before."""
         return self._goal is not None or self._search is not None
 
     @property
     def is_idle(self) -> bool:
-        """Whether there is nothing to return to, to look for, or to change."""
+        """Whether there is no moment to return to, no search, and no change."""
         return self._goal is None and self._search is None and not self.changes
 
     def begin(self) -> None:
-        """A run begins."""
+        """A run has begun."""
         self.here = (0, -1)
 
     def comes(self, count: int) -> None:
-        """So many statements have begun, and another one is about to begin."""
+        """A statement is about to begin after ``count`` statements have begun."""
         self.here = (count, self.here[1] + 1 if count == self.here[0] else 0)
 
     def ends(self, count: int) -> None:
-        """The run has ended, behind all moments."""
+        """The run has ended after ``count`` statements; this is later than all other moments."""
         self.here = (count, _MANY)
 
     def is_looking(self, count: int) -> bool:
-        """Whether what begins behind so many statements may be what is searched for."""
+        """Return whether the search examines the statement after ``count`` statements."""
         return self._search is not None and count >= self._search.first
 
     def unseen(self, count: int, shows_places: bool) -> int:
-        """How many more statements may begin before one has to be looked at.
+        """Return how many more statements may begin before one must be examined.
 
-        Where only breakpoints are searched for and executors show them, no other has to be.
+        A search for breakpoints examines no other statements if the executor shows those at
+        breakpoints (``shows_places``).
         """
         ahead = [moment[0] for moment, _ in self.changes if moment > self.here]
         if self._goal is not None:
@@ -112,31 +118,31 @@ class History:
         return max(0, min(ahead, default=_MANY) - count)
 
     def due(self) -> list[Change]:
-        """The changes that were made at this moment."""
+        """Return the changes that were made at this moment."""
         return [change for moment, change in self.changes if moment == self.here]
 
     def change(self, change: Change) -> None:
-        """A change is made now; what was changed later is no longer true."""
+        """Store a change that is made now, and drop those that were made later."""
         self.changes = [one for one in self.changes if one[0] <= self.here]
         self.changes.append((self.here, change))
 
     def look_back(self, fits: Fits, is_of_places: bool) -> None:
-        """The next run is to stop at the last moment before this one that fits, or at its start.
+        """Let the next run stop at the last moment before this one that fits, or at its start.
 
-        ``is_of_places``: only statements with a breakpoint can fit.
+        With ``is_of_places``, only statements at breakpoints can fit.
         """
         first = max(0, self.here[0] - _STRETCH)
         self._search = _Search(fits, is_of_places, self.here, first)
 
     def forget(self) -> None:
-        """Changes are no longer made."""
+        """Drop all changes."""
         self.changes.clear()
 
     def arrived(self, executor: DebuggedExecutor) -> Stop | None:
-        """Why the program stops where the moment that was to be returned to has come."""
+        """Return the stop if this is the moment to return to, else ``None``."""
         if self._search is None and self._goal is not None and self.here >= self._goal:
             self._goal = None
-            # Whoever goes back to where a line was selected goes back behind that selection.
+            # Going back to a line selection returns to the moment before the selection.
             undone = next((one for one in self.due() if isinstance(one, Selected)), None)
             if undone is not None:
                 self.changes = self.changes[: self.changes.index((self.here, undone))]
@@ -144,7 +150,7 @@ class History:
         return None
 
     def is_searched(self, executor: DebuggedExecutor | None = None) -> bool:
-        """Whether all moments that a search is about have been looked at, as the next one is."""
+        """Examine this moment, and return whether the search has examined all its moments."""
         search = self._search
         if search is None:
             return False
@@ -156,7 +162,7 @@ class History:
         return False
 
     def end_search(self) -> None:
-        """Return to what was found, or look at more."""
+        """Return to the moment that the search found, or prepare a search of a longer stretch."""
         search = self._search
         if search is None:
             return

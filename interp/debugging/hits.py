@@ -1,4 +1,4 @@
-"""Which hits of a breakpoint count."""
+"""The hit conditions of breakpoints."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ _COUNTS: Final = {">=": operator.ge, ">": operator.gt, "<=": operator.le, "<": o
 
 
 def is_hit(hits: str | None, count: int) -> bool:
-    """Whether the hit of a number counts; raises `LinkError` for what says nothing about hits."""
+    """Return whether hit number ``count`` counts; raise `LinkError` if ``hits`` is invalid.
+
+    ``hits`` is a number with an optional ``=``, ``==``, ``>``, ``>=``, ``<``, ``<=`` or ``%``.
+    """
     match = _HITS.fullmatch((hits or ">=1").replace(" ", ""))
     if match is None or (match[1] == "%" and not int(match[2])):
         raise LinkError(f"{hits}: hits are a number such as 3, >=3 or %3")

@@ -1,4 +1,4 @@
-"""Variables visible where a program has stopped, and the signals they name."""
+"""The variables that are visible where a program has stopped, and its signals."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ _DATA: Final = frozenset({Kind.VARIABLE, Kind.CONSTANT, Kind.PARAMETER, Kind.IMP
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names of variables, as they are written, each group in the order of its declarations.
+    """The names of variables as written, each group in the order of declaration.
 
-    ``local`` with parameters; ``data`` of the data list of the module; ``config`` of $CONFIG;
-    ``others`` that are GLOBAL elsewhere; ``signals`` by what they stand for.
+    ``local`` are those of the routine, with its parameters; ``data`` those of the module's data
+    list; ``config`` those of $CONFIG; ``others`` are GLOBAL in other data lists. ``signals`` are
+    the names of signals.
     """
 
     local: tuple[str, ...]
@@ -34,7 +35,7 @@ class Names:
 
 
 def names_in(program: CheckedProgram, frame: StackFrame) -> Names:
-    """What can be seen in a frame."""
+    """Return the names that are visible in a frame."""
     routine = routine_at(program, frame.at.file, frame.name)
     if routine is None:
         return Names((), (), (), (), ())
@@ -63,7 +64,10 @@ def names_in(program: CheckedProgram, frame: StackFrame) -> Names:
 def signal_in(
     program: CheckedProgram, frame: StackFrame, name: str
 ) -> tuple[ast.Expression, ast.Expression | None] | None:
-    """What a signal of this name stands for where a program is: one variable, or up to another."""
+    """Return the first and the last variable that a signal denotes; ``None`` if it is no signal.
+
+    The last variable is ``None`` for a signal of one variable.
+    """
     routine = routine_at(program, frame.at.file, frame.name)
     answer = None if routine is None else routine.scope.find(Space.VALUE, name.upper())
     if not isinstance(answer, Found):
@@ -76,7 +80,7 @@ def signal_in(
 
 
 def signals_of(program: CheckedProgram) -> frozenset[str]:
-    """The names of all signals of a program, in upper case."""
+    """Return the names of all signals of a program, in upper case."""
     units = program.units.values()
     tables = [unit.module.table.table for unit in units if unit.module.table is not None]
     tables += [one.table.table for unit in units for one in program.routines_of(unit)]

@@ -1,7 +1,7 @@
-"""Lines at which a program can continue: those of the statements of the current routine.
+"""The lines at which a program can continue by block selection: those of the current routine.
 
-A FOR keeps its limit privately, so its body can be entered only from inside. What
-the official implementation allows beyond that is not stated by any rule (unconfirmed).
+The limit of a FOR is private to it, so its body can be entered only from inside. No rule says what
+else the official implementation allows (unconfirmed).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from interp.program.statement_paths import way_to
 
 
 def reason_against(routine: Routine, here: int, line: int) -> str:
-    """Why a program cannot continue at a line when it is at another; empty where it can."""
+    """Return why a program cannot continue at ``line`` when it is at ``here``; "" if it can."""
     way = way_to(routine, line)
     if not way:
         return f"no statement of {routine.name} begins in line {line}"

@@ -1,4 +1,4 @@
-"""Values as people read and write them in programs."""
+"""Values as text in the form in which programs write them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MOST_ELEMENTS: Final = 10
 
 
 def value_text(value: Value | None) -> str:
-    """A value in one line: ``{X 1.0, Y 2.0}``, ``#T1``, ``"text"``; long arrays are cut short."""
+    """Return a value in one line: ``{X 1.0, Y 2.0}``, ``#T1``, ``"text"``; long arrays are cut."""
     match value:
         case None:
             return "(no value)"

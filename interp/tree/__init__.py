@@ -1,18 +1,18 @@
-"""The tree interpreter: the legible reference, one generator for each routine that runs.
+"""The tree interpreter: the readable reference executor, in which each routine is a generator.
 
 =============== ====================================================================================
-module          what it is
+module          contents
 =============== ====================================================================================
-`executor`      the port: the stack of routines, interrupts, RESUME
-`statements`    control flow and all statements that are no motion
-`motions`       statements that only ask the world: motions, triggers, interrupts, cyclic signals
-`calls`         calls of routines and of what the controller brings along
+`executor`      the port: the call stack, actions of interrupts, RESUME
+`statements`    control flow and all other statements that are no motion
+`motions`       statements that make requests: motions, triggers, interrupts, cyclic signals
+`calls`         calls of routines and of predefined functions
 `expressions`   values of literals, operators, aggregates
 `designators`   variables, members, elements, and access to them
-`places`        where values are: in the program or in the world
-`names`         variables by a text that names them
-`memory`        the data lists and what they begin with
-`run`           what routines share: statements counted, ON_ERROR_PROCEED, codes handed out
+`places`        storage locations, in the program or in the controller
+`names`         look-up of variables by their name as text
+`memory`        the data lists and their initial values
+`run`           state that routines share: statement counts, ON_ERROR_PROCEED, code handles
 =============== ====================================================================================
 """
 

@@ -1,4 +1,4 @@
-"""Calls: of routines of the program, and of what the controller brings along.
+"""Calls of routines of the program, and of the functions and routines that KRL predefines.
 
 Arguments are evaluated from left to right.
 """
@@ -33,17 +33,17 @@ from interp.values.values import Value, copied, known, type_of
 
 
 class Calls(Expressions):
-    """What calls do in one frame."""
+    """The execution of calls in one frame."""
 
     def called(self, node: ast.Call) -> Steps[Value]:
-        """The value of a function."""
+        """Call a function and return its value."""
         value = yield from self.call(node, is_value=True)
         if value is None:
             raise LinkError(f"{node.name.text} gives no value")
         return value
 
     def call(self, node: ast.Call, *, is_value: bool) -> Steps[Value | None]:
-        """Call a routine; a procedure gives ``None``."""
+        """Call a routine or function; return its result, or ``None`` for a procedure."""
         found = self.frame.unit.found(node.name)
         if found is None:
             raise LinkError(self.frame.unit.undeclared(node.name))
@@ -71,7 +71,10 @@ class Calls(Expressions):
     def _passed(
         self, parameter: Found, argument: ast.Expression | None, *, is_in: bool
     ) -> Steps[Place]:
-        """A parameter: what is no variable is passed :IN, whatever is declared [SCO-06]."""
+        """Bind an argument to a parameter and return the place of the parameter.
+
+        An argument that is not a variable is passed :IN, whatever the declaration says [SCO-06].
+        """
         type_, name = self.run.program.type_of(parameter), parameter.symbol.key
         if argument is None:
             return fresh(type_, name)
@@ -88,7 +91,7 @@ class Calls(Expressions):
         return made
 
     def _predefined(self, node: ast.Call, *, is_value: bool) -> Steps[Any]:
-        """Call what the controller brings along; what is passed :OUT is assigned afterwards."""
+        """Call a predefined function or routine, then assign the arguments passed :OUT."""
         name = node.name.key
         function = System.load().functions[name]
         if name in BUILTINS and function.stops:
@@ -111,7 +114,7 @@ class Calls(Expressions):
     def _given(
         self, node: ast.Call, parameters: Sequence[PredefinedParameter]
     ) -> Steps[tuple[list[Place | None], list[Value | None]]]:
-        """The values of all arguments, and the places of those that are passed :OUT."""
+        """Return the places of the arguments passed :OUT, and the values of all arguments."""
         name = node.name.key
         places: list[Place | None] = []
         values: list[Value | None] = []
@@ -135,7 +138,10 @@ class Calls(Expressions):
         return places, values
 
     def _text(self, node: ast.Expression, wanted: Type) -> Steps[Value]:
-        """A text passed :IN to a predefined function; see `interp.values.builtins.reads_text`."""
+        """Return a text passed :IN to a predefined function.
+
+        See `interp.values.builtins.reads_text` for an omitted text.
+        """
         if not is_variable(self.frame.unit, node):
             return (yield from self.value(node, wanted))
         place = yield from self.place(node)
@@ -148,9 +154,9 @@ _Given = tuple[PredefinedParameter, ast.Expression | None, Place | None, Value |
 
 
 def _check(given: Iterable[_Given]) -> None:
-    """Fault ``argument`` where a predefined function does not take one of its arguments [ARI-04].
+    """Fault ``argument`` if a predefined function does not accept one of its arguments [ARI-04].
 
-    One by reference has to have the very type; any other is converted.
+    An argument passed by reference must have exactly the parameter's type; others are converted.
     """
     for parameter, argument, place, value in given:
         if place is not None:

@@ -1,4 +1,4 @@
-"""Designators: variables, members and elements, the places that they name, and access to these.
+"""Designators: variables, members and elements, the places that they denote, and access to these.
 
 Indices are evaluated from left to right.
 """
@@ -33,22 +33,25 @@ _MOST_SIGNALS = 8
 
 
 class Designators(ABC):
-    """What designators mean in one frame."""
+    """The evaluation of designators in one frame."""
 
     def __init__(self, run: ProgramState, frame: Frame) -> None:
         self.run = run
         self.frame = frame
 
     def at(self) -> At:
-        """Where the statement stands that began last."""
+        """Return the place in the source of the statement that began last."""
         return self.run.at(self.frame)
 
     @abstractmethod
     def value(self, node: ast.Expression, wanted: Type = UNKNOWN) -> Steps[Value]:
-        """The value of an expression, for a place of type ``wanted``; never without a value."""
+        """Return the value of an expression in a context of type ``wanted``; it is never ``None``.
+
+        Faults ``uninitialised`` if there is no value.
+        """
 
     def place(self, node: ast.Expression) -> Steps[Place]:
-        """Where an expression has its value; one that is no variable has a place of its own."""
+        """Return the place of an expression; a value that is no variable gets a temporary place."""
         match node:
             case ast.Variable():
                 found = self.frame.unit.found(node.name)
@@ -65,7 +68,7 @@ class Designators(ABC):
         return LocalPlace([(yield from self.value(node))], UNKNOWN, ())
 
     def element(self, base: Place, nodes: tuple[ast.Expression | None, ...]) -> Steps[Place]:
-        """An element; an index left out, and all behind it, mean the rest of the array."""
+        """Return an element of an array; an omitted index and those after it select the rest."""
         indices: list[int] = []
         for node in nodes:
             if node is None:
@@ -74,16 +77,22 @@ class Designators(ABC):
         return element(base, indices) if indices else base
 
     def variable(self, name: ast.Name) -> Place:
-        """The place of a variable; raises `LinkError` where nothing declares it."""
+        """Return the place of a variable; raise `LinkError` if it is not declared.
+
+        An undeclared name that begins with ``$`` is a system variable of unknown type.
+        """
         found = self.frame.unit.found(name)
         if found is None:
-            if name.key.startswith("$"):  # another release may have it
+            if name.key.startswith("$"):  # another release of KSS may have it
                 return SystemPlace((name.key,), UNKNOWN)
             raise LinkError(self.frame.unit.undeclared(name))
         return self.declared(found)
 
     def declared(self, found: Found, signals: int = 0) -> Place:
-        """The place of what a name means: of a frame, of a data list, or of the world."""
+        """Return the place of a declared variable, in a frame, a data list or the controller.
+
+        ``signals`` counts the signals on the way here, to detect a cycle.
+        """
         found = self.run.program.declaration(found)
         symbol = found.symbol
         if found.scope.routine is not None and not isinstance(symbol, SignalSymbol):
@@ -105,7 +114,10 @@ class Designators(ABC):
         return self.run.data[symbol]
 
     def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> SystemPlace:
-        """What a signal stands for; several bits are ``("$IN", 1, "TO", 8)``, an INT [IOT-03]."""
+        """Return the place that a signal denotes.
+
+        A signal of several bits has a path such as ``("$IN", 1, "TO", 8)`` and is an INT [IOT-03].
+        """
         assert found.module is not None, "the controller's signals are variables"
         unit = self.run.program.units[found.module]
         ends: list[SystemPlace] = []
@@ -118,7 +130,7 @@ class Designators(ABC):
             if isinstance(place, SystemPlace):
                 ends.append(place)
         if not ends:
-            return SystemPlace((symbol.key,), BOOL)  # connected to nothing
+            return SystemPlace((symbol.key,), BOOL)  # neither end denotes a system variable
         if symbol.last is None:
             return replace(ends[0], is_indexed=False)
         return SystemPlace((*ends[0].path, "TO", ends[-1].path[-1]), INT)
@@ -126,7 +138,7 @@ class Designators(ABC):
     # ----------------------------------------------------------------------- access
 
     def read(self, place: Place) -> Steps[Value | None]:
-        """What a place has, if anything."""
+        """Return the value at a place, or ``None`` if it has none."""
         if isinstance(place, LocalPlace):
             return place.get()
         if not is_complete(place.type):
@@ -135,14 +147,14 @@ class Designators(ABC):
         return found
 
     def store(self, place: Place, value: Value) -> Steps[None]:
-        """Assign a value to a place."""
+        """Assign a value to a place, and report the assignment."""
         if isinstance(place, SystemPlace):
             yield Write(self.at(), place.path, of_type(place.type, value))
             return
         old = place.get()
         place.set(value)
         new = place.get()
-        # As text: the numbers 1, 1.0 and TRUE are equal, and so are both zeros.
+        # Compared as text, because 1, 1.0 and TRUE are equal in Python, and so are 0.0 and -0.0.
         if isinstance(new, StructureValue | ArrayValue) or repr(old) != repr(new):
             self.run.changes += 1
         if self.run.assignments is not None:
@@ -151,7 +163,7 @@ class Designators(ABC):
     # ----------------------------------------------------------------------- by text
 
     def look(self, text: str) -> Seen | None:
-        """A variable of the program or a part of one, as `interp.port.inspection` has it."""
+        """Look up a variable of the program, as `interp.port.inspection.Inspectable.look` does."""
         found = self.find(text)
         answer = self.frame.scope.find(
             Space.VALUE, text.partition("[")[0].partition(".")[0].upper()
@@ -165,12 +177,15 @@ class Designators(ABC):
         return Seen(found[0], copied(found[1]), f"{module}.{whole.symbol.key}")
 
     def find(self, text: str) -> tuple[Type, Value | None] | None:
-        """A variable of the program by what it is called here [TYP-18]."""
+        """Return type and value of the variable with this name in the frame [TYP-18].
+
+        Return ``None`` if there is none in the program; system variables are not looked up.
+        """
         place = self.place_of(text)
         return None if place is None else (place.type, place.get())
 
     def place_of(self, text: str) -> LocalPlace | None:
-        """The place of a variable of the program by what it is called here."""
+        """Return the place of the variable with this name in the frame, as `find` does."""
         return find_text(text, self._named)
 
     def _named(self, key: str) -> Place | None:

@@ -1,7 +1,7 @@
-"""The tree interpreter as an executor: a stack of routines that run, each a generator.
+"""The tree interpreter as an executor: a stack of running routines, each a generator.
 
-A call puts a routine on the stack, and so does an interrupt; RESUME takes routines off. Python's
-own stack is only as deep as blocks and expressions nest within one routine.
+A call or an interrupt pushes a routine, and RESUME pops routines. Python's own stack grows only
+with the nesting of blocks and expressions within one routine.
 """
 
 from __future__ import annotations
@@ -36,11 +36,12 @@ from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 
 @dataclass(frozen=True, slots=True)
 class _Interrupted:
-    """What waits for the end of an action.
+    """The state of the executor that an action has interrupted and that its end restores.
 
-    That is the open request, or that RESUME has come back, whether ON_ERROR_PROCEED held, and the
-    end of the program where it has ended, or where RESUME has come back to it: the arm may still be
-    on its way.
+    ``request`` is the open request, ``resumed`` a pending RESUME or block selection, and ``guard``
+    the state of ON_ERROR_PROCEED. ``final`` is set if the program had ended, and
+    ``resumed_at_end`` if RESUME had returned to its end: actions may still run then, because the
+    arm may still move.
     """
 
     request: Request | None
@@ -52,7 +53,7 @@ class _Interrupted:
 
 @dataclass(slots=True, eq=False)
 class _Active:
-    """A routine that runs, or an action, which has what it ``interrupted``."""
+    """A routine or an action on the stack; ``interrupted`` is set for an action."""
 
     steps: Steps[Any]
     frame: Frame
@@ -60,10 +61,10 @@ class _Active:
 
 
 class TreeExecutor:
-    """Runs a checked program from a routine of its first file (`interp.port.executor.Executor`).
+    """Runs a checked program from a routine of its main file (`interp.port.executor.Executor`).
 
-    ``routine`` is the first one where it is not given. ``beside`` is an executor of the same
-    program whose data lists it shares. Raises `LinkError` where it cannot begin.
+    ``routine`` defaults to the first routine. ``beside`` is an executor of the same program, whose
+    data lists this one shares. Raises `LinkError` if the program cannot begin.
     """
 
     def __init__(
@@ -95,11 +96,11 @@ class TreeExecutor:
 
     @property
     def depth(self) -> int:
-        """How many calls deep the program is; 0 in the routine it began with."""
+        """The number of open calls; 0 in the routine that the program began with."""
         return self._run.depth
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the world is needed."""
+        """Run until the controller is needed; see `interp.port.executor.Executor`."""
         if self._resumed_at_end is not None:
             if self._run.returns is not None:
                 self._run.returns.leave(self._at(), self._stack[-1].frame.name)
@@ -113,9 +114,9 @@ class TreeExecutor:
         self._open, self._resumed = None, None
         try:
             request = self._advanced(answer)
-        except RuntimeFailure as error:  # a routine that cannot even begin
+        except RuntimeFailure as error:  # a routine failed before its generator began
             request = Fail(self._at(), error)
-        except Exception as error:  # a defect of ours, which is reported as one
+        except Exception as error:  # a defect of this interpreter, reported as one
             request = Crash(self._at(), f"{type(error).__name__}: {error}")
         if isinstance(request, Fail | Crash):
             self._final = request
@@ -138,13 +139,14 @@ class TreeExecutor:
         self._final = self._resumed_at_end = None
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
-        """The value of a condition; raises `interp.values.faults.Fault`.
+        """Return the value of a condition; raise `interp.values.faults.Fault`.
 
-        What a condition calls may compute and read; `LinkError` where it does more.
+        A function called in the condition may only compute and read; anything else raises
+        `LinkError`.
         """
         handed, guard = self._run.handed(code), self._run.guard
         depth, cells, skips = self._run.depth, self._run.cells, self._run.skips
-        self._run.guard = Guard.OFF  # it holds for a statement, which this is no part of
+        self._run.guard = Guard.OFF  # it applies to statements, not to a condition
         self._run.skips = False
         frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
         node: Any = handed.node
@@ -168,14 +170,14 @@ class TreeExecutor:
         return value
 
     def companion(self, routine: str, sink: Sink | None = None) -> TreeExecutor:
-        """Another executor over the same data lists."""
+        """Return another executor over the same data lists."""
         run = self._run
         return TreeExecutor(run.program, routine, run.limits, sink, run.random, beside=self)
 
     def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``, and what was entered there.
+        """Leave all routines deeper than ``depth``, and the actions that were entered there.
 
-        A program that had come to its end before comes there again.
+        A program that had already ended then ends again.
         """
         while self._run.depth > depth or self._stack[-1].interrupted is not None:
             active = self._stack.pop()
@@ -189,19 +191,19 @@ class TreeExecutor:
 
     @property
     def begun(self) -> int:
-        """How many statements have begun."""
+        """The number of statements that have begun."""
         return self._run.begun
 
     def ask_at(self, count: int) -> None:
-        """The slice that has begun ends once so many statements have begun altogether."""
+        """End the present slice once ``count`` statements have begun; see `Inspectable`."""
         self._run.due = count
 
     def break_at(self, places: Breaks) -> bool:
-        """Ask for time before statements that begin in these lines: not this interpreter."""
+        """Return whether there are no breakpoints: this interpreter does not support them."""
         return not places
 
     def frames(self) -> tuple[StackFrame, ...]:
-        """What is open; see `interp.port.inspection`."""
+        """Return the call stack; see `interp.port.inspection`."""
         found: list[StackFrame] = []
         depth = self._run.depth
         for active in reversed(self._stack):
@@ -212,18 +214,18 @@ class TreeExecutor:
         return tuple(found)
 
     def look(self, text: str, frame: int = 0) -> Seen | None:
-        """A variable where the program is; see `interp.port.inspection`."""
+        """Look up a variable in a frame; see `interp.port.inspection`."""
         return Statements(self._run, self._stack[-1 - frame].frame).look(text)
 
     def put(self, text: str, value: Value, frame: int = 0) -> None:
-        """Give a variable a value; see `interp.port.inspection`."""
+        """Assign a value to a variable; see `interp.port.inspection`."""
         place = Statements(self._run, self._stack[-1 - frame].frame).place_of(text)
         if place is None:
             raise LinkError(f"{text} is not known here")
         place.set(value)
 
     def select(self, line: int) -> None:
-        """Continue at a line of the routine that runs; see `interp.port.inspection`."""
+        """Continue at a line of the running routine; see `interp.port.inspection`."""
         frame = self._stack[-1].frame
         routine = routine_at(self._run.program, frame.unit.module.path, frame.name)
         way = () if routine is None else way_to(routine, line)
@@ -235,7 +237,7 @@ class TreeExecutor:
     # ----------------------------------------------------------------------- the stack
 
     def _advanced(self, reply: Any) -> Request:
-        """Continue with the routine on top until something asks, or nothing is left to run."""
+        """Run the routine on top of the stack until it makes a request or the stack has ended."""
         while True:
             active = self._stack[-1]
             try:
@@ -257,7 +259,7 @@ class TreeExecutor:
             reply = self._called(asked, self._stack)
 
     def _called(self, call: Call, stack: list[_Active]) -> Fault | None:
-        """Put a routine on the stack, or give the fault that there is no room for it."""
+        """Push a routine; return ``None``, or a fault if the stack or the memory is full."""
         run = self._run
         is_full = run.cells + run.size_of(call.routine) > MOST_CELLS
         if is_full or run.depth >= run.limits.depth:
@@ -282,9 +284,10 @@ class TreeExecutor:
         return _Active(Statements(self._run, frame).routine(routine.node), frame)
 
     def _is_for_caller(self, active: _Active, error: RuntimeFailure) -> bool:
-        """Whether a routine faults before its first statement began, so that its caller's did.
+        """Return whether a failure of a called routine is a failure of the calling statement.
 
-        Where failures are skipped, also that of a function that has come to its end.
+        This is so if the routine faults before its first statement. If failures are skipped, it is
+        also so for a function that ends without a result.
         """
         run = self._run
         if not isinstance(error, Fault) or active.interrupted is not None or len(self._stack) == 1:
@@ -295,14 +298,14 @@ class TreeExecutor:
         )
 
     def _left(self, active: _Active) -> None:
-        """A routine or an action is no longer on the stack."""
+        """Update the state after a routine or an action was popped from the stack."""
         if active.interrupted is None:
             self._run.depth -= 1
             self._run.cells -= active.frame.cells
             active.frame.forget()
 
     def _ended(self, active: _Active) -> Request:
-        """An action has ended, or the program."""
+        """Return the `End` of an action or the program; restore what an action interrupted."""
         end = End(self._at())
         if active.interrupted is None:
             self._final = end
@@ -318,7 +321,7 @@ class TreeExecutor:
         return self._run.at(self._stack[-1].frame)
 
     def _looked_up(self, asked: Request | Call, read: Reader, stack: list[_Active]) -> Any:
-        """What a condition is answered."""
+        """Return the reply to a request, or start the call, that a condition makes."""
         match asked:
             case Call():
                 return self._called(asked, stack)
@@ -333,5 +336,5 @@ class TreeExecutor:
 
 
 def _sent(steps: Steps[Any], reply: Any) -> Request | Call:
-    """Continue with the reply, or with what is raised where the routine waits."""
+    """Resume a generator with a reply, or with an exception to be raised in it."""
     return steps.throw(reply) if isinstance(reply, Exception) else steps.send(reply)

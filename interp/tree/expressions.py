@@ -1,7 +1,7 @@
 """Expressions: the values of literals, operators and aggregates.
 
-Everything is a generator, as any variable may be one of the world's, and any call may move the arm
-(see `interp.tree.run`). Operands are evaluated from left to right.
+Every evaluation is a generator, because any variable may be a system variable and any call may move
+the arm (see `interp.tree.run`). Operands are evaluated from left to right.
 """
 
 from __future__ import annotations
@@ -36,12 +36,13 @@ from interp.values.values import (
 
 
 class Expressions(Designators):
-    """What expressions are in one frame."""
+    """The evaluation of expressions in one frame."""
 
     def value(self, node: ast.Expression, wanted: Type = UNKNOWN) -> Steps[Value]:
-        """The value of an expression, for a place of type ``wanted``; never without a value.
+        """Return the value of an expression in a context of type ``wanted``; it is never ``None``.
 
-        A structure or array is the variable's own: who keeps it copies it.
+        A structure or array is the one that the variable holds: to keep it, copy it. Faults
+        ``uninitialised`` if there is no value.
         """
         rule = _VALUES.get(type(node))
         if rule is not None:
@@ -49,27 +50,27 @@ class Expressions(Designators):
         return known((yield from self.read((yield from self.place(node)))))
 
     def truth(self, node: ast.Expression) -> Steps[bool]:
-        """A condition."""
+        """Return the value of a condition; fault ``operand`` if it is not a BOOL."""
         found = yield from self.value(node, BOOL)
         if not isinstance(found, bool):
             raise fault("operand")
         return found
 
     def integer(self, node: ast.Expression) -> Steps[int]:
-        """A number as INT."""
+        """Return the value of an expression converted to INT."""
         found = converted((yield from self.value(node, INT)), INT)
         assert isinstance(found, int), "converted"
         return found
 
     def real(self, node: ast.Expression) -> Steps[float]:
-        """A number as REAL."""
+        """Return the value of an expression converted to REAL."""
         found = converted((yield from self.value(node, REAL)), REAL)
         assert isinstance(found, float), "converted"
         return found
 
     def _literal(self, node: Any, _wanted: Type) -> Steps[Value]:
         return LITERALS[type(node)](node)
-        yield  # a generator as all are
+        yield  # makes this a generator like the other rules
 
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Steps[Value]:
         return enumeration_constant(self.frame.unit, node, wanted)
@@ -105,7 +106,7 @@ class Expressions(Designators):
 
     @abstractmethod
     def called(self, node: ast.Call) -> Steps[Value]:
-        """The value of a function."""
+        """Call a function and return its value."""
 
 
 _Rule = Callable[[Expressions, Any, Type], Steps[Value]]

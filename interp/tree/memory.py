@@ -1,6 +1,6 @@
-"""The data lists of a program: their variables with the values they have at first.
+"""The data lists of a program: their variables and the initial values of these.
 
-They live as long as the program, unlike the data of routines [SCO-03].
+Data lists live as long as the program, unlike the data of routines [SCO-03].
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from interp.values.values import Value, copied
 
 @dataclass(slots=True)
 class _Data:
-    """The variables of all data lists, and how many scalars they can hold."""
+    """The variables of all data lists, and the number of scalars in them."""
 
     places: dict[Symbol, LocalPlace] = field(default_factory=dict)
     cells: int = 0
 
 
-#: What is in the data lists at first, which is worked out once for each project.
+#: The data lists with their initial values, computed once for each project.
 _FILLED: WeakKeyDictionary[Project, _Data] = WeakKeyDictionary()
 
 
 def fill_data(run: ProgramState) -> None:
-    """Make the variables of all data lists.
+    """Create the variables of all data lists with their initial values.
 
-    Raises `LinkError` where an initial value cannot be had. Those whose names begin
-    with a dollar sign are made as well, but it is the world that has them when the program runs.
+    System variables that a data list declares are created too, but at run time the controller holds
+    them. Raises `LinkError` if an initial value cannot be computed.
     """
     filled = _filled(run.program)
     run.cells = filled.cells
@@ -49,7 +49,7 @@ def fill_data(run: ProgramState) -> None:
 
 
 def system_values(program: CheckedProgram) -> Mapping[str, Value]:
-    """What the data lists give the controller's own variables at first, by name in upper case."""
+    """Return the initial values that data lists give to system variables, by name in upper case."""
     found = {symbol.key: place.get() for symbol, place in _filled(program).places.items()}
     return {
         key: copied(value)
@@ -82,7 +82,10 @@ def _declare(data: _Data, program: CheckedProgram, unit: Unit) -> None:
 
 
 def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
-    """Where errors are no obstacle, what cannot be had is left without a value."""
+    """Assign the initial values of a data list.
+
+    If the program was loaded without ``strict``, values that cannot be computed are left out.
+    """
     scope = run.program.project.scope(unit.module)
     frame = Frame(unit, content.name.text, scope, {}, None, 0)
     inside = _DataList(run, frame)
@@ -95,15 +98,15 @@ def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
 
 
 class _DataList(Calls):
-    """The values of a data list."""
+    """The evaluation of expressions in a data list."""
 
     def declared(self, found: Found, signals: int = 0) -> Place:
-        """The place of a variable; in data lists the controller's own are variables like others."""
+        """Return the place of a variable; a system variable of a data list is an ordinary one."""
         place = self.run.data.get(found.symbol)
         return place if place is not None else super().declared(found, signals)
 
     def give(self, target: ast.Expression, value: ast.Expression) -> None:
-        """Give a variable or an element of one its first value."""
+        """Assign its initial value to a variable or to an element of one."""
         place = at_once(self.place(target))
         if not isinstance(place, LocalPlace):
             raise LinkError("a value is given to what is declared elsewhere")

@@ -1,6 +1,6 @@
-"""Motions, triggers, interrupts and cyclic signals: statements that only ask the world.
+"""Motions, triggers, interrupts and cyclic signals: statements that only make requests.
 
-What is to be done or looked at later is handed over as a `interp.port.requests.CodeHandle`.
+Conditions and actions for later are passed as a `interp.port.requests.CodeHandle`.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from interp.values.values import Value, copied, text_of
 
 
 class Motions(Calls):
-    """The statements that ask the world to do something."""
+    """The execution of statements that make requests to the controller."""
 
     # ----------------------------------------------------------------------- motions
 
     def motion(self, node: ast.Motion) -> Steps[None]:
-        """PTP, LIN, CIRC and all others."""
+        """Request a motion: PTP, LIN, CIRC and all other kinds."""
         yield (yield from self._move(node))
 
     def _move(self, node: ast.Motion) -> Steps[Move]:
@@ -56,7 +56,7 @@ class Motions(Calls):
         return None if node is None else (yield from self.real(node))
 
     def _values(self, nodes: tuple[ast.Assignment, ...]) -> Steps[tuple[tuple[Path, Value], ...]]:
-        """What stands behind WITH [SPL-08]."""
+        """Return the assignments after WITH [SPL-08]."""
         found = []
         for node in nodes:
             place = yield from self.place(node.target)
@@ -67,14 +67,14 @@ class Motions(Calls):
         return tuple(found)
 
     def emily_motion(self, node: ast.EmilyMotion) -> Steps[None]:
-        """MOVE_EMI."""
+        """Request the motion of MOVE_EMI."""
         device = text_of((yield from self.value(node.device)))
         action = text_of((yield from self.value(node.action)))
         number = yield from self._optional(node.number)
         yield MoveEmily(self.at(), device, action, number)
 
     def spline_block(self, node: ast.SplineBlock) -> Steps[None]:
-        """SPLINE: what stands in it is evaluated first, then planned as one motion [SPL-01]."""
+        """Evaluate all items of a spline block, then request it as one motion [SPL-01]."""
         values = yield from self._values(node.values)
         first, items = self.frame.line, []
         for item in node.items:
@@ -103,7 +103,7 @@ class Motions(Calls):
     # ----------------------------------------------------------------------- triggers
 
     def trigger(self, node: ast.Trigger) -> Steps[None]:
-        """TRIGGER."""
+        """Set a trigger of the next motion."""
         yield (yield from self._set_trigger(node))
 
     def _set_trigger(self, node: ast.Trigger) -> Steps[SetTrigger]:
@@ -119,7 +119,10 @@ class Motions(Calls):
     def _output(
         self, action: ast.Assignment | ast.CallStatement
     ) -> Steps[tuple[Path, Value] | None]:
-        """The assignment of a literal to a system variable with literal indices, if it is one."""
+        """Return the action as (path, value) if it assigns a constant to a system variable.
+
+        The indices of the target must be literals too. Return ``None`` for any other action.
+        """
         if not isinstance(action, ast.Assignment) or not is_constant_output(action):
             return None
         place = yield from self.place(action.target)
@@ -131,21 +134,21 @@ class Motions(Calls):
     # ----------------------------------------------------------------------- interrupts
 
     def interrupt_declaration(self, node: ast.InterruptDeclaration) -> Steps[None]:
-        """INTERRUPT DECL [INT-01]."""
+        """Declare an interrupt [INT-01]."""
         number = yield from self.integer(node.number)
         condition = self.run.hand(node.condition, self.frame)
         action = self.run.hand(node.action, self.frame)
         yield DeclareInterrupt(self.at(), number, node.is_global, condition, action)
 
     def interrupt_switch(self, node: ast.InterruptSwitch) -> Steps[None]:
-        """INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
+        """Switch interrupts: ON, OFF, ENABLE, DISABLE [INT-07]."""
         number = None if node.number is None else (yield from self.integer(node.number))
         yield SwitchInterrupt(self.at(), node.action, number)
 
     # ----------------------------------------------------------------------- cyclic signals
 
     def signal_on(self, node: ast.SignalOn) -> Steps[None]:
-        """ANIN ON, ANOUT ON, DIGIN ON [IOT-05, IOT-09]."""
+        """Execute ANIN ON, ANOUT ON or DIGIN ON [IOT-05, IOT-09]."""
         source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
         name = self._signal_name(source)
         delay = yield from self._optional(node.delay)
@@ -155,12 +158,12 @@ class Motions(Calls):
         yield SwitchSignal(*(self.at(), node.keyword, True, name, cycle, delay, minimum, maximum))
 
     def signal_off(self, node: ast.SignalOff) -> Steps[None]:
-        """ANIN OFF, ANOUT OFF, DIGIN OFF."""
+        """Execute ANIN OFF, ANOUT OFF or DIGIN OFF."""
         name = self._signal_name(node.variable)
         yield SwitchSignal(*(self.at(), node.keyword, False, name, None, None, None, None))
 
     def _signal_name(self, node: ast.Expression) -> str:
-        """The signal that is meant, by its name here."""
+        """Return the name of the signal in an expression, as it is in this file."""
         name = signal_name(self.frame.unit, node)
         if name is None:
             raise LinkError("nothing says which signal is meant")

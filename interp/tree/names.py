@@ -1,4 +1,4 @@
-"""Variables by a text that names them, as VARSTATE and VARTYPE are given it [TYP-18]."""
+"""Look-up of variables by their name as text, as VARSTATE and VARTYPE receive it [TYP-18]."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _STEP = re.compile(r"(\.?)(\w+)|\[([\s\d,]*)\]", re.ASCII)
 
 
 def find_text(text: str, find: Callable[[str], Place | None]) -> LocalPlace | None:
-    """The place of a variable of the program or a part of one, ``None`` without one.
+    """Return the place of the variable, or part of one, that ``text`` names; ``None`` if unknown.
 
-    An array may have empty brackets. ``find`` gives the place of a variable by its name in upper
-    case; variables of the world are not looked up.
+    The name of an array may end in empty brackets. ``find`` returns the place of a variable by its
+    name in upper case. System variables are not looked up.
     """
     match = _WRITTEN.fullmatch(text)
     if match is None:

@@ -1,8 +1,8 @@
-"""Storage locations: places of the program's own data, and system variables.
+"""Storage locations: places in the program's own data, and system variables.
 
-A `LocalPlace` is an element of a list: of the one cell of a variable, of the members of a
-structure, of the elements of an array. So a reference to a part is a place like any
-other, and what is passed :OUT is the place itself [SCO-06].
+A `LocalPlace` is an element of a list: of the single cell of a variable, of the members of a
+structure, or of the elements of an array. So a reference to a part is a place like any other, and
+an argument passed :OUT is passed as its place [SCO-06].
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from interp.values.values import (
 
 @dataclass(frozen=True, slots=True)
 class LocalPlace:
-    """A place of the program. ``path`` is what the routine that uses it calls it."""
+    """A place in the program's data; ``path`` is its name in the routine that uses it."""
 
     parts: list[Any]
     type: Type
@@ -36,12 +36,12 @@ class LocalPlace:
     at: int = 0
 
     def get(self) -> Value | None:
-        """What is there, if anything."""
+        """Return the value at the place, or ``None`` if it has none."""
         found: Value | None = self.parts[self.at]
         return found
 
     def set(self, value: Value) -> None:
-        """Convert and copy a value into the place; faults `inadmissible`, `overflow`."""
+        """Convert and copy a value into the place; faults ``inadmissible``, ``overflow``."""
         old = self.parts[self.at]
         if isinstance(old, ArrayValue) and isinstance(value, ArrayValue):
             _check_elements(old, value)
@@ -55,7 +55,7 @@ class LocalPlace:
 class SystemPlace:
     """A system variable or a part of one, which the controller reads and writes.
 
-    ``is_indexed`` where the program has worked out an index in the path.
+    ``is_indexed`` is set if the program computed an index in the path.
     """
 
     path: Path
@@ -67,14 +67,14 @@ Place = LocalPlace | SystemPlace
 
 
 def _check_elements(target: ArrayValue, value: ArrayValue) -> None:
-    """Arrays are filled from such of the same elements: nothing is converted one by one."""
+    """Raise `LinkError` if the element types differ: array assignment converts no elements."""
     of, given = target.type.element, value.type.element
     if of != given and len(target.sizes) == len(value.sizes):
         raise LinkError(f"an array of {given} fills one of {of}")
 
 
 def of_type(type_: Type, value: Value) -> Value:
-    """A copy of a value, converted as far as the type it is for is known."""
+    """Return a copy of a value, converted to a type as far as the type is known."""
     if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
         kept: Value = copied(value)
         return kept
@@ -82,13 +82,13 @@ def of_type(type_: Type, value: Value) -> Value:
 
 
 def fresh(type_: Type, name: str) -> LocalPlace:
-    """A variable without a value."""
+    """Return the place of a new variable without a value."""
     is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
     return LocalPlace([None if is_open else empty(type_)], type_, (name,))
 
 
 def is_left_out(place: Place) -> bool:
-    """Whether it is an array parameter ``X[]`` that the caller left out, so that it has no size."""
+    """Return whether a place is an array parameter ``X[]`` that the caller omitted."""
     return (
         isinstance(place, LocalPlace)
         and isinstance(place.type, Array)
@@ -98,7 +98,7 @@ def is_left_out(place: Place) -> bool:
 
 
 def sized(type_: Type, value: Value) -> Type:
-    """The type of a formal array ``X[]``, which has its sizes from what it receives."""
+    """Return the type of a formal array ``X[]`` with the sizes of its argument."""
     if isinstance(type_, Array) and None in type_.sizes:
         if isinstance(value, ArrayValue):
             return Array(type_.element, value.sizes)
@@ -108,7 +108,7 @@ def sized(type_: Type, value: Value) -> Type:
 
 
 def member(base: Place, name: str) -> Place:
-    """``base.name``; faults `uninitialised` where there is nothing to take it of."""
+    """Return the place of ``base.name``; faults ``uninitialised`` if ``base`` has no value."""
     key = name.upper()
     if isinstance(base, SystemPlace):
         known = base.type.member(key) if isinstance(base.type, Structure) else None
@@ -123,7 +123,10 @@ def member(base: Place, name: str) -> Place:
 
 
 def element(base: Place, indices: Sequence[int]) -> Place:
-    """``base[indices]``, or what is left of an array; faults `index`, `uninitialised`."""
+    """Return the place of ``base[indices]``, or of a part of an array if indices are missing.
+
+    Faults ``index``, and ``uninitialised`` if ``base`` has no value.
+    """
     path = (*base.path, *indices)
     if isinstance(base, SystemPlace):
         is_whole = isinstance(base.type, Array) and len(base.type.sizes) == len(indices)

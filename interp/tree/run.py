@@ -1,7 +1,8 @@
-"""State shared by all routines of a running program, and the frame of each.
+"""State shared by all routines of a running program, and the frame of each routine.
 
-Executing a routine is a generator: it yields a request and is sent the reply, and it yields a
-`Call` and is sent the result. So calls do not nest in Python, however deep they are in KRL.
+The execution of a routine is a generator: it yields a request and receives the reply, and it yields
+a `Call` and receives the result. So calls do not nest on Python's stack, however deep they are in
+KRL (a trampoline).
 """
 
 from __future__ import annotations
@@ -26,22 +27,23 @@ from interp.values.faults import LinkError
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Call:
-    """A routine is to be called with its parameters; what is sent back is its result."""
+    """A call of a routine with the places of its parameters; the reply is the result."""
 
     routine: Routine
     variables: dict[Symbol, Place]
 
 
 _T = TypeVar("_T")
-#: What execution is: asks and calls on the way, and has a result.
+#: An execution: it yields requests and calls, and returns a result.
 Steps = Generator[Request | Call, Any, _T]
 
 
 @dataclass(slots=True, eq=False)
 class Frame:
-    """A routine that runs, or an action or condition in the frame it was made in.
+    """The frame of a running routine, or of an action or condition that was defined in one.
 
-    ``variables`` are parameters and local data. ``line`` is that of the statement that began last.
+    ``variables`` are the parameters and local data. ``line`` is that of the statement that began
+    last, ``cells`` the number of scalars in the variables.
     """
 
     unit: Unit
@@ -54,29 +56,29 @@ class Frame:
     has_begun: bool = False
 
     def forget(self) -> None:
-        """The routine ends, so that an action that outlives it does not find its variables.
+        """Remove the variables when the routine ends: an action that outlives it must not use them.
 
-        Parameters that stand for a system variable do so still, if no index was worked out for it.
+        A parameter that refers to a system variable stays, unless an index was computed for it.
         """
         for symbol, place in list(self.variables.items()):
             if not isinstance(place, SystemPlace) or place.is_indexed:
                 del self.variables[symbol]
 
     def for_code(self, line: int) -> Frame:
-        """A frame for a piece of this routine that is run apart."""
+        """Return a frame for an action or condition defined in this routine."""
         return Frame(self.unit, self.name, self.scope, self.variables, None, line)
 
 
 @dataclass(frozen=True, slots=True)
 class Handed:
-    """What a `CodeHandle` stands for."""
+    """The code that a `CodeHandle` refers to, with the frame in which it was defined."""
 
     node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
     frame: Frame
 
 
 class Guard(Enum):
-    """Whether ON_ERROR_PROCEED holds: for the statement that begins next, or for the one now."""
+    """Whether ON_ERROR_PROCEED applies: to the next statement, or to the present one."""
 
     OFF = 0
     NEXT = 1
@@ -84,7 +86,7 @@ class Guard(Enum):
 
 
 class Round(NamedTuple):
-    """What holds where a loop, or a GOTO to a label, is back at its place."""
+    """The state when a loop, or a GOTO to a label, comes back to its place."""
 
     place: object
     changes: int
@@ -93,12 +95,13 @@ class Round(NamedTuple):
 
 
 class ProgramState:
-    """The state of a program apart from its frames.
+    """The state of a running program apart from its frames.
 
-    ``depth`` is how many calls deep it is, ``cells`` how many scalars its variables can hold. The
-    sink is there once for each kind of event, where it wants that kind. ``begun`` are the
-    statements that have begun, ``due`` is when as many have begun as end the slice. ``changes``
-    counts what sets a round of a loop apart from the last: new values, requests, chance, events.
+    ``depth`` is the number of open calls, ``cells`` the number of scalars in all variables. The
+    attributes ``lines``, ``assignments``, ``calls``, ``returns`` and ``branches`` are the sink if
+    it receives that kind of event, else ``None``. ``begun`` is the number of statements that have
+    begun; the slice ends when it reaches ``due``. ``changes`` counts everything that makes one pass
+    of a loop differ from the previous one: new values, requests, random numbers, events.
     """
 
     def __init__(
@@ -127,11 +130,11 @@ class ProgramState:
         self._numbers: dict[tuple[ast.Node, Frame], int] = {}
 
     def at(self, frame: Frame) -> At:
-        """Where the program is."""
+        """Return the place that the program has reached in a frame."""
         return At(frame.unit.module.path, frame.line, self.depth)
 
     def begin(self, frame: Frame, line: int) -> Steps[None]:
-        """A statement begins: it is counted and reported, and time may pass before it."""
+        """Count and report a statement that begins; request a `Slice` first if one is due."""
         frame.line, frame.has_begun = line, True
         self.guard = Guard.NOW if self.guard is Guard.NEXT else Guard.OFF
         if self.begun >= self.limits.statements:
@@ -143,20 +146,21 @@ class ProgramState:
             self.lines.line(self.at(frame))
 
     def asked(self) -> None:
-        """A request was made: a new slice begins."""
+        """Begin a new slice, after any request."""
         self.due = self.begun + self.limits.per_slice
         self.changes += 1
 
     def random(self) -> float:
-        """The next number by chance."""
+        """Return the next random number, in [0, 1)."""
         self.changes += 1
         return self._random()
 
     def again(self, place: object, last: Round | None) -> Round:
-        """A loop is back at a place: where a round has changed nothing, neither will the next.
+        """Note that a loop is back at a place, and skip the passes that would change nothing.
 
-        All whole rounds that are left in the slice then count as begun, so that the requests and
-        the statement at which the budget ends are the same.
+        If nothing has changed since ``last``, no later pass changes anything before the slice ends.
+        All whole passes that fit into the slice are counted as begun, so that the requests stay the
+        same, and so does the statement at which the budget ends.
         """
         is_shown = self.lines is not None or self.assignments is not None
         now = Round(place, self.changes, self.guard, self.begun)
@@ -167,7 +171,7 @@ class ProgramState:
         return now
 
     def size_of(self, routine: Routine) -> int:
-        """How many cells the parameters and local data of a routine have."""
+        """Return the number of scalars in the parameters and local data of a routine."""
         size = self._sizes.get(routine)
         if size is None:
             size = self._sizes[routine] = cells_of_routine(self.program, routine)
@@ -176,19 +180,19 @@ class ProgramState:
     def hand(
         self, node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake, frame: Frame
     ) -> CodeHandle:
-        """A piece of program to be run later, in this frame; always the same for the same."""
+        """Return the handle of code that is to run later in this frame; equal for equal code."""
         number = self._numbers.setdefault((node, frame), len(self._codes))
         if number == len(self._codes):
             self._codes.append(Handed(node, frame))
         return CodeHandle(number)
 
     def handed(self, code: CodeHandle) -> Handed:
-        """What a `CodeHandle` stands for."""
+        """Return the code that a handle refers to."""
         return self._codes[code.number]
 
 
 def at_once(steps: Steps[_T]) -> _T:
-    """The result of what needs no world; raises `LinkError` where it does."""
+    """Return the result of an execution without requests; raise `LinkError` if it makes one."""
     try:
         next(steps)
     except StopIteration as done:

@@ -1,8 +1,8 @@
-"""Statements: control flow by exceptions, as in the paper, and all that is no motion.
+"""Statements: control flow, implemented by exceptions, and all statements that are no motion.
 
-GOTO, EXIT and RETURN are raised where they stand and caught where they lead. RESUME is raised by
-the executor in the statement that the program comes back to, which then ends. A fault ends the
-statement that began last where ON_ERROR_PROCEED holds, and the program where it does not.
+GOTO, EXIT and RETURN raise an exception that the target block, loop or routine catches. The
+executor raises RESUME in the statement to which the program returns, which ends that statement. A
+fault ends only the present statement if ON_ERROR_PROCEED applies to it, else the program.
 """
 
 from __future__ import annotations
@@ -26,32 +26,32 @@ from interp.values.values import Value, converted, known
 
 
 @dataclass(slots=True, eq=False)
-class _Goto(Exception):  # none of these is an error
-    """GOTO on its way to the block that has the label [CTL-07]."""
+class _Goto(Exception):  # these exceptions are control flow, not errors
+    """GOTO, on its way to the block with the label [CTL-07]."""
 
     label: str
 
 
 class _Exit(Exception):
-    """EXIT on its way to the innermost loop [CTL-02]."""
+    """EXIT, on its way to the innermost loop [CTL-02]."""
 
 
 @dataclass(slots=True, eq=False)
 class _Return(Exception):
-    """RETURN on its way out of the routine [CTL-09]."""
+    """RETURN, on its way out of the routine [CTL-09]."""
 
     value: Value | None
 
 
 class Resumed(Exception):
-    """The program comes back here by RESUME, and continues behind the statement [INT-10]."""
+    """RESUME has returned the program to this statement; it continues after it [INT-10]."""
 
 
 @dataclass(slots=True, eq=False)
 class Selected(Exception):
-    """The program continues elsewhere in the routine by block selection [ADV-14].
+    """Block selection: the program continues elsewhere in the routine [ADV-14].
 
-    ``way`` are the blocks around the statement, and the statement.
+    ``way`` has the blocks around the selected statement, outermost first, and the statement.
     """
 
     way: tuple[ast.Statement, ...]
@@ -76,10 +76,10 @@ def _left_by_exit(
 
 
 class Statements(Motions):
-    """Executes the statements of one frame.
+    """The execution of the statements of one frame.
 
-    ``_way`` is empty but on the way to a statement that was selected. ``_blocks`` are those being
-    executed, from the outermost on, and ``_loops`` how many loops are.
+    ``_way`` is empty except on the way to a selected statement. ``_blocks`` are the open blocks,
+    outermost first, and ``_loops`` is the number of open loops.
     """
 
     _way: tuple[ast.Statement, ...] = ()
@@ -87,7 +87,7 @@ class Statements(Motions):
     _loops = 0
 
     def routine(self, node: ast.Routine) -> Steps[Value | None]:
-        """Execute a routine to its end; gives its result."""
+        """Execute a routine to its end, and return its result."""
         self._declare(node)
         value: Value | None = None
         try:
@@ -102,11 +102,11 @@ class Statements(Motions):
         return value
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> Steps[None]:
-        """Execute what an interrupt, a trigger or a cyclic signal does."""
+        """Execute the action of an interrupt, a trigger or a cyclic signal."""
         yield from self._statement(node)
 
     def _declare(self, node: ast.Routine) -> None:
-        """Make the local data, which has no value at first."""
+        """Create the local variables, with their initial values if they have any."""
         for statement in node.body:
             if isinstance(statement, ast.VariableDeclaration):
                 for declarator in statement.declarators:
@@ -117,7 +117,7 @@ class Statements(Motions):
         if found is None or found.symbol in self.frame.variables:  # a parameter
             return
         type_ = self.run.program.type_of(found)
-        if not is_complete(type_):  # it fails where it is used
+        if not is_complete(type_):  # a statement that uses it fails
             return
         place = fresh(type_, declarator.name.key)
         self.frame.variables[found.symbol] = place
@@ -149,11 +149,11 @@ class Statements(Motions):
             self._blocks = around
 
     def _place_on_way(self, body: tuple[ast.Statement, ...]) -> int:
-        """Which statement of a block leads to the one selected, or -1."""
+        """Return the index of the statement that leads to the selected one, or -1."""
         return next((place for place, one in enumerate(body) if one in self._way), -1)
 
     def _is_entered(self, node: ast.Statement) -> bool:
-        """Whether a block is only entered, on the way to what was selected in it."""
+        """Return whether a block is only entered, on the way to the selected statement in it."""
         if self._way[-1:] == (node,):
             self._way = ()
         return node in self._way
@@ -187,7 +187,7 @@ class Statements(Motions):
             self.run.branches.branch(self.at(), way)
 
     def _is_true(self, condition: ast.Expression) -> Steps[bool]:
-        """A condition that the way depends on."""
+        """Evaluate the condition of a branch, and report which way the program takes."""
         found = yield from self.truth(condition)
         self._branch(int(found))
         return found
@@ -300,7 +300,7 @@ class Statements(Motions):
         yield from self.call(node.call, is_value=False)
 
     def _request(self, node: ast.Statement) -> Steps[None]:
-        """A statement that only makes a request."""
+        """Execute a statement that only makes a request."""
         made = STATEMENT_REQUESTS[type(node)]
         parts: list[Any] = []
         for part in made.parts:
@@ -316,14 +316,14 @@ class Statements(Motions):
         yield
 
     def _wait_for(self, node: ast.WaitFor) -> Steps[None]:
-        """Asked before each look at the condition, so that time passes between two [CTL-12]."""
+        """WAIT FOR: make a request before each evaluation, so that time passes [CTL-12]."""
         yield Poll(self.at(), is_first=True)
         while not (yield from self.truth(node.condition)):
             yield Poll(self.at(), is_first=False)
 
 
 def _place_of(label: str, body: tuple[ast.Statement, ...]) -> int:
-    """Where a label stands in a block, or -1."""
+    """Return the index of a label in a block, or -1."""
     for place, statement in enumerate(body):
         if isinstance(statement, ast.Label) and statement.name.key == label:
             return place
