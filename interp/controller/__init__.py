@@ -1,7 +1,7 @@
 """The controller: clock, advance run, motion queue, interrupts, triggers, submit, I/O, variables.
 
-`Controller` runs a program on a virtual clock; `Trace` records what happened, `Script` describes
-what happens around it, `Profile` the release of the controller.
+`Controller` runs a program on a virtual clock. `Trace` records the events of the run, `Script`
+describes the inputs and the operator, `Profile` the release of the controller software.
 """
 
 from interp.controller.controller import Controller

@@ -1,4 +1,4 @@
-"""A controller: the parts that run a program on one virtual clock, put together."""
+"""The controller: all its parts, connected to run a program on one virtual clock."""
 
 from __future__ import annotations
 
@@ -45,17 +45,19 @@ from interp.robot.kinematics.machine_data import MachineData
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-#: Of all waits the longest are reported, each with its first variables.
+#: The number of longest waits that are reported, and of variables that each shows.
 _MOST_WAITS, _MOST_NAMES = 5, 4
-#: How long a WAIT SEC has to last, in µs, for a program to count as one that pauses.
+#: A WAIT SEC that lasts at least this long, in µs, counts as a pause of the program.
 _PAUSE = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
 class ArmState:
-    """The time in µs, the motion under way, and how many have not ended and have ended.
+    """The state of the arm.
 
-    ``running`` is the line of the motion that has started last, ``None`` while the arm has none.
+    ``time`` is in µs. ``running`` is the line of the motion that started last, ``None`` if the arm
+    has no motion. ``waiting`` and ``ended`` are the numbers of motions that have not ended and that
+    have ended.
     """
 
     time: int
@@ -65,13 +67,15 @@ class ArmState:
 
 
 class Controller:
-    """Runs a program, and a submit program beside it.
+    """Runs a program, with a submit program beside it if there is one.
 
-    ``executor`` has the program; its sink is ``sink`` (`Trace.sink`), so that its events get into
-    ``trace``, and likewise for ``submit``. ``core`` makes the control core, given what switches
-    outputs: ``lambda switch: ControlCore(arm, switch, cycle=1)``. ``machine`` is that of the arm,
-    for Status and Turn; ``values`` are those that data lists give system variables at first;
-    ``tracking`` sends the set-points to a robot and measures where it is. Raises `ScriptError`.
+    ``executor`` runs the program and reports its events to ``sink`` (`Trace.sink`), which writes
+    them to ``trace``; likewise ``submit``. ``core`` creates the control core from the function that
+    switches outputs: ``lambda switch: ControlCore(arm, switch, cycle=1)``. ``machine`` has the
+    machine data of the arm, for Status and Turn. ``values`` are the initial values that data lists
+    give to system variables. ``tracking`` sends the set-points to a robot and measures where it is.
+
+    Raises `ScriptError`.
     """
 
     def __init__(
@@ -151,23 +155,23 @@ class Controller:
 
     @property
     def points(self) -> list[PlannedPoint]:
-        """The end points of all motions that were planned and do not end where they start."""
+        """The end points of all planned motions, except those that end where they start."""
         return self._queue.points
 
     @property
     def arm(self) -> ArmState:
-        """What the arm does now."""
+        """The present state of the arm."""
         waiting = self._queue.pending
         running = self._queue.running if waiting else None
         return ArmState(self._state.clock.now, running, waiting, self._queue.ended)
 
     def levels(self, task: TaskName) -> list[tuple[LevelKind, int]]:
-        """What runs on top of a program, the outermost first: its kind and priority."""
+        """Return what runs on top of a program, outermost first, each as (kind, priority)."""
         found = (one for one in self._scheduler.tasks if one.name == task)
         return [(level.kind, level.priority) for one in found for level in one.levels]
 
     def look(self, path: Path) -> Value:
-        """The value of a system variable, without any side effect; raises `Fault`."""
+        """Return the value of a system variable, without side effects; raise `Fault`."""
         before = self.variables.has_read_changing
         try:
             return self.variables.read(path)
@@ -175,16 +179,16 @@ class Controller:
             self.variables.has_read_changing = before
 
     def type_of(self, path: Path) -> Type:
-        """The type of a system variable or a part of it, `UNKNOWN` where no table has it."""
+        """Return the type of a system variable or of a part of it; `UNKNOWN` if not in a table."""
         return self.variables.part_type(path)
 
     def assign(self, path: Path, value: Value) -> None:
-        """Give a system variable a value from outside, an input for instance; raises `Fault`."""
+        """Assign a value to a system variable, such as an input, from outside; raise `Fault`."""
         self._state.assign(path, value)
 
     @property
     def unfulfilled(self) -> list[str]:
-        """Where the program has waited longest, and for what; only with automatic inputs."""
+        """The longest waits of the program, as text; empty without automatic inputs."""
         waited = sorted(self.automatic_inputs.waited.items(), key=lambda one: -one[1][0])
         return [
             f"{_listed(names) or 'a condition'} at {at.file}:{at.line}, {time / 1e6:g} s"
@@ -194,23 +198,23 @@ class Controller:
 
     @property
     def is_pausing(self) -> bool:
-        """Whether the robot's program is in a WAIT SEC that lasts another second at least."""
+        """Whether the robot's program is in a WAIT SEC of which at least a second remains."""
         blocked = self._scheduler.tasks[0].blocked
         if blocked is None or not isinstance(blocked.request, requests.Wait):
             return False
         return blocked.wake is not None and blocked.wake - self._state.clock.now >= _PAUSE
 
     def run(self, until: int = HOUR) -> RunOutcome:
-        """Run until the program ends, or halts without a later start, or until a time in µs.
+        """Run until the program ends, halts without a later START, or until a time in µs.
 
-        After a `halt` a further call is START. Raises `ScriptError` for a value that a variable
+        After a halt, another call is a START. Raises `ScriptError` for a value that a variable
         cannot have.
         """
         return self._scheduler.run(until)
 
 
 def _listed(names: Sequence[str]) -> str:
-    """The first variables of a condition, its inputs before the others."""
+    """Return the first variables of a condition as text, inputs before the others."""
     shown = sorted(names, key=lambda name: not name.startswith("$IN["))
     more = [f"{len(shown) - _MOST_NAMES} more"] if len(shown) > _MOST_NAMES else []
     return ", ".join(shown[:_MOST_NAMES] + more)
@@ -242,7 +246,7 @@ def _table(
     cyclic: CyclicEvaluation,
     advance: AdvanceRun,
 ) -> RequestTable:
-    """The handlers of all requests but those that end a program, which the scheduler handles."""
+    """Return the handlers of all requests but those that end a program, for the scheduler."""
     table = RequestTable()
     table.add(requests.Read, variables.read)
     table.add(requests.Write, variables.write)

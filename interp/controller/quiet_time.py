@@ -1,12 +1,13 @@
-"""Stretches of time that are like the one before, so that the clock may jump.
+"""Quiet time: stretches in which every tick is like the previous one, so that the clock may jump.
 
-A program that waits looks at its condition in every cycle, and so do interrupts. Where a tick has
-changed nothing, and has read nothing that time alone changes, the next one will be like it, until
-the arm, a script or a wait with an end does something. Nothing of that is seen in a trace.
+A waiting program evaluates its condition in every cycle, and so do interrupts. If a tick has
+changed nothing, and has read nothing that changes with time alone, the next tick will be the same,
+until the arm, a script or a timed wait does something. None of this appears in a trace.
 
-Loops and submit programs go round and round meanwhile, and their slices end anywhere in them. Where
-all programs are at a tick where they were at an earlier one, and nothing has changed since, so it
-continues: whole periods pass at once. Their statements count as if they had been begun.
+Loops and submit programs keep running meanwhile, and their slices end anywhere in the loop. If at a
+tick all programs are in the same state as at an earlier tick, and nothing has changed in between,
+the time in between is a period that repeats. Whole periods are skipped at once, and their
+statements are counted as begun. The period is found with Brent's algorithm for cycle detection.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
 from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
 
-#: Requests that leave no trace but in what they write.
+#: Requests that leave nothing in a trace, apart from the effects of their writes.
 REPEATABLE: Final = (Read, Write, StopAdvance, Slice, Poll)
-#: So often at most is the place of a mark compared: what never comes back there costs little.
+#: The largest number of comparisons with one mark, so that a state that never recurs costs little.
 _LOOKS: Final = 1024
 
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """Where all programs were at a tick, and how many statements each had begun."""
+    """The state of all programs at a tick, and how many statements each had begun."""
 
     time: int
     places: tuple[object, ...]
@@ -39,7 +40,7 @@ class _Mark:
 
 @dataclass(slots=True)
 class QuietTime:
-    """Finds such stretches. ``acts`` counts requests that are not `REPEATABLE`."""
+    """Detects quiet time. ``acts`` counts the requests that are not `REPEATABLE`."""
 
     state: ControllerState
     queue: MotionQueue
@@ -52,7 +53,7 @@ class QuietTime:
     _since: int = -1
 
     def begin_tick(self, robot: Task) -> None:
-        """A tick begins: what changes from here on is its doing; a run may resume in its middle."""
+        """Begin a tick; the second call in a tick, after an interruption of the run, is ignored."""
         if self._since == self.state.clock.now:
             return
         self._since, self._begun = self.state.clock.now, _begun(robot)
@@ -63,7 +64,7 @@ class QuietTime:
         self.state.variables.has_read_changing = False
 
     def end(self, tasks: Sequence[Task], now: int, limit: int) -> int:
-        """The time up to which all ticks are like those before; ``now`` where none is."""
+        """Return the time in µs up to which all ticks are like the previous one, or ``now``."""
         clock, state = self.state.clock, self.state
         is_quiet = (
             clock.is_tick
@@ -76,16 +77,16 @@ class QuietTime:
         times = [limit, state.actions.next_time(), self.automatic.wake]
         times += (task.blocked.wake for task in tasks if task.blocked and _is_timed(task))
         end = min(time for time in times if time is not None)
-        robot, *others = tasks  # which have longer slices
+        robot, *others = tasks  # the others have longer slices
         is_same = _begun(robot) == self._begun is not None  # no condition has called a function
         if _waits(robot, Wait, *[Poll][:is_same]) and all(_waits(task, Wait) for task in others):
             return end - end % clock.cycle
         if any(task.blocked and task.blocked.wake != now for task in tasks if not _is_timed(task)):
-            return now  # a slice would begin too soon behind the stretch
+            return now  # a slice would begin too soon after the stretch
         return now + self._skipped([task for task in tasks if not task.is_over], end - now)
 
     def _skipped(self, tasks: Sequence[Task], most: int) -> int:
-        """The time in µs that passes at once: whole periods after which all is as it is now."""
+        """Return the time in µs to skip: whole periods after which the state is the same as now."""
         now, cycle = self.state.clock.now, self.state.clock.cycle
         mark = self._mark
         if mark is not None and (now - mark.time) % max(self._reach // _LOOKS, cycle):
@@ -98,7 +99,7 @@ class QuietTime:
         phase = now % (cycle * self.state.profile.submit_every)
         places = (phase, self.state.actions.next_time(), *found)
         begun = tuple(executor.begun for executor in executors)
-        if mark is None or mark.places != places:  # after Brent: a mark is kept twice as long
+        if mark is None or mark.places != places:  # Brent: each mark is kept twice as long
             if mark is None:
                 self._reach = cycle
             if mark is None or now - mark.time >= self._reach:
@@ -117,9 +118,10 @@ class QuietTime:
         return count * period
 
     def _place(self, task: Task) -> tuple[object, ...] | None:
-        """What a program continues from, its times relative to now; ``None`` if that is unknown.
+        """Return the state on which the future of a program depends, with times relative to now.
 
-        A level on top of it may end, and an executor that is debugged shows every statement.
+        Return ``None`` if it is unknown: a level on top of the program may end, and a debugged
+        executor shows every statement.
         """
         blocked, now = task.blocked, self.state.clock.now
         is_waiting = blocked is not None and isinstance(blocked.request, (*REPEATABLE, Wait))
@@ -140,7 +142,7 @@ class QuietTime:
 
 
 def _begun(task: Task) -> int | None:
-    """How many statements have begun, if the executor says so."""
+    """Return how many statements have begun, or ``None`` if the executor does not count them."""
     return None if task.counting is None else task.counting.begun
 
 
@@ -149,7 +151,7 @@ def _is_timed(task: Task) -> bool:
 
 
 def _waits(task: Task, *kinds: type[Request]) -> bool:
-    """Whether a program is over, or only waits: for a time, or for a condition."""
+    """Return whether a program has ended, or only waits with one of these requests."""
     blocked = task.blocked
     return task.is_over or (
         blocked is not None and not task.signals and isinstance(blocked.request, kinds)

@@ -1,4 +1,4 @@
-"""STOP WHEN PATH: a spline block stops while a condition holds [SPL-06]."""
+"""STOP WHEN PATH: a spline block stops as long as a condition is TRUE [SPL-06]."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from interp.port.requests import SplineStop
 
 
 class SplineStops:
-    """Stops the arm where it passes such a place; it comes to rest behind it."""
+    """Stops the arm when it passes a STOP WHEN PATH place; it comes to rest after that place."""
 
     def __init__(
         self, state: ControllerState, arm: ArmControl, queue: MotionQueue, panel: OperatorPanel
@@ -28,7 +28,7 @@ class SplineStops:
         return self._stopped_at is not None
 
     def watch(self) -> None:
-        """Look at the condition of the next place passed, or of that where the arm has stopped."""
+        """Evaluate the condition of the next place passed, or of the one where the arm stopped."""
         read = self._state.variables.read
         if self._stopped_at is None and self._queue.passed_stops:
             task, stop = self._queue.passed_stops.pop(0)

@@ -1,1 +1,1 @@
-"""Inputs: scripts, channels, the operator, and inputs that change by themselves."""
+"""Inputs: scripts, channels, the operator, and automatic inputs."""

@@ -1,12 +1,14 @@
-"""Automatic inputs: those that a WAIT FOR reads change until it is fulfilled.
+"""Automatic inputs: digital inputs that change until the WAIT FOR that reads them is fulfilled.
 
-Behind real programs stand grippers, spindles and a PLC whose scripts are not available. A line
-``fulfil waits after 1`` stands for all of them: once the robot's program has waited so long, the
-digital inputs that its condition has read change one at a time, a cycle each, through all their
-combinations, beginning with the one it read first. Inputs that a script sets itself stay as they
-are. If no combination makes the condition TRUE, they end as they began, and the program continues
-waiting. Flags that nothing has set by five times then are set by an option package, for a message
-that has come for instance: they change like inputs, but last.
+Real programs communicate with grippers, spindles and a PLC, for which no scripts are available. The
+script line ``fulfil waits after 1`` stands in for all of them. When the robot's program has waited
+for that time, the digital inputs that its condition has read change one at a time, one in each
+cycle, through all their combinations, beginning with the one that was read first. Inputs that the
+script sets itself do not change. If no combination makes the condition TRUE, the inputs end as they
+began, and the program continues to wait.
+
+Flags change too, but only after five times the delay, and after the inputs: a flag that the program
+itself does not set by then is probably set by an option package, for example when a message comes.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from interp.controller.state.state import ControllerState
 from interp.controller.state.trace import path_text
 from interp.port.requests import At, Path
 
-#: What the person at the panel and the cell do, as lines of a script.
+#: The actions of the operator and of the cell, as lines of a script.
 OPERATOR: Final = """\
 on HALT after 1 press START
 on message after 1 press CONFIRM
@@ -28,17 +30,17 @@ on dialogue after 1 answer 1
 fulfil waits after 1
 """
 
-#: More inputs than these are not tried: there would be too many combinations.
+#: The largest number of inputs that are tried: more would have too many combinations.
 _MOST: Final = 10
-#: So many times as long as inputs do flags stay as they are: mostly the program sets them itself.
+#: The delay of flags as a multiple of that of inputs: usually the program sets its flags itself.
 _PATIENCE: Final = 5
 
-#: ``$IN`` or ``$FLAG``, and a number.
+#: ``$IN`` or ``$FLAG``, and the number.
 _Place = tuple[str, int]
 
 
 class AutomaticInputs:
-    """Fulfils the waits of one script; does nothing where that has no such line."""
+    """Fulfils the waits of a run; does nothing if the script has no ``fulfil waits`` line."""
 
     def __init__(self, script: Script, state: ControllerState) -> None:
         self._after = script.fulfils
@@ -49,48 +51,48 @@ class AutomaticInputs:
         self._read: dict[_Place, None] = {}
         self._since: tuple[At, int] | None = None
         self._changes: deque[tuple[_Place, bool]] = deque()
-        #: How many inputs were changed.
+        #: The number of changes that were made.
         self.count = 0
-        #: Where the program has waited, for how long in µs, and the variables that it read there.
+        #: For each WAIT FOR: the time waited in µs, and the variables that its condition has read.
         self.waited: dict[At, tuple[int, tuple[str, ...]]] = {}
         self._names: dict[str, None] = {}
         self._before = 0
 
     @property
     def is_on(self) -> bool:
-        """Whether anything is to be fulfilled."""
+        """Whether the script asks for automatic inputs."""
         return self._after is not None
 
     @property
     def wake(self) -> int | None:
-        """When it will change an input, in µs, if it knows that it will."""
+        """The time of the next change in µs, ``None`` if it is unknown."""
         then = self.next_change
         return then if then is not None and then > self._before else None
 
     @property
     def next_change(self) -> int | None:
-        """The time in µs from which on it changes the next input, if there is one to change."""
+        """The time in µs from which on the next input changes; ``None`` if there is none."""
         return self._since[1] + self._delay if self._since is not None and self._changes else None
 
     @property
     def _delay(self) -> int:
-        """How long the program has to wait for the next change, in µs."""
+        """How long the program must wait until the next change, in µs."""
         assert self._after is not None, "it fulfils waits"
         return self._after * (_PATIENCE if self._changes[0][0][0] == "$FLAG" else 1)
 
     def was_read(self, path: Path) -> None:
-        """The program reads a variable, perhaps an input for the condition of a WAIT FOR."""
+        """Note that the program has read a variable, possibly an input of a WAIT FOR condition."""
         self._read |= dict.fromkeys(_places(path))
         self._names[path_text(path)] = None
 
     def begin(self) -> None:
-        """The program comes to a WAIT FOR."""
+        """Note that the program has come to a WAIT FOR."""
         self._read.clear()
         self._names.clear()
         self._since = None
 
     def was_false(self, at: At, now: int) -> None:
-        """The condition there was FALSE at a time in µs."""
+        """Note that the condition at ``at`` was FALSE at a time in µs; change an input if due."""
         if self._after is None:
             return
         if self._since is None or self._since[0] != at:
@@ -118,7 +120,7 @@ class AutomaticInputs:
 
 
 def _places(path: Path) -> Iterator[_Place]:
-    """The digital inputs of a path, or its flag."""
+    """Yield the digital inputs, or the flag, that a path denotes."""
     if path[0] in ("$IN", "$FLAG") and len(path) > 1:
         first, last = path[1], path[-1]
         if isinstance(first, int) and isinstance(last, int):
@@ -126,7 +128,7 @@ def _places(path: Path) -> Iterator[_Place]:
 
 
 def _combinations(values: dict[_Place, bool]) -> Iterator[tuple[_Place, bool]]:
-    """One change after the other that lead through all combinations and back (a Gray code)."""
+    """Yield single changes that lead through all combinations of values and back (a Gray code)."""
     places = list(values)
     for count in range(1, 2 ** len(places) + 1) if places else ():
         place = places[min((count & -count).bit_length(), len(places)) - 1]

@@ -1,9 +1,10 @@
-"""Channels: COPEN, CREAD, CWRITE, CCLOSE, with a peer that a script plays [FCT-08, ADV-07].
+"""Channels: COPEN, CREAD, CWRITE and CCLOSE, with a peer that a script plays [FCT-08, ADV-07].
 
-What the peer sends waits until the program reads it. A text is read as `SREAD` reads; CWRITE writes
-as `SWRITE` does. The order of arguments is that of the transcribed manual: CREAD(handle, state,
-mode, timeout, offset, format, variables …), CWRITE(handle, state, mode, format, values …).
-Timeouts are in seconds; #SYNC and #ABS wait for data, #COND does not (unconfirmed).
+Data from the peer is queued until the program reads it. CREAD parses a text as `SREAD` does, and
+CWRITE formats one as `SWRITE` does. The order of arguments is from a transcription of the manual:
+CREAD(handle, state, mode, timeout, offset, format, variables …), CWRITE(handle, state, mode,
+format, values …). Timeouts are in seconds. #SYNC and #ABS wait for data, #COND does not
+(unconfirmed).
 """
 
 from __future__ import annotations
@@ -36,12 +37,12 @@ from support.lazy_dataclass import dataclass
 _LONGEST: Final = 2047
 _READ_VARIABLES: Final = 6
 _WRITTEN_VALUES: Final = 4
-#: Channels that are open from the start, with the handles that are in $CMD and $FCT_CALL.
+#: Channels that are open from the start, with the handles that $CMD and $FCT_CALL contain.
 COMMANDS: Final = {"$CMD": 1, "$FCT_CALL": 2}
 
 
 def state_value(result: str, hits: int = 0, length: int = 0) -> StructureValue:
-    """A STATE_T [FCT-08]."""
+    """Return a STATE_T with a result and the numbers of conversions and characters [FCT-08]."""
     value = empty_structure("STATE_T")
     value.set("RET1", word("CMD_STAT", result))
     value.set("MSG_NO", 0)
@@ -52,22 +53,22 @@ def state_value(result: str, hits: int = 0, length: int = 0) -> StructureValue:
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """CREAD has to wait for data of a channel, until a time in µs; ``None``: for ever."""
+    """CREAD must wait for data of a channel, until a time in µs; ``None`` waits without limit."""
 
     channel: str
     until: int | None
 
 
 Arguments = Sequence[Value | None]
-#: The new values of arguments, by place from 0.
+#: The new values of arguments, by position counted from 0.
 Changes = Mapping[int, Value]
 
 
 @dataclass(slots=True)
 class Channels:
-    """All channels by their names.
+    """The state of all channels.
 
-    ``listeners`` are called with the channel and each text that a program writes to it.
+    ``listeners`` are called with the channel and the text whenever a program writes to a channel.
     """
 
     clock: Clock
@@ -79,29 +80,29 @@ class Channels:
     _last: int = len(COMMANDS)
 
     def receive(self, channel: str, text: str) -> None:
-        """The peer of a channel sends a text."""
+        """Queue a text that the peer of a channel sends."""
         self._data[channel.lstrip("$:")].append(letters(text))
 
     def has_data(self, channel: str) -> bool:
-        """Whether there is something to read."""
+        """Return whether a channel has data to read."""
         return bool(self._data.get(channel))
 
     def open(self, arguments: Arguments) -> Changes:
-        """COPEN(:NAME, handle)."""
+        """COPEN(:NAME, handle): open a channel."""
         name = text_of(known(arguments[0])).upper().lstrip(":")
         self._last += 1
         self._handles[self._last] = name
         return {1: self._last}
 
     def close(self, arguments: Arguments) -> Changes:
-        """CCLOSE(handle, state); what was not read is lost."""
+        """CCLOSE(handle, state): close a channel; unread data is lost."""
         name = self._name(arguments[0])
         self._handles = {handle: one for handle, one in self._handles.items() if one != name}
         self._data.pop(name, None)
         return {1: state_value("CMD_OK")}
 
     def write(self, arguments: Arguments) -> Changes:
-        """CWRITE: what was formatted is sent; a text without values is sent as it is."""
+        """CWRITE: send formatted values; a format without values is sent as it is."""
         if len(arguments) < _WRITTEN_VALUES:
             raise fault("argument")
         name = self._name(arguments[0])
@@ -120,7 +121,7 @@ class Channels:
         return {1: state}
 
     def read(self, arguments: Arguments, since: int) -> Changes | Waiting:
-        """CREAD, requested at ``since``; `Waiting` where there is nothing to read yet."""
+        """CREAD, requested at the time ``since``; return `Waiting` if there is no data yet."""
         if len(arguments) < _READ_VARIABLES:
             raise fault("argument")
         name = self._name(arguments[0])

@@ -1,4 +1,4 @@
-"""Scripts of inputs: what the world around the controller does, line by line (docs/io-scripts.md).
+"""Input scripts: what the world around the controller does, line by line (docs/io-scripts.md).
 
 ::
 
@@ -9,8 +9,8 @@
     fulfil waits after 1
     stop at 10
 
-`Script.read` makes a `Script` of such a text; `script_player` plays it. The same language stands
-behind ``;@ io:`` in conformance cases.
+`Script.read` parses such a text, and `script_player` plays it. Conformance cases use the same
+language after ``;@ io:``.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from support.lazy_dataclass import dataclass
 
 
 class ScriptError(RuntimeFailure):
-    """A script cannot be understood; the text is one line that names the place."""
+    """A script is invalid; the text is one line that names the place."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """``#NAME``, whose enumeration is that of the variable."""
+    """``#NAME``, a constant of the enumeration that the variable has as its type."""
 
     name: str
 
 
-#: A value as written.
+#: A value as written in a script.
 Literal = bool | int | float | str | Word
 
 # ------------------------------------------------------------------------------------- causes
@@ -43,14 +43,14 @@ Literal = bool | int | float | str | Word
 
 @dataclass(frozen=True, slots=True)
 class AtTime:
-    """``t=0.5``: a time, in µs."""
+    """``t=0.5``: a time, stored in µs."""
 
     time: int
 
 
 @dataclass(frozen=True, slots=True)
 class Becomes:
-    """``on OUT[3]=TRUE``: a variable gets this value, which it did not have."""
+    """``on OUT[3]=TRUE``: a variable changes to this value."""
 
     path: Path
     value: Literal
@@ -58,24 +58,24 @@ class Becomes:
 
 @dataclass(frozen=True, slots=True)
 class Halted:
-    """``on HALT``: the program halts."""
+    """``on HALT``: the program executes HALT."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """``on message 1442``: a message is shown; without a number, any."""
+    """``on message 1442``: a message appears; any message if there is no number."""
 
     number: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """``on dialogue``: a dialogue is shown."""
+    """``on dialogue``: a dialogue appears."""
 
 
 @dataclass(frozen=True, slots=True)
 class Received:
-    """``on channel SER_1 gets "ping"``: the peer is sent a text; without one, anything."""
+    """``on channel SER_1 gets "ping"``: the program sends a text; any text if none is given."""
 
     channel: str
     text: str | None
@@ -88,7 +88,7 @@ Cause = AtTime | Becomes | Halted | Shown | Asked | Received
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """``IN[1]=TRUE``."""
+    """``IN[1]=TRUE``: assign a value to a system variable."""
 
     path: Path
     value: Literal
@@ -96,7 +96,7 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class Press:
-    """``press START``, ``STOP`` or ``CONFIRM``, which may name the message."""
+    """``press START``, ``press STOP`` or ``press CONFIRM``; CONFIRM may name the message."""
 
     button: str
     number: int | None = None
@@ -104,7 +104,7 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """``answer 2``: the oldest dialogue is answered by a button, counted from 1."""
+    """``answer 2``: answer the oldest dialogue with a button, counted from 1."""
 
     button: int
 
@@ -122,7 +122,7 @@ Action = Assign | Press | Answer | Send
 
 @dataclass(frozen=True, slots=True)
 class ScriptStep:
-    """A line: what causes it, how many µs later it acts, and what it does; ``at`` names it."""
+    """One line: its cause, the delay in µs, and its actions; ``at`` names the line in errors."""
 
     at: str
     cause: Cause
@@ -132,9 +132,10 @@ class ScriptStep:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """The steps in their order, and the time in µs at which the run stops, if it says one.
+    """The steps of a script in their order.
 
-    ``fulfils``: after so many µs of a WAIT FOR its inputs change until it continues, if at all
+    ``stop`` is the time in µs at which the run stops, if the script says one. ``fulfils`` is the
+    delay in µs after which inputs change during a WAIT FOR; ``None`` if they do not
     (`interp.controller.inputs.automatic_inputs`).
     """
 
@@ -144,7 +145,7 @@ class Script:
 
     @staticmethod
     def read(text: str, name: str = "script") -> Script:
-        """Read a script; raises `ScriptError`, which calls it by ``name``."""
+        """Parse a script; raise `ScriptError` with places that begin with ``name``."""
         steps: list[ScriptStep] = []
         stop: int | None = None
         fulfils: int | None = None
@@ -180,7 +181,7 @@ _MOST_SECONDS: Final = 1e9
 
 
 class _Line:
-    """Reads one line from left to right."""
+    """Parses one line from left to right."""
 
     def __init__(self, at: str, line: str) -> None:
         self._at = at
@@ -198,16 +199,16 @@ class _Line:
             place = match.end()
 
     def fail(self, why: str) -> NoReturn:
-        """Raise what is wrong with the line."""
+        """Raise a `ScriptError` at this line."""
         raise ScriptError(f"{self._at}: {why}")
 
     @property
     def is_done(self) -> bool:
-        """Whether nothing is left."""
+        """Whether all tokens have been read."""
         return self._place == len(self._tokens)
 
     def take(self, text: str) -> bool:
-        """Read a word or mark if it is there."""
+        """Read a word or mark if it is next; return whether it was."""
         if self.is_done or self._tokens[self._place][0] == "text":
             return False
         if self._tokens[self._place][1].upper() != text:
@@ -216,7 +217,7 @@ class _Line:
         return True
 
     def need(self, text: str) -> None:
-        """Read a word or mark that has to be there."""
+        """Read a word or mark that must be next."""
         if not self.take(text):
             self.fail(f"{text!r} is missing{self._before()}")
 
@@ -230,14 +231,14 @@ class _Line:
         return self._tokens[self._place - 1][1]
 
     def finish(self) -> None:
-        """Fail unless all tokens of the line are used up."""
+        """Fail unless all tokens of the line have been read."""
         if not self.is_done:
             self.fail(f"{self._tokens[self._place][1]!r} is not expected here")
 
     # --------------------------------------------------------------------------- the parts
 
     def step(self) -> ScriptStep:
-        """A whole line."""
+        """Parse a whole line that is a step."""
         cause = self._cause()
         delay = self.time() if self.take("AFTER") else 0
         actions = [self._action()]
@@ -247,7 +248,7 @@ class _Line:
         return ScriptStep(self._at, cause, delay, tuple(actions))
 
     def time(self) -> int:
-        """Seconds, as µs."""
+        """Parse a time in seconds, and return it in µs."""
         seconds = float(self._next("number", "a time in seconds"))
         if not 0 <= seconds <= _MOST_SECONDS:
             self.fail(f"{seconds:g} is not a time in seconds")
@@ -307,7 +308,7 @@ class _Line:
         return self._next("word", "the name of a channel").upper()
 
     def _path(self) -> Path:
-        """``IN[1]``, ``$IN[1..8]``, ``ERR.NUMBER``; the dollar sign may be left out."""
+        """Parse ``IN[1]``, ``$IN[1..8]`` or ``ERR.NUMBER``; the dollar sign is optional."""
         name = self._next("word", "a variable").upper()
         steps: list[str | int] = [name if name.startswith("$") else f"${name}"]
         while True:

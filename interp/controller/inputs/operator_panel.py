@@ -1,4 +1,4 @@
-"""The operator: START, STOP and CONFIRM, and what waits for them."""
+"""The operator: START, STOP, CONFIRM, and what waits for these buttons."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from interp.controller.state.messages import Messages
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
 
-#: The kind of messages that stop the arm until they are acknowledged.
+#: The kind of messages that stop the arm until the operator acknowledges them.
 _STOPPING: Final = "acknowledgement"
 
 
 class OperatorPanel:
-    """Buttons and dialogues; ``tasks`` are the programs that START sets going again."""
+    """The buttons and dialogues; ``tasks`` are the programs that START continues."""
 
     def __init__(self, state: ControllerState, arm: ArmControl, tasks: list[Task]) -> None:
         self._state = state
@@ -24,12 +24,12 @@ class OperatorPanel:
         self._is_stopped = False
 
     def shown(self, _number: int, kind: str) -> None:
-        """A message is shown: one that has to be acknowledged stops the arm."""
+        """Stop the arm if a message has appeared that must be acknowledged."""
         if kind == _STOPPING:
             self._arm.halt()
 
     def press(self, button: str, number: int | None = None) -> None:
-        """Press START, STOP or CONFIRM; ``number`` is the one message that CONFIRM is for."""
+        """Press START, STOP or CONFIRM; with ``number``, CONFIRM acknowledges only that message."""
         match button:
             case "CONFIRM":
                 was_waiting = bool(self._messages.unacknowledged)
@@ -54,10 +54,10 @@ class OperatorPanel:
         self._messages.answer(button)
 
     def is_holding(self, task: Task) -> bool:
-        """Whether a program must wait: it was stopped, or a message is to be acknowledged."""
+        """Return whether a program is stopped, or waits until a message is acknowledged."""
         return task.name == "robot" and (self._is_stopped or bool(self._messages.unacknowledged))
 
     def free_arm(self) -> None:
-        """The arm continues, unless the operator has stopped it or must acknowledge a message."""
+        """Let the arm continue, unless it is stopped or a message must be acknowledged."""
         if not self._is_stopped and not self._messages.unacknowledged:
             self._arm.end_halt()

@@ -1,4 +1,4 @@
-"""Plays a script: each step is done at its time, or whenever what it waits for happens."""
+"""The player of input scripts: it performs each step at its time, or when its cause happens."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ from interp.values.values import constant, single
 class ScriptPlayer:
     """Plays one script.
 
-    Raises `ScriptError` for what names no variable, no such index or no such value; all steps are
-    tried for that before anything is played.
+    Before anything is played, all steps are checked: an unknown variable, an index out of range and
+    an impossible value raise `ScriptError`.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class ScriptPlayer:
     # ------------------------------------------------------------------------- what happens
 
     def changed(self, path: Path, _value: Value) -> None:
-        """A variable, or an element of it, was given a value."""
+        """Note that a variable, or an element of one, was assigned."""
         for cause, wanted in self._watched.get(str(path[0]), ()):
             holds = self._variables.read(cause.path) == wanted
             before, self._held[cause] = self._held[cause], holds
@@ -73,18 +73,18 @@ class ScriptPlayer:
                 self._happened(cause)
 
     def halted(self) -> None:
-        """The program halts."""
+        """Note that the program executes HALT."""
         self._happened(Halted())
 
     def shown(self, number: int, kind: str) -> None:
-        """A message or a dialogue is shown."""
+        """Note that a message or a dialogue has appeared."""
         self._happened(Shown(number))
         self._happened(Shown(None))
         if kind == "dialogue":
             self._happened(Asked())
 
     def received(self, channel: str, text: str) -> None:
-        """A program has sent a text to the peer of a channel."""
+        """Note that a program has sent a text to the peer of a channel."""
         self._happened(Received(channel, text))
         self._happened(Received(channel, None))
 
@@ -97,9 +97,10 @@ class ScriptPlayer:
         self._state.actions.add(time, partial(self._do, step))
 
     def awaits(self, button: str) -> bool:
-        """Whether a step that presses a button is still to come, or may come.
+        """Return whether a step that presses a button is pending or may still be caused.
 
-        Once the program has halted, another HALT cannot be what causes it.
+        The program has halted when this is asked, so a step that another HALT would cause does not
+        count.
         """
         may_come = [
             step
@@ -146,7 +147,7 @@ class ScriptPlayer:
                 raise ScriptError(f"{step.at}: {error}") from None
 
     def _typed(self, path: Path, value: Literal) -> Value:
-        """The value that a literal is for a variable."""
+        """Return a literal as a value of the type that the variable has."""
         if isinstance(value, Word):
             type_ = self._variables.part_type(path)
             if not isinstance(type_, Enumeration):

@@ -1,1 +1,1 @@
-"""What runs on top of a program: interrupt routines, calls of triggers, cyclic evaluation."""
+"""What runs on top of a program: interrupt routines, actions of triggers, cyclic evaluation."""

@@ -12,7 +12,7 @@ from interp.controller.state.tasks import ALWAYS, Answer, Task
 from interp.port.requests import CodeHandle, Path, SetCyclicFlag, SwitchSignal
 from interp.values.faults import Fault
 
-#: Which entry of a profile limits the number of cyclic signals, and the message where it does.
+#: For each keyword, the profile entry that limits the number of cyclic signals, and its message.
 _SIGNAL_LIMITS: Final = {
     "ANIN": ("analog_inputs", 1543),
     "ANOUT": ("analog_outputs", None),
@@ -21,7 +21,7 @@ _SIGNAL_LIMITS: Final = {
 
 
 class CyclicEvaluation:
-    """The conditions of cyclic flags, and the signals that are ON."""
+    """The conditions of cyclic flags, and the cyclic signals that are ON."""
 
     def __init__(self, state: ControllerState, advance: AdvanceRun, levels: Levels) -> None:
         self._state = state
@@ -30,12 +30,12 @@ class CyclicEvaluation:
         self._flags: dict[int, tuple[Task, CodeHandle]] = {}
 
     def set_flag(self, task: Task, request: SetCyclicFlag) -> None:
-        """$CYCFLAG[n] gets a condition, evaluated now and in every cycle [IOT-12].
+        """Assign a condition to $CYCFLAG[n], evaluated now and in every cycle [IOT-12].
 
         Raises `Fault`.
         """
         variables, number = self._state.variables, request.number
-        variables.read(("$CYCFLAG", number))  # whether there is such a flag
+        variables.read(("$CYCFLAG", number))  # faults if there is no such flag
         is_new = number not in self._flags
         if is_new and len(self._flags) >= self._state.profile.most["cyclic_flags"]:
             raise message_fault(2940)
@@ -44,10 +44,10 @@ class CyclicEvaluation:
         variables.put(("$CYCFLAG", number), value)
 
     def refresh_flags(self) -> None:
-        """A tick: evaluate cyclic flags in the order of their numbers.
+        """Evaluate all cyclic flags at a tick, in the order of their numbers.
 
-        A condition that cannot be evaluated any more (its routine has ended) leaves its flag as it
-        is (unconfirmed; the checker refuses such conditions [IOT-11]).
+        If a condition can no longer be evaluated because its routine has ended, the flag keeps its
+        value (unconfirmed; the checker rejects such conditions [IOT-11]).
         """
         variables = self._state.variables
         for number, (task, condition) in sorted(self._flags.items()):
@@ -65,7 +65,7 @@ class CyclicEvaluation:
         return bool(self._flags)
 
     def switch_signal(self, task: Task, request: SwitchSignal) -> Answer:
-        """ANIN, ANOUT, DIGIN ON or OFF. Raises `Fault`."""
+        """Switch a signal ON or OFF: ANIN, ANOUT, DIGIN. Raises `Fault`."""
         return self._advance.when_reached(task, request, lambda: self._switch(task, request))
 
     def _switch(self, task: Task, request: SwitchSignal) -> None:
@@ -79,6 +79,6 @@ class CyclicEvaluation:
         task.signals[request.name] = request
 
     def enter_signal(self, task: Task, request: SwitchSignal) -> None:
-        """Compute a cyclic signal once."""
+        """Enter the code that computes a cyclic signal once."""
         assert request.cycle is not None, "it is ON"
         self._levels.enter(task, "cycle", ALWAYS, request.at, request.cycle, signal=request)

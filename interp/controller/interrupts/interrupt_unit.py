@@ -1,6 +1,6 @@
-"""Interrupts and calls of triggers: when they are entered, and what they may do [INT-01 ff.].
+"""Interrupts and actions of triggers: when they are entered, and what they may do [INT-01 ff.].
 
-Their routines may do all that others do [INT-16], but for what is refused here.
+Their routines may do everything that other routines do [INT-16], except what is rejected here.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, Task
 from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
 from interp.robot.api.commands import CallCommand
 
-#: Priorities that the system assigns, for PRIO=-1 [TRG-06].
+#: The priorities that the system assigns for PRIO=-1 [TRG-06].
 _SYSTEM: Final = range(40, 81)
 
 
 class InterruptUnit:
-    """Watches the conditions of interrupts, and enters their routines and those of triggers."""
+    """Evaluates the conditions of interrupts, and enters the actions of interrupts and triggers."""
 
     def __init__(
         self,
@@ -44,16 +44,16 @@ class InterruptUnit:
     # --------------------------------------------------------------- declaration and events
 
     def declare(self, task: Task, request: DeclareInterrupt) -> None:
-        """INTERRUPT DECL, of a submit program too [SUB-10]. Raises `Fault`."""
+        """Execute INTERRUPT DECL, also of a submit program [SUB-10]. Raises `Fault`."""
         task.interrupts.declare(request)
 
     def switch(self, task: Task, request: SwitchInterrupt) -> None:
-        """INTERRUPT ON, OFF, ENABLE, DISABLE. Raises `Fault`."""
+        """Execute INTERRUPT ON, OFF, ENABLE or DISABLE. Raises `Fault`."""
         read = self._state.variables.read
         task.interrupts.switch(request.action, request.number, lambda code: task.holds(code, read))
 
     def watch(self, task: Task) -> None:
-        """A tick: look at all conditions. Raises `Fault`."""
+        """Evaluate the conditions of all interrupts at a tick. Raises `Fault`."""
         if not task.interrupts.is_watched:
             return
         read = self._state.variables.read
@@ -63,7 +63,7 @@ class InterruptUnit:
             self._positions.keep("INT")
 
     def dispatch(self, task: Task) -> None:
-        """Enter what has come and has a higher priority than what runs [INT-05]."""
+        """Enter what is pending, if its priority is higher than that of what runs [INT-05]."""
         interrupt = task.interrupts.next()
         call = min(self._queue.fired, key=_priority, default=None) if task.name == "robot" else None
         if call is not None:
@@ -97,7 +97,7 @@ class InterruptUnit:
     # ---------------------------------------------------------------------- BRAKE and RESUME
 
     def brake(self, task: Task, request: BrakeArm) -> Answer:
-        """BRAKE: the routine continues when the arm stands [INT-09]. Raises `Fault`."""
+        """Execute BRAKE: the routine continues when the arm is at rest [INT-09]. Raises `Fault`."""
         level = task.level
         if level is None or level.kind != "interrupt" or task.name == "submit":
             raise own_fault("brake_place")
@@ -114,9 +114,10 @@ class InterruptUnit:
         level.braked_at = self._positions.actual().axes
 
     def resume(self, task: Task, request: Resume) -> Answer:
-        """RESUME: back to the declaring level, behind its call [INT-10, INT-11]. Raises `Fault`.
+        """Execute RESUME: return to the declaring level, after its call [INT-10, INT-11].
 
-        Motions of the routine itself are travelled first (unconfirmed).
+        The arm first finishes the motions of the interrupt routine itself (unconfirmed). Raises
+        `Fault`.
         """
         level = task.level
         if level is None or level.interrupt is None:
@@ -150,7 +151,7 @@ class InterruptUnit:
             request,
             lambda: not is_moving or self._arm.is_standing,
             lambda: None,
-            is_open=False,  # the executor has left its routine: other interrupts may be entered
+            is_open=False,  # the executor has left its routine, so other interrupts may be entered
         )
 
 
@@ -160,6 +161,6 @@ def _call(command: CallCommand) -> TriggerCall:
 
 
 def _priority(command: CallCommand) -> int:
-    """The priority of a trigger's call; that of PRIO=-1 is chosen when it is entered."""
+    """Return the priority of a trigger's action; that of PRIO=-1 is chosen when it is entered."""
     priority = _call(command).trigger.priority
     return ALWAYS if priority is None else _SYSTEM[0] if priority == -1 else priority

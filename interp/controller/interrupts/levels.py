@@ -1,7 +1,7 @@
-"""Levels above a program: interrupt routines, actions of triggers, cyclic signals.
+"""Levels on top of a program: interrupt routines, actions of triggers, cyclic signals.
 
-Everything is entered at a request of the executor that is not answered yet, and only the top level
-runs. When it ends the request below is made again, and what it waited for continues.
+A level is entered while a request of the executor is unanswered, and only the top level runs. When
+it ends, the request below is made again, and the program continues to wait for what it waited for.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Levels:
         task.blocked, task.reply = None, None
 
     def leave(self, task: Task) -> Answer:
-        """The code of the top level has ended: what is to be waited for, then the level below."""
+        """End the top level; return what to wait for before the level below continues."""
         level = task.levels[-1]
         if not level.has_braked or not level.has_moved:
             return self._left(task)
@@ -62,7 +62,7 @@ class Levels:
         )
 
     def _return(self, task: Task, end: End) -> Answer:
-        """Return to the path where it was left: the routine has moved the arm after its BRAKE."""
+        """Move back to where BRAKE stopped the arm, if the routine has moved it away from there."""
         level = task.levels[-1]
         here = self._positions.actual().axes
         if level.braked_at is not None and not _is_near(level.braked_at, here):
@@ -86,9 +86,9 @@ class Levels:
         return saved
 
     def pop(self, task: Task) -> None:
-        """Remove the top level, with what it has changed for itself only."""
+        """Remove the top level, and restore what it has changed only for itself."""
         level = task.levels.pop()
-        if task.levels and level.has_moved:  # where that one has braked, it has to return
+        if task.levels and level.has_moved:  # a level below that has braked must return the arm
             task.levels[-1].has_moved = True
             task.levels[-1].motions |= level.motions
         if level.base is not None:  # [INT-13]

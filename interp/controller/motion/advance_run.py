@@ -1,9 +1,9 @@
-"""The advance run: what waits until the main run has come to where the program is [ADV-04 ff.].
+"""The advance run: what must wait until the main run has reached the program [ADV-04 ff.].
 
-Statements and accesses that stop the advance run wait until the arm stands [ADV-04 to ADV-07],
-unless a CONTINUE exempts their line [ADV-08]. What then happens happens in the main run; what does
-not stop it happens while the arm is still on its way [ADV-09, ADV-13], also with $ADVANCE=0, where
-what a controller does is not known [CON-09].
+Statements and accesses that stop the advance run wait until the arm is at rest [ADV-04 to ADV-07],
+unless CONTINUE exempts their line [ADV-08]. Their effects then happen in the main run. All other
+effects happen while the arm still moves [ADV-09, ADV-13]. This is so with $ADVANCE=0 too, where the
+behaviour of a controller is unknown [CON-09].
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ class AdvanceRun:
         self._queue = queue
 
     def when_reached(self, task: Task, request: Request, then: Callable[[], Answer]) -> Answer:
-        """Do something once the program's own motions have ended.
+        """Call ``then`` once the program's own motions have ended.
 
-        A submit program, a line that CONTINUE exempts and a program without pending motions do not
-        wait.
+        There is nothing to wait for in a submit program, in a line that CONTINUE exempts, and if no
+        motion is pending.
         """
         if task.name == "submit" or task.exempt_line is not None:
             return then()
@@ -52,10 +52,10 @@ class AdvanceRun:
         self._queue.stop_advance()
 
     def stop_here(self, task: Task, request: StopAdvance) -> Answer:
-        """An access that only stops the advance run [ADV-05, ADV-06]."""
+        """Execute an access that only stops the advance run [ADV-05, ADV-06]."""
         return self.when_reached(task, request, lambda: None)
 
     def exempt(self, task: Task, request: Continue) -> Answer:
-        """CONTINUE: the next line does not stop the advance run [ADV-08]."""
+        """Execute CONTINUE: the next line does not stop the advance run [ADV-08]."""
         task.exempt_line = request.at.file, request.at.line + 1
         return None

@@ -1,4 +1,4 @@
-"""The override, braking and going on of the arm, whoever wants it: operator, BRAKE, ROB_STOP."""
+"""Override, brake and restart of the arm, for the operator, BRAKE and ROB_STOP alike."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from interp.robot.api.control_core import ControlCore
 
 
 class ArmControl:
-    """Stops and starts the arm through its control core."""
+    """Stops and restarts the arm through its control core."""
 
     def __init__(self, core: ControlCore, clock: Clock, variables: Variables) -> None:
         self.core = core
@@ -21,7 +21,7 @@ class ArmControl:
 
     @property
     def is_moving(self) -> bool:
-        """Whether the arm moves, or will before anything else happens: it is not braked."""
+        """Whether the arm moves, or will move without another command: it is not braked."""
         return self.core.arm.next_event() is not None
 
     @property
@@ -30,7 +30,7 @@ class ArmControl:
         return self.core.next_time() is None
 
     def brake(self, *, is_hard: bool) -> None:
-        """Stop on the path; `is_standing` becomes true when the arm is at rest."""
+        """Brake on the path; `is_standing` becomes true when the arm is at rest."""
         self.core.brake(self._clock.now, is_hard=is_hard)
 
     def proceed(self) -> None:
@@ -38,13 +38,13 @@ class ArmControl:
         self.core.proceed(self._clock.now)
 
     def discard(self) -> None:
-        """Forget all motions; the arm comes to rest on its path."""
+        """Discard all motions; the arm comes to rest on its path."""
         self.core.discard(self._clock.now)
 
     # ------------------------------------------------------------------ operator and faults
 
     def halt(self, *, is_hard: bool = False) -> None:
-        """Brake, if the arm moves and was not halted before."""
+        """Brake if the arm moves and is not halted already."""
         if self.is_moving and not self._is_halted:
             self._is_halted = True
             self.brake(is_hard=is_hard)
@@ -63,12 +63,12 @@ class ArmControl:
         self.core.override(self._clock.now, 0.0)
 
     def release(self) -> None:
-        """ROB_STOP_RELEASE: continue with $OV_PRO."""
+        """ROB_STOP_RELEASE: continue with the override of $OV_PRO."""
         self._is_held = False
         self._apply_override()
 
     def changed(self, path: Path, value: Value) -> None:
-        """A system variable was given a value: $OV_PRO takes effect at once."""
+        """Note an assignment to a system variable: $OV_PRO takes effect at once."""
         if path[0] == "$OV_PRO" and isinstance(value, int | float) and not self._is_held:
             self.core.override(self._clock.now, float(value))
 

@@ -1,9 +1,9 @@
-"""The motion queue: motions as transactions of the control core, and blends that fail [ADV-12].
+"""The motion queue: it plans KRL motions as transactions of the control core [ADV-12].
 
-Each KRL motion is one transaction: the motion, for each trigger that switches an output an
-`OutputCommand` at its place, for each other trigger a `CallCommand` [TRG-01 to TRG-08]. So outputs
-are switched inside the core at their exact time, and what has to be computed is entered by the
-controller after the core has reported it.
+A transaction consists of one motion, an `OutputCommand` at its place for each trigger that switches
+an output, and a `CallCommand` for each other trigger [TRG-01 to TRG-08]. So the core switches
+outputs at their exact time. Actions that need the program are entered by the controller after the
+core has reported them. The queue also posts the messages of blends that fail.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ from support.lazy_dataclass import dataclass
 if TYPE_CHECKING:
     from interp.robot.simulation.tracking import Tracking
 
-#: What triggers that call a routine may have as PRIO [TRG-06].
+#: The values that PRIO may have for triggers that call a routine [TRG-06].
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
-#: The most in mm or ms that a trigger may be away from its point [TRG-03, TRG-04].
+#: The largest distance in mm, and delay in ms, of a trigger from its point [TRG-03, TRG-04].
 _FARTHEST: Final = 10_000_000
 _STATUS_BITS: Final = 7
-#: The message that a motion leads to where the arm is [MOT-11].
+#: The message for a motion to the present position [MOT-11].
 _LENGTH_ZERO: Final = 3171
 _KINDS: Final = {
     "started": "motion_start",
@@ -66,7 +66,7 @@ _KINDS: Final = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TriggerCall:
-    """The action of a trigger that is more than switching an output."""
+    """The action of a trigger that does more than switch an output."""
 
     trigger: SetTrigger
     action: CodeHandle
@@ -74,9 +74,9 @@ class TriggerCall:
 
 @dataclass(slots=True, eq=False)
 class _QueuedMotion:
-    """A motion that has not ended, and its end point, if the arm knows that.
+    """A motion that has not ended, with its end point if the arm knows it.
 
-    ``stops_advance`` once something has stopped the advance run behind it.
+    ``stops_advance`` is set once a statement after it has stopped the advance run.
     """
 
     planned: PlannedMotion
@@ -87,9 +87,9 @@ class _QueuedMotion:
 
 @dataclass(frozen=True, slots=True)
 class PlannedPoint:
-    """The end point of a motion as it was planned, if the arm knows that.
+    """The end point of a motion as planned, if the arm knows it.
 
-    ``tool`` is $TOOL as it was then.
+    ``tool`` is the value of $TOOL at that time.
     """
 
     number: int
@@ -101,15 +101,15 @@ class PlannedPoint:
 
 @runtime_checkable
 class _HasTarget(Protocol):
-    """An arm that knows the end point of the motion planned last."""
+    """An arm that knows the end point of the motion that was planned last."""
 
     def target(self) -> Position: ...
 
 
 class MotionQueue:
-    """Plans motions, and follows what the control core does with them.
+    """Plans motions, and follows their execution by the control core.
 
-    ``tracking`` is notified of the frames of each motion that starts.
+    ``tracking`` is told the frames of each motion that starts.
     """
 
     def __init__(
@@ -130,19 +130,19 @@ class MotionQueue:
         self._queued: dict[int, _QueuedMotion] = {}
         self._outputs: dict[OutputCommand, SetTrigger] = {}
         self._calls: dict[CallCommand, SetTrigger] = {}
-        #: $OUT_C: what is written at the end of a motion, by its number.
+        #: $OUT_C: the assignments to make at the end of a motion, by the motion's number.
         self._at_end: dict[int, list[tuple[Task, At, Path, Value]]] = defaultdict(list)
-        #: Calls of triggers that have fired and were not entered yet.
+        #: Actions of triggers that have fired and have not been entered.
         self.fired: list[CallCommand] = []
-        #: Places of STOP WHEN PATH that the arm has passed and that were not looked at yet.
+        #: STOP WHEN PATH places that the arm has passed and whose conditions were not evaluated.
         self.passed_stops: list[tuple[Task, SplineStop]] = []
-        #: Every motion that was planned and does not end where it starts, in order.
+        #: All planned motions, in order, except those that end where they start.
         self.points: list[PlannedPoint] = []
-        #: The line of the motion that has started last.
+        #: The line of the motion that started last.
         self.running: At | None = None
-        #: How many motions have ended.
+        #: The number of motions that have ended.
         self.ended = 0
-        #: How many events of the core there were.
+        #: The number of events that the core has reported.
         self.count = 0
         #: Whether the arm is on its way to the first point of the program [ADV-14].
         self.is_coincidence_run = False
@@ -152,7 +152,7 @@ class MotionQueue:
     def plan(self, task: Task, request: Move | MoveSpline, *, is_replaced: bool = False) -> None:
         """Plan a motion with the triggers before it. Raises `Fault`; then nothing is planned.
 
-        One that ``is_replaced`` leads to the same point as a PTP, in any Status.
+        With ``is_replaced``, plan a PTP to the same point with any Status instead.
         """
         triggers, task.triggers = task.triggers, []
         if isinstance(request, MoveSpline):
@@ -164,7 +164,7 @@ class MotionQueue:
             planned = self._builder.block(request, triggers)
         else:
             has_path = any(trigger.place_kind == "PATH" for trigger in triggers)
-            # With stand-ins PATH counts along the way of the tool, also of a PTP.
+            # With stand-ins, PATH is measured along the path of the tool, for a PTP too.
             if has_path and request.kind in WITHOUT_PATH and not self._state.profile.is_tolerant:
                 raise own_fault("trigger_path")
             planned = self._builder.build(request, triggers, is_replaced=is_replaced)
@@ -239,7 +239,7 @@ class MotionQueue:
         return outputs, calls
 
     def set_trigger(self, task: Task, request: SetTrigger) -> None:
-        """A trigger for the next motion. Raises `Fault` [TRG-09]."""
+        """Set a trigger for the next motion. Raises `Fault` [TRG-09]."""
         if task.levels or task.name == "submit":
             raise message_fault(1409)
         self._check_trigger(request)
@@ -250,28 +250,29 @@ class MotionQueue:
 
     @staticmethod
     def _check_trigger(request: SetTrigger) -> None:
-        """Its priority, and that it lies within 10,000,000 ms and mm [TRG-03 to TRG-06]."""
+        """Check the priority of a trigger, and its distance and delay [TRG-03 to TRG-06]."""
         if request.priority not in (None, -1) and request.priority not in _PRIORITIES:
             raise own_fault("trigger_priority")
         if max(abs(request.place), abs(request.delay)) > _FARTHEST:
             raise own_fault("trigger_range")
 
     def output_in_main_run(self, task: Task, at: At, path: Path, value: Value) -> None:
-        """$OUT_C: written when the motion planned last ends or is at its apex [ADV-11]."""
+        """$OUT_C: write at the end or the apex of the motion that was planned last [ADV-11]."""
         plain: Path = ("$OUT", *path[1:])
         own = self._queued if task.level is None else task.level.motions
         number = max(own, default=0)
         if number and task.name == "robot":
-            self._state.variables.read(plain)  # whether there is such an output
+            self._state.variables.read(plain)  # faults if there is no such output
             self._at_end[number].append((task, at, plain, value))
         else:
             self._state.put_at(task.name, at, plain, value)
 
     def own_pending(self, task: Task) -> int:
-        """How many motions of the program, or of the routine that interrupted it, have not ended.
+        """Return the number of motions that this program, or its interrupt routine, waits for.
 
-        An interrupt routine runs while the program's motions continue, so these do not hold it up
-        [INT-08] (unconfirmed for its advance stops).
+        These are the motions that have not ended. The motions of the interrupted program continue
+        while an interrupt routine runs, so they do not block the routine [INT-08] (unconfirmed for
+        advance stops in the routine).
         """
         if task.name == "submit":
             return 0
@@ -279,21 +280,21 @@ class MotionQueue:
 
     @property
     def pending(self) -> int:
-        """How many motions have not ended."""
+        """The number of motions that have not ended."""
         return self._core.pending()
 
     def next_time(self) -> int | None:
-        """When the core does something next, as planned today."""
+        """Return the time of the next event of the core in µs, according to the present plan."""
         return self._core.next_time()
 
     def release(self) -> None:
-        """Execute all motions: there is no next one before the arm stands."""
+        """Let the arm execute all motions: no motion follows before it is at rest."""
         self._core.release(self._state.clock.now)
 
     def stop_advance(self) -> None:
-        """Note that the advance run stops behind the motion planned last, which has no next one.
+        """Note that the advance run stops after the last planned motion, which has no successor.
 
-        The message of an earlier one that does not blend is 1123 and not 1442 [ADV-12].
+        The message of an earlier motion that is not blended is 1123 instead of 1442 [ADV-12].
         """
         if self._queued:
             self._queued[max(self._queued)].stops_advance = True
@@ -301,7 +302,7 @@ class MotionQueue:
     # ------------------------------------------------------------------ events of the core
 
     def collect(self) -> None:
-        """Handle what the arm and the core have done up to now."""
+        """Handle all events of the arm and the core up to now."""
         for event in self._core.run_until(self._state.clock.now):
             self.count += 1
             self._handle(event)
@@ -354,7 +355,7 @@ class MotionQueue:
         self.ended += 1
         self._remove(motion.number, task)
         if isinstance(command, MotionCommand) and _LENGTH_ZERO in command.notices:
-            task.spent += state.profile.requests // 2  # it took no time: a loop of such has to wait
+            task.spent += state.profile.requests // 2  # it took no time: a loop of them must wait
         for owner, at, path, value in self._at_end.pop(motion.number, ()):
             state.put_at(owner.name, at, path, value)
         if self._has_other_posture(motion):
@@ -367,9 +368,9 @@ class MotionQueue:
             )
 
     def _has_other_posture(self, motion: Motion) -> bool:
-        """Whether a path motion has ended with another Status or Turn than programmed [POS-10].
+        """Return whether a path motion ended with another Status or Turn than programmed [POS-10].
 
-        Bits 3 and 4 of the Status mean nothing [POS-06].
+        Bits 3 and 4 of Status have no meaning [POS-06].
         """
         checks = self._state.variables.read(("$CP_STATMON",))
         if not isinstance(checks, EnumValue) or motion.parts or motion.kind in AXIS_MOTIONS:

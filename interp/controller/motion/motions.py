@@ -1,7 +1,8 @@
-"""Motion instructions become motions of the arm, with all that was in force [MOT-10 to MOT-16].
+"""The builder of motions: from motion instructions to motions of the arm [MOT-10 to MOT-16].
 
-What a program has not set is a documented message: no tool 1419, no base 1516, a first motion that
-is no complete PTP 1443.
+A motion includes the values of all system variables that affect it. What a program has not set
+results in a documented message: no tool 1419, no base 1516, a first motion that is not a complete
+PTP 1443.
 """
 
 from __future__ import annotations
@@ -40,15 +41,15 @@ from interp.values.values import ArrayValue, StructureValue
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 _KINDS: Final = {kind.removesuffix("_REL") for kind in (*PLAIN_MOTIONS, *SPLINE_MOTIONS)}
-#: How the arm is brought to the end of a line that a program begins with.
+#: The motion that brings the arm to the end of a line with which a program begins.
 _BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
-#: And to the end of any motion that cannot be planned.
+#: The motion that replaces one that cannot be planned.
 _REPLACED: Final = {**_BROUGHT, "CIRC": "PTP", "SCIRC": "SPTP"}
 
 
 @dataclass(slots=True, eq=False)
 class PlannedMotion:
-    """A motion, the values it was planned with, and what its places mean, by their keys."""
+    """A motion, the system variables it was planned with, and its triggers and stops by key."""
 
     motion: Motion
     snapshot: Snapshot
@@ -57,7 +58,7 @@ class PlannedMotion:
 
 
 def target_of(value: Value) -> Target:
-    """The components of a position that have a value."""
+    """Return the components of a position that have a value."""
     if not isinstance(value, StructureValue):
         raise own_fault("motion_kind")
     members: list[Any] = value.members
@@ -69,7 +70,7 @@ def target_of(value: Value) -> Target:
 
 
 def is_complete(target: Target) -> bool:
-    """Whether it is complete: six axes, or a pose with Status and Turn [MOT-10]."""
+    """Return whether a target has all six axes, or a pose with Status and Turn [MOT-10]."""
     return set(_AXES) <= set(target) or set("XYZABCST") <= set(target)
 
 
@@ -79,7 +80,7 @@ def _numbers(value: Any, default: float) -> tuple[float, ...]:
 
 
 def _load(value: Any) -> Load | None:
-    """A load that has a mass; -1 kg stands for one that is unknown."""
+    """Return a load that has a mass, else ``None``; -1 kg means that the load is unknown."""
     mass = value.get("M") if isinstance(value, StructureValue) else None
     if not isinstance(mass, int | float) or not 0.0 < mass < math.inf:
         return None
@@ -90,7 +91,7 @@ def _load(value: Any) -> Load | None:
 
 
 def _number(structure: Any, member: str) -> float:
-    """A member; 0 where it has no value."""
+    """Return a member as a number; 0 if it has no value."""
     return float(structure.get(member) or 0.0)
 
 
@@ -99,13 +100,13 @@ def _pair(velocity: Any, acceleration: Any, name: str) -> tuple[float, float]:
 
 
 def _begins_completely(block: MoveSpline) -> bool:
-    """Whether a block may be the first motion: its first segment is a complete SPTP."""
+    """Return whether a block may be the first motion: its first segment is a complete SPTP."""
     first = next((item for item in block.items if isinstance(item, Move)), None)
     return first is not None and first.kind == "SPTP" and is_complete(target_of(first.target))
 
 
 class MotionBuilder:
-    """Builds motions; counts them, and gives each place a key of its own."""
+    """Builds motions; numbers them, and gives each of their places a key."""
 
     def __init__(self, state: ControllerState, frames: FramesInForce) -> None:
         self._state = state
@@ -116,19 +117,19 @@ class MotionBuilder:
 
     @property
     def count(self) -> int:
-        """How many motions there were."""
+        """The number of motions that were built."""
         return self._number
 
     def forget(self) -> None:
-        """The motion built last was not planned."""
+        """Take back the number of the last motion, because it was not planned."""
         self._number -= 1
 
     def build(
         self, request: Move, triggers: Sequence[SetTrigger], *, is_replaced: bool = False
     ) -> PlannedMotion:
-        """A single motion with the triggers before it. Raises `Fault`.
+        """Build a single motion with the triggers before it. Raises `Fault`.
 
-        One that ``is_replaced`` is a PTP to the same point, in any Status.
+        With ``is_replaced``, build a PTP to the same point with any Status instead.
         """
         kind, _, suffix = request.kind.partition("_")
         if kind not in _KINDS or kind == "SPL":
@@ -165,7 +166,7 @@ class MotionBuilder:
         return built
 
     def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> PlannedMotion:
-        """A spline block. Raises `Fault`."""
+        """Build the motion of a spline block. Raises `Fault`."""
         if self._is_first and not _begins_completely(request):
             self._refuse_start(request.at, request.keyword)
         snapshot = self._variables.snapshot(request.values)
@@ -203,13 +204,14 @@ class MotionBuilder:
 
     @property
     def _is_first(self) -> bool:
-        """Whether there was no motion, and none before it may be lost."""
+        """Whether this is the first motion, in a program that is complete."""
         return self._number == 0 and not self._state.profile.is_tolerant
 
     def _refuse_start(self, at: At, kind: str) -> None:
-        """A motion that no program may begin with [MOT-10].
+        """Reject a motion with which no program may begin [MOT-10].
 
-        Where somebody only looks at a program it is executed all the same, as one of this kind.
+        If the profile brings the arm to the first point, post a message instead; the motion is then
+        executed as ``kind``.
         """
         error = message_fault(1443)
         if not self._state.profile.brings_arm:
@@ -217,7 +219,7 @@ class MotionBuilder:
         self._state.messages.post("robot", at, 1443, f"{error}: executed as {kind}")
 
     def back_to(self, at: At, axes: Sequence[float]) -> PlannedMotion:
-        """The way back to where an interrupt routine has stopped the arm."""
+        """Build the motion back to where an interrupt routine has stopped the arm."""
         snapshot = self._variables.snapshot()
         names = [*_AXES, *(f"E{place}" for place in range(1, 7))]
         target = dict(zip(names, axes, strict=False))
@@ -250,7 +252,7 @@ class MotionBuilder:
         )
 
     def _check_frames(self, snapshot: Snapshot, kind: str, target: Target) -> None:
-        """A Cartesian motion needs a tool and a base [MOT-15]."""
+        """Check that a Cartesian motion has a tool and a base [MOT-15]."""
         if kind in AXIS_MOTIONS and not set("XYZABC") & set(target):
             return
         if pose_of(snapshot["$TOOL"]) is None:
@@ -286,7 +288,7 @@ class MotionBuilder:
         return tuple(places)
 
     def _place(self, kind: str, position: float, on_start: bool, delay: float) -> Place:
-        """``delay`` in ms, as TRIGGER has it [TRG-03]."""
+        """Return a place with a new key; ``delay`` is in ms, as in TRIGGER [TRG-03]."""
         self._key += 1
         place: Literal["DISTANCE", "PATH"] = "DISTANCE" if kind == "DISTANCE" else "PATH"
         return Place(self._key, place, position, on_start, round(delay * 1000))

@@ -1,7 +1,7 @@
-"""Outputs that the control core switches at their exact time, and when their changes are reported.
+"""Outputs that the control core switches at their exact time, and the report of their changes.
 
-The core runs ahead of the controller by as much as one call of `ControlCore.run_until`. So what an
-output command changes is kept until the controller comes to the event of that command.
+The core runs ahead of the controller, by the time of one `ControlCore.run_until`. So the changes
+that an output command makes are stored until the controller handles the event of that command.
 """
 
 from __future__ import annotations
@@ -34,5 +34,5 @@ class OutputSwitch:
         self._changes.append(changes)
 
     def next_changes(self) -> list[Change]:
-        """The changes of the earliest output command that were not taken yet."""
+        """Remove and return the changes of the earliest output command that was not handled yet."""
         return self._changes.popleft()

@@ -1,9 +1,9 @@
-"""System variables of the arm's position [MOT-18, INT-15].
+"""System variables for the position of the arm [MOT-18, INT-15].
 
-$POS_ACT and $AXIS_ACT are set-points, $POS_ACT_MES and $AXIS_ACT_MEAS are measured where the robot
-measures. $POS_INT is where the event of an interrupt came, $POS_RET where BRAKE stopped the arm,
-$POS_BACK where the running motion began, $POS_FOR where it goes. $IN_HOME is TRUE where every axis
-is within $H_POS_TOL of $H_POS; $IN_HOME1 to 5 likewise, with $AXIS_HOME and $H_AXIS_TOL.
+$POS_ACT and $AXIS_ACT are set-points. $POS_ACT_MES and $AXIS_ACT_MEAS are measured if the robot
+measures. $POS_INT is the position at the event of an interrupt, $POS_RET where BRAKE stopped the
+arm, $POS_BACK the start and $POS_FOR the end of the running motion. $IN_HOME is TRUE if every axis
+is within $H_POS_TOL of $H_POS; $IN_HOME1 to 5 likewise with $AXIS_HOME and $H_AXIS_TOL.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
     from interp.robot.simulation.tracking import Tracking
 
-#: Degrees or mm by which an axis may miss a home position beside its tolerance.
+#: Degrees or mm by which an axis may miss a home position in addition to its tolerance.
 _HOME: Final = 1e-3
 
 
 def axes_value(axes: Sequence[float]) -> StructureValue:
-    """An E6AXIS; external axes that are not there are 0."""
+    """Return an E6AXIS from axis values in degrees or mm; missing external axes are 0."""
     value = empty_structure("E6AXIS")
     for place in range(len(value.members)):
         value.members[place] = single(axes[place] if place < len(axes) else 0.0)
@@ -45,7 +45,7 @@ def axes_value(axes: Sequence[float]) -> StructureValue:
 def pose_value(
     pose: Pose, status: int = 0, turn: int = 0, externals: Sequence[float] = ()
 ) -> StructureValue:
-    """An E6POS."""
+    """Return an E6POS from a pose, Status, Turn and external axes; missing axes are 0."""
     value = empty_structure("E6POS")
     for name, number in zip("XYZABC", pose.components, strict=True):
         value.set(name, single(number))
@@ -57,18 +57,18 @@ def pose_value(
 
 
 def pose_of(frame: Any) -> Pose | None:
-    """The pose of a FRAME, POS or E6POS; ``None`` where a component has no value."""
+    """Return the pose of a FRAME, POS or E6POS; ``None`` if a component has no value."""
     numbers = [frame.get(name) for name in "XYZABC"]
     return None if None in numbers else Pose.of(*map(float, numbers))
 
 
 def word_of(value: Any) -> str:
-    """A value of an enumeration as KRL writes it, ``#BASE``; others as they are printed."""
+    """Return an enumeration constant as KRL writes it, ``#BASE``; other values as ``str`` does."""
     return f"#{value.name.upper()}" if isinstance(value, EnumValue) else str(value)
 
 
 class FramesInForce:
-    """$BASE, $TOOL, $ROBROOT and $IPO_MODE in the advance run and in the main run."""
+    """$BASE, $TOOL, $ROBROOT and $IPO_MODE, in the advance run and in the main run."""
 
     def __init__(
         self, variables: Variables, machine: MachineData | None, core: ControlCore
@@ -76,15 +76,15 @@ class FramesInForce:
         self._variables = variables
         self._machine = machine
         self._core = core
-        #: What EK gave last, and what carries it.
+        #: The frame that EK returned last, and the kinematic system that carries it.
         self._coupled: tuple[Pose, Carrier] | None = None
 
     def couple(self, frame: Pose, table: Carrier) -> None:
-        """$BASE moves with external axes as long as it has the value of a frame that EK gave."""
+        """Let $BASE move with external axes as long as it equals the frame that EK returned."""
         self._coupled = frame, table
 
     def of(self, values: Snapshot) -> Placement:
-        """The frames of a motion; a $TOOL or $BASE without a value counts as zero."""
+        """Return the frames of a motion; a $TOOL or $BASE without a value counts as zero."""
         base = pose_of(values["$BASE"]) or IDENTITY
         given, table = self._coupled or (None, None)
         return Placement(
@@ -97,15 +97,15 @@ class FramesInForce:
         )
 
     def advance_run(self) -> Placement:
-        """The frames as the program has set them last."""
+        """Return the frames that the program has set last."""
         return self.of(self._variables.snapshot())
 
     def main_run(self) -> Placement:
-        """The frames of the motion that runs; after the last one those of the advance run."""
+        """Return the frames of the running motion; after the last one, those of the advance run."""
         return self.of(self._variables.main) if self._core.pending() else self.advance_run()
 
     def _robroot(self) -> Pose:
-        """$ROBROOT of a data list, else that of the machine data."""
+        """Return $ROBROOT of a data list, else that of the machine data."""
         found = pose_of(self._variables.read(("$ROBROOT",)))
         if found is not None and found != IDENTITY:
             return found
@@ -113,9 +113,9 @@ class FramesInForce:
 
 
 class Positions:
-    """The position of the arm now, as it is measured, and where it was at certain events.
+    """The present position of the arm, its measured position, and those at certain events.
 
-    ``tracking`` measures, where there is a robot.
+    ``tracking`` measures the position, if there is a robot.
     """
 
     def __init__(
@@ -154,11 +154,11 @@ class Positions:
         return None if self._machine is None else kinematics_of(self._machine)
 
     def actual(self) -> Position:
-        """The set-point at this time."""
+        """Return the present set-point."""
         return self._arm.position(self._clock.now)
 
     def keep(self, name: str, position: Position | None = None) -> None:
-        """Keep a position, by default the set-point at this time, as INT, RET, BACK or FOR."""
+        """Store a position, by default the present set-point, as INT, RET, BACK or FOR."""
         self._kept[name] = self.actual() if position is None else position
 
     def _recall(self, name: str) -> Position:
@@ -174,7 +174,7 @@ class Positions:
         return Position(axes, flange)
 
     def _point_at(self, position: Callable[[], Position]) -> StructureValue:
-        """A position as $POS_ACT shows it: the point of the tool in the base, Status and Turn."""
+        """Return a position as in $POS_ACT: the tool centre point in the base, Status and Turn."""
         at = position()
         status, turn = self.status_turn(at.axes)
         externals = at.axes[ROBOT_AXES:]
@@ -182,7 +182,7 @@ class Positions:
         return pose_value(point, status, turn, externals)
 
     def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
-        """Status and Turn of axes; a Status of 0 where there is no machine data."""
+        """Return Status and Turn of axes in degrees; Status is 0 if there is no machine data."""
         from interp.robot.kinematics.targets import turn_of
 
         robot = axes[:ROBOT_AXES]
@@ -190,7 +190,7 @@ class Positions:
         return status, turn_of(robot)
 
     def _is_home(self, home: Path, tolerance: Path) -> Value:
-        """Whether all axes that a home position names are there."""
+        """Return whether all axes that a home position names are within their tolerance."""
         wanted: Any = self._variables.read(home)
         allowed: Any = self._variables.read(tolerance)
         names = [member.name for member in wanted.type.members]

@@ -1,1 +1,1 @@
-"""Requests of executors and their answers: waits, motions, variables, predefined routines."""
+"""Handlers of executors' requests: waits, motions, variables, predefined routines."""

@@ -1,4 +1,4 @@
-"""The system variables that are computed whenever they are read."""
+"""The system variables whose values are computed whenever they are read."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from interp.values.values import single
 
 
 def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQueue) -> None:
-    """Connect them all; those of positions are connected by `motion.positions`."""
+    """Connect the computed variables; `motion.positions` connects those of positions."""
     arm, clock, profile, states = core.arm, state.clock, state.profile, state.program_states
     computed: Mapping[str, Callable[[], Value]] = {
         "$DATE": partial(_date, state),
@@ -56,16 +56,16 @@ def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQue
 
 @dataclass(frozen=True, slots=True)
 class _MainRunOutputs:
-    """$OUT_C is read as $OUT; the motion queue decides when a write takes effect [ADV-11]."""
+    """$OUT_C: it reads as $OUT; the motion queue decides when a write takes effect [ADV-11]."""
 
     signals: Signals
 
     def read(self, path: Path) -> Value:
-        """The value of the output."""
+        """Return the value of the output."""
         return self.signals.read(("$OUT", *path[1:]))
 
     def write(self, path: Path, value: Value) -> None:
-        """Write the output itself."""
+        """Write the output."""
         self.signals.write(("$OUT", *path[1:]), value)
 
 

@@ -1,4 +1,4 @@
-"""Requests for motions: how far the program may run ahead of them [ADV-01 ff.]."""
+"""The handlers of motion requests: how far the program may run ahead of the arm [ADV-01 ff.]."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from interp.values.faults import Fault
 
 
 class MotionRequests:
-    """Answers them; triggers are answered by the motion queue itself."""
+    """Answers requests for motions; the motion queue itself answers those for triggers."""
 
     def __init__(self, state: ControllerState, queue: MotionQueue) -> None:
         self._state = state
         self._queue = queue
 
     def move(self, task: Task, request: Move | MoveSpline) -> Answer:
-        """A motion is planned; the program continues once it is at most $ADVANCE motions ahead.
+        """Plan a motion; the program continues once it is at most $ADVANCE motions ahead.
 
-        Of a motion that runs and three that are planned, $ADVANCE=3 makes the program wait behind
-        the third. With $ADVANCE=0 it waits for each motion's end [ADV-01, ADV-02, INT-12].
+        With $ADVANCE=3, the program waits after the third planned motion while the arm executes
+        another one. With $ADVANCE=0 it waits for the end of each motion [ADV-01, ADV-02, INT-12].
         """
         if task.name == "submit":
             raise own_fault("submit_motion")
@@ -43,9 +43,10 @@ class MotionRequests:
     def _replaces(
         self, task: Task, request: Move | MoveSpline, triggers: list[SetTrigger], error: Fault
     ) -> bool:
-        """Whether a PTP leads to the end of a motion that cannot be planned.
+        """Try a PTP to the end of a motion that cannot be planned, and return whether it works.
 
-        So the motions behind it begin where they should, though the arm is not that of the program.
+        This way the next motions begin where they should, although the posture of the arm is not
+        that of the program.
         """
         profile = self._state.profile
         if not (profile.is_tolerant and profile.brings_arm) or isinstance(request, MoveSpline):
@@ -60,7 +61,7 @@ class MotionRequests:
         return True
 
     def _coincide(self, task: Task, request: Move | MoveSpline) -> Blocked:
-        """The block coincidence run: the program waits until it has ended [ADV-14]."""
+        """Execute the block coincidence run: the program waits for its end [ADV-14]."""
         self._queue.is_coincidence_run = True
         messages = self._state.messages
         messages.post_number(request.at, 309, "state")
@@ -73,13 +74,14 @@ class MotionRequests:
         return Blocked(request, lambda: not self._queue.own_pending(task), reached)
 
     def move_emily(self, task: Task, request: MoveEmily) -> Answer:
-        """Paths of an option package are not simulated. Raises `Fault`, or skips it."""
+        """Skip the motion, which is not simulated, or raise `Fault`."""
         return self._skip(task, request.at, own_fault("motion_kind"))
 
     def _skip(self, task: Task, at: At, error: Fault) -> Answer:
-        """Continue without a motion if the profile is tolerant; else raises its `Fault`.
+        """Continue without a motion if the profile is tolerant, else raise ``error``.
 
-        One that is skipped again ends the slice: a loop in which all fails lets time pass.
+        If the same motion is skipped again, end the slice: time passes in a loop in which all
+        motions fail.
         """
         if not self._state.profile.is_tolerant:
             raise error

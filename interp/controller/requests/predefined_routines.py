@@ -1,7 +1,7 @@
-"""Predefined routines of the controller: PULSE, channels, messages, errors, kinematics.
+"""The handlers of predefined routines: PULSE, channels, messages, errors, kinematics.
 
-What is not simulated is a fault of its own, `unsupported`, never silence. Which of them stop the
-advance run is data (`grammar.semantics.predefined`) [ADV-04, ADV-07].
+A routine that is not simulated is the fault ``unsupported``; it is never ignored silently. Which
+routines stop the advance run is data (`grammar.semantics.predefined`) [ADV-04, ADV-07].
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
 
 _AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
-#: Variables whose size is in the profile.
+#: Arrays whose size is in the profile.
 _SIZES: Final = {
     "CYCFLAG": "cyclic_flags",
     "FLAG": "flags",
@@ -78,7 +78,7 @@ class PredefinedRoutines:
         self._newest = System.load().functions
 
     def call(self, task: Task, request: Invoke) -> Answer:
-        """The result and the new values of arguments, or a wait. Raises `Fault`."""
+        """Return the result and the new values of arguments, or a wait. Raises `Fault`."""
         rule = _RULES.get(request.name)
         entry = self._functions.get(request.name) or self._newest[request.name]
         if rule is None:
@@ -88,7 +88,7 @@ class PredefinedRoutines:
         return rule(self, task, request)
 
     def _unsupported(self, task: Task, request: Invoke, entry: PredefinedFunction) -> Outcome:
-        """What is not simulated: a fault, or nothing with a zero as its result."""
+        """Raise a fault for a routine that is not simulated; a tolerant profile returns zero."""
         if not self._state.profile.is_tolerant:
             raise own_fault("unsupported")
         text = f"{request.name} is not simulated"
@@ -100,7 +100,7 @@ class PredefinedRoutines:
 
     @staticmethod
     def _stops_advance(request: Invoke) -> bool:
-        """Whether the options of a message say that it stops the advance run."""
+        """Return whether the options of a message say that it stops the advance run."""
         option: Any = request.arguments[-1] if request.name.startswith("SET_KRL") else None
         return (
             isinstance(option, StructureValue)
@@ -175,7 +175,7 @@ class PredefinedRoutines:
         return self._state.messages.find(_int(request, 0)) is not None, {}
 
     def _exists_dialogue(self, _task: Task, request: Invoke) -> Outcome:
-        """TRUE as long as it has no answer; then the second argument is the button."""
+        """Return TRUE while a dialogue has no answer; then FALSE, and the button as argument."""
         shown = self._state.messages.find(_int(request, 0))
         if shown is None:
             return False, {}
@@ -200,7 +200,7 @@ class PredefinedRoutines:
     # --------------------------------------------------------------------------------- errors
 
     def _clear_error(self, _task: Task, request: Invoke) -> Outcome:
-        """ERR_CLEAR: the error has the number 0 [TYP-13]."""
+        """ERR_CLEAR: set the number of the error to 0 [TYP-13]."""
         error = request.arguments[0]
         if not isinstance(error, StructureValue):
             raise fault("argument")
@@ -209,7 +209,7 @@ class PredefinedRoutines:
         return None, {0: cleared}
 
     def _raise_error(self, _task: Task, request: Invoke) -> Outcome:
-        """ERR_RAISE: the fault that the error describes; without one, nothing (unconfirmed)."""
+        """ERR_RAISE: raise the fault that the error describes, none for number 0 (unconfirmed)."""
         error = request.arguments[0]
         value = error.get("NUMBER") if isinstance(error, StructureValue) else None
         if value == 0:
@@ -224,10 +224,10 @@ class PredefinedRoutines:
     # ------------------------------------------------------------------------------ the robot
 
     def _stop_robot(self, task: Task, request: Invoke) -> Outcome:
-        """ROB_STOP: the arm stands until ROB_STOP_RELEASE, whatever $OV_PRO is meanwhile.
+        """ROB_STOP: the arm stands until ROB_STOP_RELEASE, whatever the value of $OV_PRO.
 
-        A submit program shows 81 for a stop on a ramp, 82 for one that keeps to the path [SUB-06]
-        (which number is which is unconfirmed); the arm keeps to its path either way.
+        A submit program posts message 81 for a stop on a ramp, and 82 for a stop on the path
+        [SUB-06] (which number is which is unconfirmed). The arm stays on its path in both cases.
         """
         self._state.trace.record(task.name, "brake", request.at, mode="ROB_STOP")
         kind = request.arguments[0]
@@ -243,7 +243,7 @@ class PredefinedRoutines:
         return None, {}
 
     def _forward(self, _task: Task, request: Invoke) -> Outcome:
-        """The pose of axes, in the base and tool of the advance run [FCT-03]."""
+        """FORWARD: return the pose of axes, in base and tool of the advance run [FCT-03]."""
         from interp.robot.kinematics.targets import turn_of
 
         target = target_of(known(request.arguments[0]))
@@ -256,7 +256,7 @@ class PredefinedRoutines:
         return pose, {1: 0}
 
     def _inverse(self, _task: Task, request: Invoke) -> Outcome:
-        """The axes of a pose; the status is not 0 where it cannot be reached [FCT-03]."""
+        """INVERSE: return the axes of a pose; the status is 1 if it cannot be reached [FCT-03]."""
         from interp.robot.kinematics.targets import solve
 
         target = target_of(known(request.arguments[0]))
@@ -280,9 +280,9 @@ class PredefinedRoutines:
         return axes_value([*found.axes, *externals]), {2: 0}
 
     def _couple(self, task: Task, request: Invoke) -> Outcome:
-        """EK: the frame on an external kinematic system, which $BASE then moves with [FCT-11].
+        """EK: return a frame on an external kinematic system, with which $BASE then moves [FCT-11].
 
-        That a base is coupled by this value alone is unconfirmed.
+        That a base is coupled by having this value, and by nothing else, is unconfirmed.
         """
         root, offset = (pose_of(known(request.arguments[place])) for place in (0, 2))
         machine = self._state.machine
@@ -308,13 +308,13 @@ class PredefinedRoutines:
     # ---------------------------------------------------------------------------------- others
 
     def _workspace(self, task: Task, _request: Invoke) -> Outcome:
-        """Shared workspaces are always free; a submit program may not use them [SUB-06]."""
+        """Return TRUE: workspaces are always free; a submit program may not use them [SUB-06]."""
         if task.name == "submit":
             raise message_fault(2825)
         return True, {}
 
     def _size(self, _task: Task, request: Invoke) -> Outcome:
-        """GETVARSIZE(#NAME): the elements of an array of the controller."""
+        """GETVARSIZE(#NAME): return the number of elements of an array of the controller."""
         which = request.arguments[0]
         if not isinstance(which, EnumValue):
             raise fault("argument")
@@ -324,15 +324,15 @@ class PredefinedRoutines:
         return self._state.variables.size(f"${name}"), {}
 
     def _no_message(self, _task: Task, _request: Invoke) -> Outcome:
-        """MBX_REC: 1, for nothing has come (unconfirmed); a message would be 0."""
+        """MBX_REC: return 1 because no message has come (unconfirmed); a message would be 0."""
         return 1, {}
 
     def _fine(self, _task: Task, _request: Invoke) -> Outcome:
-        """GETSYSSTATE: known, and 0: no fault (unconfirmed)."""
+        """GETSYSSTATE: return that the state is known, and 0 for no fault (unconfirmed)."""
         return True, {1: 0, 2: 0.0}
 
     def _zero(self, _task: Task, _request: Invoke) -> Outcome:
-        """SYNC: there is no other robot."""
+        """SYNC: return 0, because there is no other robot."""
         return 0, {}
 
     def _no(self, _task: Task, _request: Invoke) -> Outcome:
@@ -340,21 +340,21 @@ class PredefinedRoutines:
 
 
 def _int(request: Invoke, place: int) -> int:
-    """An argument as INT."""
+    """Return an argument converted to INT."""
     found = converted(known(request.arguments[place]), INT)
     assert isinstance(found, int), "converted"
     return found
 
 
 def _all_of(target: Target, names: Sequence[str]) -> list[float]:
-    """These components of a position; faults ``uninitialised`` where one has no value [TYP-13]."""
+    """Return components of a position; faults ``uninitialised`` if one has no value [TYP-13]."""
     if not target.keys() >= set(names):
         raise fault("uninitialised")
     return [target[name] for name in names]
 
 
 def _filled(text: str, parameters: Any) -> str:
-    """A text of a message with its parameters in place of %1 to %3."""
+    """Return the text of a message, with its parameters in place of %1 to %3."""
     for place, one in enumerate(parameters or (), start=1):
         if not isinstance(one, StructureValue):
             continue

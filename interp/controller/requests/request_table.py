@@ -1,4 +1,4 @@
-"""Dispatch table: which part of the controller answers which request."""
+"""The dispatch table of requests: which handler answers which type of request."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ _Request = TypeVar("_Request", bound=Request)
 
 
 class RequestTable:
-    """Handlers by the type of the request."""
+    """Handlers of requests, by the type of the request."""
 
     def __init__(self) -> None:
         self._handlers: dict[type[object], Callable[[Task, Any], Answer]] = {}
 
     def add(self, kind: type[_Request], handler: Callable[[Task, _Request], Answer]) -> None:
-        """Have requests of a type answered by a handler, which may raise `Fault`."""
+        """Register the handler of a type of requests; it may raise `Fault`."""
         self._handlers[kind] = handler
 
     def answer(self, task: Task, request: Request) -> Answer:
-        """What the handler answers; a `Fault` that it raises is the answer."""
+        """Return the answer of the handler; a `Fault` that it raises is returned as the answer."""
         try:
             return self._handlers[type(request)](task, request)
         except Fault as error:

@@ -1,4 +1,4 @@
-"""Requests to read and write system variables: the advance stop, limits of ANOUT, and $ERR."""
+"""The handlers of variable access: advance stops, the limits of ANOUT, and $ERR."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from interp.values.values import ArrayValue, StructureValue, set_text
 
 
 class VariableAccess:
-    """Answers requests to read and to write."""
+    """Answers requests to read and to write system variables."""
 
     def __init__(
         self,
@@ -31,7 +31,7 @@ class VariableAccess:
         self._automatic = automatic
 
     def read(self, task: Task, request: Read) -> Answer:
-        """The value of a variable. Raises `Fault`."""
+        """Return the value of a variable. Raises `Fault`."""
         path, variables = request.path, self._state.variables
         if self._automatic.is_on and task.name == "robot":
             self._automatic.was_read(path)
@@ -40,7 +40,7 @@ class VariableAccess:
         return variables.read(path)
 
     def write(self, task: Task, request: Write) -> Answer:
-        """Give a variable a value. Raises `Fault`."""
+        """Assign a value to a variable. Raises `Fault`."""
         path, name = request.path, str(request.path[0])
         if name == "$OUT_C":
             self._queue.output_in_main_run(task, request.at, path, request.value)
@@ -61,20 +61,20 @@ class VariableAccess:
         return None
 
     def _put_cyclic(self, request: Write, signal: SwitchSignal) -> None:
-        """ANOUT ON: the value within its limits, after its delay in seconds [IOT-09]."""
+        """ANOUT ON: assign the value within its limits, after its delay in seconds [IOT-09]."""
         state, value = self._state, request.value
         if signal.minimum is not None:
             value = max(value, signal.minimum)
         if signal.maximum is not None:
             value = min(value, signal.maximum)
         if signal.delay is None or signal.delay <= 0.0:
-            state.put(request.path, value)  # an earlier switch would need the future (unconfirmed)
+            state.put(request.path, value)  # a negative delay cannot be simulated (unconfirmed)
             return
         at = state.clock.now + microseconds(signal.delay)
         state.later(at, lambda: state.put(request.path, value))
 
     def _note_error(self, task: Task, request: Write) -> None:
-        """ON_ERROR_PROCEED notes the error it has caught: number and place [TYP-13, FCT-07]."""
+        """Store number and place of the error that ON_ERROR_PROCEED caught [TYP-13, FCT-07]."""
         variables = self._state.variables
         variables.put(request.path, request.value)
         if request.path != ("$ERR", "NUMBER"):

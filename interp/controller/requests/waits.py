@@ -1,4 +1,4 @@
-"""Requests that wait for time or for the operator."""
+"""The handlers of requests that wait for time or for the operator."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Confirm, Halt, Poll, Read, Request, Slice, Wait
 from interp.values.json_form import to_json
 
-#: A program that has only read variables for so long, in µs, gets so many requests in a slice.
+#: A program that has only read variables for this time, in µs, may make only so many requests in a
+#: slice.
 IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
 
 
 class Waits:
-    """Answers them; ``player`` is notified of HALT, ``automatic`` of WAIT FOR."""
+    """Answers waiting requests; notifies ``player`` of HALT and ``automatic`` of WAIT FOR."""
 
     def __init__(
         self,
@@ -43,11 +44,11 @@ class Waits:
     # ------------------------------------------------------------------------------- time
 
     def until(self, request: Request, time: int, then: Callable[[], Answer]) -> Blocked:
-        """Wait for a time."""
+        """Return a wait until a time in µs."""
         return Blocked(request, lambda: self._state.clock.now >= time, then, time)
 
     def next_slice(self, task: Task) -> int:
-        """When a task may compute again that has used up its slice [SUB-03, SUB-04]."""
+        """Return when a task that has used up its slice may run again, in µs [SUB-03, SUB-04]."""
         clock = self._state.clock
         if task.name == "robot":
             return clock.next_tick
@@ -55,7 +56,7 @@ class Waits:
         return clock.now - clock.now % period + period
 
     def wait(self, task: Task, request: Wait) -> Answer:
-        """WAIT SEC; less than nothing is no wait [CTL-12]."""
+        """WAIT SEC: wait for a time; a time of zero or less is no wait [CTL-12]."""
 
         def begin() -> Answer:
             if request.seconds <= 0:
@@ -69,7 +70,7 @@ class Waits:
         return self._advance.when_reached(task, request, begin)
 
     def poll(self, task: Task, request: Poll) -> Answer:
-        """WAIT FOR: the condition is evaluated again in the next slice."""
+        """WAIT FOR: let the program evaluate its condition again in the next slice."""
         is_robot = task.name == "robot"
         if request.is_first:
             task.polling = None
@@ -84,10 +85,10 @@ class Waits:
         return self.until(request, self.next_slice(task), lambda: None)
 
     def requests_left(self, task: Task, request: Request, most: int) -> int:
-        """How many requests a program has in this slice: few if it has only read for a second.
+        """Return how many requests a program may make in this slice.
 
-        It goes round in a loop until something changes. Where inputs are automatic they change as
-        for a WAIT FOR.
+        These are few if it has only read variables for a second: it is in a loop that waits until
+        something changes. Automatic inputs then change as they do for a WAIT FOR.
         """
         now = self._state.clock.now
         if not isinstance(request, Read | Slice):
@@ -108,12 +109,12 @@ class Waits:
             self._automatic.begin()
 
     def slice(self, task: Task, request: Slice) -> Answer:
-        """The program has used up its statements: it continues in the next slice."""
+        """Let a program that has used up its statements continue in the next slice."""
         more = (request.count - 1) * self._state.clock.cycle
         return self.until(request, self.next_slice(task) + more, lambda: None)
 
     def idle_time(self, task: Task) -> int | None:
-        """The time in µs from which inputs may change for a program that only computes, if any."""
+        """Return the time in µs from which inputs change for a program that only reads, if any."""
         if task.idle_at is not None:
             return self._automatic.next_change
         return task.busy_at + IDLE_AFTER if self._automatic.is_on else None
@@ -121,7 +122,7 @@ class Waits:
     # ----------------------------------------------------------------------- the operator
 
     def halt(self, task: Task, request: Halt) -> Answer:
-        """HALT waits for all motions that are planned, in an interrupt routine too [CTL-08]."""
+        """HALT: wait for all planned motions, in an interrupt routine too, then halt [CTL-08]."""
 
         def halted() -> Blocked:
             self._state.trace.record(task.name, "halt", request.at)
@@ -146,6 +147,6 @@ class Waits:
         return Blocked(request, is_reached, halted)
 
     def confirm(self, _task: Task, request: Confirm) -> Answer:
-        """CONFIRM acknowledges a message; 0 all of them (unconfirmed)."""
+        """CONFIRM: acknowledge a message; the number 0 acknowledges all of them (unconfirmed)."""
         self._panel.press("CONFIRM", request.number or None)
         return None

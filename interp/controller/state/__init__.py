@@ -1,1 +1,1 @@
-"""State: clock, trace, variables, signals, messages, tasks, profile: what all parts share."""
+"""The state that all parts share: clock, trace, variables, signals, messages, tasks, profile."""

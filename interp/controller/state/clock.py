@@ -1,4 +1,4 @@
-"""Virtual time, and what is to be done at a time: pulses that end, inputs of a script."""
+"""Virtual time, and a queue of timed actions, such as ends of pulses and inputs of a script."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ from support.lazy_dataclass import dataclass
 
 
 def microseconds(seconds: float) -> int:
-    """Seconds as whole µs, to the nearest."""
+    """Return seconds as whole µs, rounded to the nearest."""
     return round(seconds * 1_000_000)
 
 
 @dataclass(slots=True)
 class Clock:
-    """Whole µs since the start, and the ticks of the interpolation cycle."""
+    """The virtual time in whole µs since the start, and the ticks of the interpolation cycle.
+
+    ``cycle`` is the interpolation cycle in µs.
+    """
 
     cycle: int
     now: int = 0
@@ -30,7 +33,7 @@ class Clock:
 
     @property
     def tick(self) -> int:
-        """The time of the last tick, now if there is one."""
+        """The time of the last tick, which may be now."""
         return self.now - self.now % self.cycle
 
     @property
@@ -39,13 +42,13 @@ class Clock:
         return self.tick + self.cycle
 
     def tick_after(self, duration: float) -> int:
-        """The first tick when so many µs have passed [TIM-06]."""
+        """Return the time of the first tick at least ``duration`` µs from now [TIM-06]."""
         return math.ceil((self.now + max(duration, 0)) / self.cycle) * self.cycle
 
 
 @dataclass(slots=True, eq=False)
 class TimedAction:
-    """Something to do once at ``time``, in µs, unless it is cancelled."""
+    """An action to be performed once at ``time`` in µs, unless it is cancelled."""
 
     time: int
     action: Callable[[], None]
@@ -54,24 +57,24 @@ class TimedAction:
 
 @dataclass(slots=True)
 class ActionQueue:
-    """Timed actions by their times; those of one time in the order in which they were added."""
+    """Timed actions in order of their times; those of equal time in order of addition."""
 
     _entries: list[tuple[int, int, TimedAction]] = field(default_factory=list)
     _order: count[int] = field(default_factory=count)
 
     def add(self, time: int, action: Callable[[], None]) -> TimedAction:
-        """Do something at a time."""
+        """Add an action at a time in µs, and return it."""
         made = TimedAction(time, action)
         heapq.heappush(self._entries, (time, next(self._order), made))
         return made
 
     def next_time(self) -> int | None:
-        """When something is to be done next."""
+        """Return the time of the next action in µs; ``None`` if there is none."""
         while self._entries and self._entries[0][2].is_cancelled:
             heapq.heappop(self._entries)
         return self._entries[0][0] if self._entries else None
 
     def run_until(self, now: int) -> None:
-        """Do all that is due."""
+        """Perform all actions that are due."""
         while (time := self.next_time()) is not None and time <= now:
             heapq.heappop(self._entries)[2].action()

@@ -1,7 +1,7 @@
-"""The interrupts of one program: which there are, which are watched, which have come [INT-01 ff.].
+"""The interrupts of one program: their declarations, states and pending events [INT-01 ff.].
 
-The event is an edge: the condition is TRUE and was not before. It is looked at in every
-interpolation cycle [INT-06, INT-18]. One that came while it could not run is kept, once.
+The event of an interrupt is the edge from FALSE to TRUE of its condition, which is evaluated in
+every interpolation cycle [INT-06, INT-18]. One event is stored while the interrupt cannot run.
 """
 
 from __future__ import annotations
@@ -17,23 +17,24 @@ from interp.controller.state.messages import own_fault
 from interp.port.requests import At, CodeHandle, DeclareInterrupt
 from interp.values.values import ArrayValue, StructureValue, set_text, zero
 
-#: Numbers that programs may use; 3 is the system's own, in files that come with a controller
-#: [INT-02]. For those of triggers see TRG-06.
+#: The interrupt numbers that programs may use; 3 is used by the system, in files of the controller
+#: [INT-02]. For the priorities of triggers see TRG-06.
 _RANGES: Final = (range(1, 40), range(81, 129))
 
 
 def is_usable(number: int) -> bool:
-    """Whether an interrupt can have this number [INT-02]."""
+    """Return whether an interrupt can have this number [INT-02]."""
     return any(number in numbers for numbers in _RANGES)
 
 
 @dataclass(slots=True, eq=False)
 class Interrupt:
-    """A declaration and its state.
+    """A declared interrupt and its state.
 
-    ``off`` is not watched; ``on`` is watched and executed; ``held`` (DISABLE) is watched and kept
-    [INT-07]. ``depth`` is that of the routine that declared it. ``was_true`` is its condition when
-    it was looked at last, ``has_come`` that its event has not been served yet.
+    An interrupt that is ``off`` is not evaluated. ``on`` means evaluated and executed, ``held``
+    (DISABLE) evaluated, with its event stored [INT-07]. ``depth`` is that of the routine that
+    declared it. ``was_true`` is the last value of its condition. ``has_come`` is set while its
+    event is pending.
     """
 
     number: int
@@ -47,20 +48,20 @@ class Interrupt:
 
     @property
     def depth(self) -> int:
-        """How deep the declaring routine was."""
+        """The call depth of the declaring routine."""
         return self.at.depth
 
 
-#: Elements of the list of interrupts.
+#: The number of elements in the list of interrupts.
 _LISTED: Final = 64
-#: INT_STATE in the list of interrupts; the codes are ours (unconfirmed).
+#: INT_STATE in the list of interrupts; these codes are our choice (unconfirmed).
 _STATES: Final = {"off": 0, "on": 1, "held": 2}
 
 
 class Interrupts:
-    """The declarations of a program: at most ``most``, ``active`` of them at work.
+    """The interrupts of a program: at most ``most`` declared, ``active`` pending or running.
 
-    They come in the order of their numbers, the highest priority first.
+    They are in the order of their numbers, so the highest priority comes first.
     """
 
     def __init__(self, most: int, active: int) -> None:
@@ -73,11 +74,11 @@ class Interrupts:
 
     @property
     def is_watched(self) -> bool:
-        """Whether there is one whose condition has to be looked at."""
+        """Whether any interrupt has a condition that must be evaluated."""
         return any(one.state != "off" for one in self._by_number.values())
 
     def declare(self, request: DeclareInterrupt) -> None:
-        """A declaration, which replaces one of the same number; faults for a wrong number."""
+        """Declare an interrupt, replacing one of the same number; faults for an invalid number."""
         if not is_usable(request.number):
             raise own_fault("interrupt_number")
         if request.number not in self._by_number and len(self._by_number) >= self._most:
@@ -88,7 +89,7 @@ class Interrupts:
         self._by_number = dict(sorted(self._by_number.items()))
 
     def switch(self, action: str, number: int | None, holds: Callable[[CodeHandle], bool]) -> None:
-        """ON, OFF, ENABLE or DISABLE; ``holds`` gives a condition as it is now."""
+        """Execute ON, OFF, ENABLE or DISABLE; ``holds`` evaluates a condition."""
         if number is None:
             chosen = list(self)
         elif number in self._by_number:
@@ -109,9 +110,10 @@ class Interrupts:
                     one.state, one.has_come = "off", False
 
     def forget(self, depth: int) -> None:
-        """A routine of this depth has ended: what it declared is gone, unless global [INT-04].
+        """Remove what a routine of this depth declared, unless it is GLOBAL [INT-04].
 
-        Not so for the first one: the arm is still on its way when the advance run is at its end.
+        Called when the routine ends. Depth 0 is ignored: the arm still moves when the advance run
+        reaches the end of the program.
         """
         if depth == 0:
             return
@@ -122,9 +124,10 @@ class Interrupts:
         }
 
     def watch(self, holds: Callable[[CodeHandle], bool], running: int) -> list[Interrupt]:
-        """Look at all conditions once; gives those whose event has come now.
+        """Evaluate all conditions once, and return the interrupts whose event has come now.
 
-        ``running`` is how many routines are at work; faults where there are too many.
+        ``running`` is the number of interrupt routines that run; faults if too many are pending or
+        running.
         """
         come = []
         for one in self:
@@ -140,12 +143,12 @@ class Interrupts:
         return come
 
     def next(self) -> Interrupt | None:
-        """The one with the highest priority that has come and may run [INT-05]."""
+        """Return the pending interrupt with the highest priority that may run [INT-05]."""
         return next((one for one in self if one.has_come and one.state == "on"), None)
 
 
 def interrupt_list(interrupts: Interrupts) -> ArrayValue:
-    """$RINT_LIST and $SINT_LIST: what is declared, in the order of numbers [INT-17].
+    """Return the content of $RINT_LIST or $SINT_LIST: the interrupts in numerical order [INT-17].
 
     Entries without an interrupt have the number 0; INT_TYPE is 0 (unconfirmed).
     """
@@ -166,5 +169,5 @@ def interrupt_list(interrupts: Interrupts) -> ArrayValue:
 
 
 def module_name(file: str) -> str:
-    """The name of a module by its file, in upper case."""
+    """Return the name of a module in upper case, from the path of its file."""
     return file.replace("\\", "/").rpartition("/")[2].partition(".")[0].upper()

@@ -1,7 +1,7 @@
-"""Messages of the controller by number, faults made of them, and the messages of programs.
+"""Messages of the controller by number, the faults made from them, and messages of programs.
 
-The numbers and what they mean are data in `grammar.semantics.predefined` [MSG-01 to MSG-31]. What a
-program shows by SET_KRLMSG and SET_KRLDLG stays until it is taken away or answered [FCT-10].
+The numbers and texts are data in `grammar.semantics.predefined` [MSG-01 to MSG-31]. A message of
+SET_KRLMSG or SET_KRLDLG stays until it is cleared or answered [FCT-10].
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from interp.controller.state.trace import TaskName, Trace
 from interp.port.requests import At
 from interp.values.faults import Fault
 
-#: What no message at hand says, in our words.
+#: Faults for which no known message fits, with texts of our own.
 _OWN: Final = {
     "interrupt_number": ("an interrupt cannot have this number", "INT-02"),
     "interrupt_unknown": ("there is no interrupt of this number", "INT-07"),
@@ -37,7 +37,7 @@ _OWN: Final = {
 
 
 def message_fault(number: int) -> Fault:
-    """The fault of a message of the catalogue; `KeyError` for an unknown number."""
+    """Return the fault of a catalogued message; raise `KeyError` for an unknown number."""
     found = System.load().message(number)
     if found is None:
         raise KeyError(number)
@@ -46,14 +46,14 @@ def message_fault(number: int) -> Fault:
 
 
 def own_fault(slug: str) -> Fault:
-    """A fault of the controller for which no message number is at hand."""
+    """Return a fault of the controller for which no message number is known."""
     text, rule = _OWN[slug]
     return Fault(slug, text, rules=(rule,))
 
 
 @dataclass(slots=True)
 class ProgramMessage:
-    """A message or a dialogue of a program; ``answer`` is the button that was pressed, from 1."""
+    """A message or dialogue of a program; ``answer`` is the pressed button, counted from 1."""
 
     handle: int
     kind: str
@@ -62,14 +62,14 @@ class ProgramMessage:
 
     @property
     def is_dialogue(self) -> bool:
-        """Whether it waits for an answer."""
+        """Whether it asks for an answer."""
         return self.kind == "DIALOGUE"
 
 
 class Messages:
-    """The messages of a controller and of its programs.
+    """The messages of the controller and of its programs.
 
-    ``listeners`` are called with the number and the kind of each message that is shown.
+    ``listeners`` are called with the number and the kind of each message that appears.
     """
 
     def __init__(self, trace: Trace) -> None:
@@ -77,7 +77,7 @@ class Messages:
         self._trace = trace
         self._shown: dict[int, ProgramMessage] = {}
         self._handle = 0
-        #: Numbers of the controller's messages that wait to be acknowledged.
+        #: The numbers of the controller's messages that must still be acknowledged.
         self.unacknowledged: list[int] = []
 
     def post(
@@ -95,9 +95,9 @@ class Messages:
         self.post(task, at, number, str(message_fault(number)), kind)
 
     def show(self, task: TaskName, at: At, kind: str, number: int, text: str) -> int:
-        """Show a message or a DIALOGUE of a program; returns its handle.
+        """Show a message or dialogue of a program, and return its handle.
 
-        Notifications are not kept.
+        A notification is not stored.
         """
         self._handle += 1
         if kind != "NOTIFY":
@@ -111,11 +111,11 @@ class Messages:
             listener(number, kind)
 
     def find(self, handle: int) -> ProgramMessage | None:
-        """What is shown under a handle."""
+        """Return the message with a handle, ``None`` if it is no longer shown."""
         return self._shown.get(handle)
 
     def clear(self, handle: int) -> bool:
-        """Take one away, or all for -1; whether there was any."""
+        """Clear one message, or all for -1; return whether there was any."""
         if handle == -1:
             had_any = bool(self._shown)
             self._shown.clear()
@@ -123,20 +123,20 @@ class Messages:
         return self._shown.pop(handle, None) is not None
 
     def answer(self, button: int) -> None:
-        """Answer the oldest dialogue that waits, if there is one."""
+        """Answer the oldest open dialogue, if there is one."""
         for one in self._shown.values():
             if one.is_dialogue and one.answer is None:
                 one.answer = button
                 return
 
     def is_set(self, number: int) -> bool:
-        """Whether a message of this number is shown."""
+        """Return whether a message of this number is shown."""
         return number in self.unacknowledged or any(
             one.number == number for one in self._shown.values()
         )
 
     def acknowledge(self, number: int | None) -> None:
-        """Acknowledge a message, or all."""
+        """Acknowledge the messages of this number, or all for ``None``."""
         shown = [
             one.handle
             for one in self._shown.values()

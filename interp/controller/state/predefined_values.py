@@ -1,4 +1,4 @@
-"""Values of the types that the controller predefines, made by the names of their types."""
+"""Values of types that the controller predefines, by the names of these types."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from interp.values.values import EnumValue, StructureValue, constant, empty
 
 
 def empty_structure(type_name: str) -> StructureValue:
-    """A structure of which no member has a value."""
+    """Return a structure in which no member has a value."""
     type_ = System.load().types[type_name]
     assert isinstance(type_, Structure), type_name
     value = empty(type_)
@@ -17,7 +17,7 @@ def empty_structure(type_name: str) -> StructureValue:
 
 
 def word(type_name: str, name: str) -> EnumValue:
-    """A constant of an enumeration."""
+    """Return a constant of an enumeration."""
     type_ = System.load().types[type_name]
     assert isinstance(type_, Enumeration), type_name
     return constant(type_, name)

@@ -1,7 +1,8 @@
-"""Differences between releases of the controller, as data: see ``profiles/*.toml``.
+"""Profiles: the differences between releases of the controller, as data in ``profiles/*.toml``.
 
-Sizes of arrays, the interpolation cycle, how many interrupts there may be, what system variables
-have at the start [CON-07]. A profile is named by its file, or given as the path of another one.
+A profile has the sizes of arrays, the interpolation cycle, the number of interrupts, and the
+initial values of system variables [CON-07]. It is selected by its name, or by the path of another
+file.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ _T = TypeVar("_T")
 
 
 class ProfileError(RuntimeFailure):
-    """There is no such profile, or it does not say what it has to; the text is one line."""
+    """A profile does not exist or is invalid; the text is one line."""
 
 
-#: What the controller asks of every profile.
+#: The entries that every profile must have.
 _SIZES = "inputs outputs analog_inputs analog_outputs flags cyclic_flags timers".split()
 _MOST = (
     "cyclic_flags interrupts active_interrupts triggers analog_inputs analog_outputs digital_inputs"
@@ -39,14 +40,16 @@ _ARM = re.compile(r"[A-Za-z0-9_]+")
 class Profile:
     """One profile.
 
-    ``cycle`` is in µs, ``statements`` and ``requests`` are what a task may do in a cycle, ``start``
-    is the date at which the virtual clock begins. ``runs_coincidence``: the first motion is a block
-    coincidence run, which ends exactly and holds the program until it is started again [ADV-14].
-    ``submit_every`` is in cycles. ``sizes`` are those of arrays, ``most`` how many there may be of
-    something at once. ``values`` are initial values by name, as `interp.values.json_form` writes
-    them. ``is_tolerant``: a motion that cannot be planned and a predefined routine that is not
-    simulated are skipped, each with a message, instead of being a fault. ``brings_arm``: to where a
-    program begins with a motion that may not be its first.
+    ``cycle`` is the interpolation cycle in µs. ``statements`` and ``requests`` limit what a task
+    may do in a cycle. ``start`` is the date at which the virtual clock begins. ``submit_every`` is
+    the period of the submit interpreter in cycles. ``sizes`` are those of arrays; ``most`` says how
+    many interrupts, triggers and so on there may be at once. ``values`` are initial values by name,
+    as `interp.values.json_form` writes them.
+
+    With ``runs_coincidence``, the first motion is a block coincidence run: it ends exactly, and the
+    program waits until it is started again [ADV-14]. With ``is_tolerant``, a motion that cannot be
+    planned and a predefined routine that is not simulated are skipped with a message instead of
+    being a fault. With ``brings_arm``, a program may begin with any motion.
     """
 
     name: str
@@ -68,7 +71,7 @@ class Profile:
 
     @staticmethod
     def load(name: str = "kss8") -> Profile:
-        """The profile of a name, or that of a ``.toml`` file; raises `ProfileError`."""
+        """Return the profile of a name or of a ``.toml`` file; raise `ProfileError`."""
         if name.lower().endswith(".toml"):
             try:
                 return _read(Path(name).stem, read_text(Path(name)))
@@ -78,7 +81,7 @@ class Profile:
 
 
 def profile_names() -> list[str]:
-    """The profiles that come along."""
+    """Return the names of the built-in profiles."""
     folder = resources.files(__package__).joinpath("profiles")
     return sorted(one.name.removesuffix(".toml") for one in folder.iterdir() if _is_profile(one))
 
@@ -125,17 +128,17 @@ def _read(name: str, text: str) -> Profile:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Looks up entries of a profile, and says clearly what is wrong with one."""
+    """Reads the entries of a profile, with a clear error for an invalid one."""
 
     name: str
     data: Mapping[str, Any]
 
     def wrong(self, table: str, key: str, why: str) -> ProfileError:
-        """An error about an entry."""
+        """Return an error about an entry."""
         return ProfileError(f"profile {self.name}: {table + '.' if table else ''}{key} {why}")
 
     def get(self, table: str, key: str, type_: type[_T]) -> _T:
-        """An entry of a type."""
+        """Return an entry of a type."""
         holder = self.data.get(table, {}) if table else self.data
         value = holder.get(key) if isinstance(holder, Mapping) else None
         if not isinstance(value, type_) or (isinstance(value, bool) and type_ is int):
@@ -143,21 +146,21 @@ class _Reader:
         return value
 
     def machine(self) -> str:
-        """The name of an arm that comes along: no path, wherever the profile is from."""
+        """Return the name of a built-in arm; a path is rejected, wherever the profile is from."""
         name = self.get("", "machine", str)
         if not _ARM.fullmatch(name):
             raise self.wrong("", "machine", "is no name of letters, digits and _")
         return name
 
     def start(self) -> datetime:
-        """The date at which the clock begins, with room for a run behind it."""
+        """Return the date at which the clock begins; it leaves room for a run after it."""
         start = self.get("time", "start", datetime)
         if start.year > _LAST_YEAR:
             raise self.wrong("time", "start", f"is after {_LAST_YEAR}")
         return start
 
     def count(self, table: str, key: str, least: int = 1) -> int:
-        """An entry that counts something."""
+        """Return an entry that is a count between ``least`` and `_LARGEST`."""
         value = self.get(table, key, int)
         if value < least:
             raise self.wrong(table, key, f"is below {least}")
@@ -166,6 +169,6 @@ class _Reader:
         return value
 
     def counts(self, table: str, needed: Iterable[str]) -> Mapping[str, int]:
-        """A table of such entries, with those that are needed."""
+        """Return a table of counts, which must have the entries ``needed``."""
         there = dict.fromkeys((*needed, *self.get("", table, dict)))
         return {key: self.count(table, key, 0) for key in there}

@@ -1,8 +1,8 @@
-"""Inputs and outputs: digital, analog, groups of bits, pulses.
+"""Signals: digital and analog inputs and outputs, groups of bits, pulses.
 
-Digital ones are FALSE at first, but for input 1025, which is always TRUE, as 1026 is always FALSE
-[IOT-02]. A group ``("$OUT", 3, "TO", 6)`` is an INT, its first bit the lowest one [IOT-03]; with 32
-bits it has a sign. Analog values lie between -1 and 1 [IOT-06].
+Digital signals begin as FALSE, except input 1025, which is always TRUE; 1026 is always FALSE
+[IOT-02]. A group ``("$OUT", 3, "TO", 6)`` is an INT whose lowest bit is its first signal [IOT-03];
+with 32 bits it is signed. Analog values are in [-1, 1] [IOT-06].
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ Later = Callable[[int, Callable[[], None]], TimedAction]
 
 
 class Signals:
-    """All of them by the names of their arrays.
+    """All signals, by the names of their arrays.
 
-    ``later`` does something at a time, in µs; ``report`` is called with every change.
+    ``later`` schedules an action at a time in µs; ``report`` is called with every change.
     """
 
     def __init__(self, profile: Profile, clock: Clock, later: Later, report: Report) -> None:
@@ -53,7 +53,7 @@ class Signals:
         self._pulses: dict[int, tuple[bool, TimedAction]] = {}
 
     def read(self, path: Path) -> Value:
-        """The value of one signal or of a group; faults `index`."""
+        """Return the value of a signal or of a group; faults ``index``."""
         name, first, last = self._range(path)
         if name in self._analog:
             return self._analog[name][first]
@@ -64,13 +64,13 @@ class Signals:
         return number - 2**32 if number >= 2**31 else number
 
     def write(self, path: Path, value: Value) -> None:
-        """A program sets an output; faults `read_only`, `index`, `inadmissible`, `invalid`."""
+        """Set an output; faults ``read_only``, ``index``, ``inadmissible``, ``invalid``."""
         if path[0] in ("$IN", "$ANIN"):
             raise fault("read_only")
         self.put(path, value)
 
     def put(self, path: Path, value: Value) -> None:
-        """Set what is at the other end of a wire as well: inputs."""
+        """Set a signal; from outside this may be an input too."""
         name, first, last = self._range(path)
         if name in self._analog:
             self._put_analog(name, first, value)
@@ -85,17 +85,17 @@ class Signals:
                 self._put_bit(name, place, bool(value >> (place - first) & 1))
 
     def pulse(self, number: int, level: bool, seconds: float) -> None:
-        """PULSE: the level for a time, then the other one [IOT-07].
+        """PULSE: set an output to a level for a time in s, then to the other level [IOT-07].
 
-        Times are rounded to tenths of a second and limited to 0.1 to 3 s. A new pulse restarts it;
-        the other level, set meanwhile, ends it.
+        The time is rounded to tenths of a second and limited to 0.1 to 3 s. A new pulse restarts
+        the time. Setting the other level meanwhile ends the pulse.
         """
         tenths = min(max(round(seconds * 10) / 10, _SHORTEST), _LONGEST)
         self._end_pulse(number)
         self.put(("$OUT", number), level)
         end = self._clock.tick_after(round(tenths * 1_000_000))
 
-        over = partial(self.put, ("$OUT", number), not level)  # which ends the pulse
+        over = partial(self.put, ("$OUT", number), not level)  # ends the pulse too
         self._pulses[number] = level, self._later(end, over)
 
     @contextmanager
@@ -132,7 +132,7 @@ class Signals:
             self._report(name, place, single(value))
 
     def _range(self, path: Path) -> tuple[str, int, int]:
-        """The array, and the first and last index."""
+        """Return the array and the first and last index of a path."""
         name = str(path[0])
         size = len(self._digital.get(name) or self._analog[name]) - 1
         if len(path) == 2 and isinstance(path[1], int):

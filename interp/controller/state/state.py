@@ -1,4 +1,4 @@
-"""State shared by the parts of a controller: clock, trace, variables, signals, messages."""
+"""The state that the parts of a controller share: clock, trace, variables, signals, messages."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.values.json_form import to_json
 from interp.values.values import EnumValue
 
-#: The kinds of trace events that the arrays of signals have.
+#: The kind of trace event for each array of signals.
 _SIGNAL_KINDS: Final = {"$IN": "in", "$ANIN": "in", "$OUT": "out", "$ANOUT": "anout"}
 
 
 class ControllerState:
-    """The state of a controller apart from programs and motions.
+    """The state of a controller, apart from programs and motions.
 
-    ``values`` are those that data lists give system variables at first. ``observers`` are called
-    with each variable that a program or something outside has changed, and its value as given.
-    ``program_states`` are the words of $PRO_STATE by task.
+    ``values`` are the initial values that data lists give to system variables. ``observers`` are
+    called with each variable that a program or something outside has changed, and with its value as
+    given. ``program_states`` are the words of $PRO_STATE by task.
     """
 
     def __init__(
@@ -49,17 +49,17 @@ class ControllerState:
         self.variables.connect(["$TIMER", "$TIMER_STOP", "$TIMER_FLAG"], self.timers)
         self.observers: list[Callable[[Path, Value], None]] = []
         self.program_states: dict[TaskName, str] = {"robot": "P_RESET", "submit": "P_FREE"}
-        #: Statements that failed and were skipped: where, and why each did so at first.
+        #: Statements that failed and were skipped, each with the reason of its first failure.
         self.skipped: dict[tuple[str, int], Exception] = {}
 
     @property
     def mode(self) -> str:
-        """$MODE_OP as a word."""
+        """The word of $MODE_OP."""
         value = self.variables.read(("$MODE_OP",))
         return value.name.upper() if isinstance(value, EnumValue) else "AUT"
 
     def skip(self, task: TaskName, at: At, error: Exception) -> None:
-        """Continue behind a statement that has failed, with a message the first time."""
+        """Note that a failed statement is skipped, with a message the first time."""
         if (at.file, at.line) not in self.skipped:
             self.skipped[at.file, at.line] = error
             number = getattr(error, "number", None) or 0
@@ -68,12 +68,12 @@ class ControllerState:
     # ------------------------------------------------------------------------------ changes
 
     def put(self, path: Path, value: Value) -> None:
-        """A program writes a system variable; raises `Fault`."""
+        """Write a system variable for a program; raise `Fault`."""
         self.variables.write(path, value)
         self.changed(path, value)
 
     def assign(self, path: Path, value: Value) -> None:
-        """Something outside gives a variable a value; raises `Fault`."""
+        """Assign a value to a variable from outside the program; raise `Fault`."""
         with self.trace.attributed("robot", None):
             if path[0] in _SIGNAL_KINDS:
                 self.signals.put(path, value)
@@ -82,17 +82,17 @@ class ControllerState:
                 self.changed(path, value)
 
     def put_at(self, task: TaskName, at: At | None, path: Path, value: Value) -> None:
-        """Write a system variable on behalf of a line that has requested it earlier."""
+        """Write a system variable on behalf of a line that requested it earlier."""
         with self.trace.attributed(task, at):
             self.put(path, value)
 
     def changed(self, path: Path, value: Value) -> None:
-        """Notify the observers of a variable that is no signal."""
+        """Notify the observers of a change, unless the variable is a signal."""
         if path[0] not in _SIGNAL_KINDS:
             self._notify(path, value)
 
     def signal_changed(self, name: str, place: int, value: Value) -> None:
-        """Record the change of a signal in the trace, and notify the observers."""
+        """Record a change of a signal in the trace, and notify the observers."""
         self.trace.record_change(
             _SIGNAL_KINDS[name], signal=name, number=place, value=to_json(value)
         )
@@ -103,7 +103,7 @@ class ControllerState:
             observer(path, value)
 
     def later(self, time: int, action: Callable[[], None]) -> TimedAction:
-        """Do something at a time, on behalf of the line that is executed now."""
+        """Schedule an action at a time in µs, on behalf of the line that is executed now."""
         origin = self.trace.origin
 
         def act() -> None:

@@ -1,7 +1,7 @@
-"""A program that runs: its executor, what it waits for, and the stack of what interrupted it.
+"""Tasks: a running program with its executor, the request it waits for, and its stack of levels.
 
-Of all levels only the top one runs [INT-05]. A level is an interrupt routine, the action of a
-trigger, or a cyclic signal that is computed.
+A level is an interrupt routine, the action of a trigger, or the computation of a cyclic signal.
+Only the top level runs [INT-05].
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
 from support.lazy_dataclass import dataclass
 
-#: The priority of what nothing interrupts: plain actions of triggers, cyclic signals.
+#: The priority of what cannot be interrupted: plain actions of triggers, and cyclic signals.
 ALWAYS: Final = 0
-#: The priority of a program that no interrupt has interrupted.
+#: The priority of a program without levels.
 PROGRAM: Final = 1 << 16
 
 LevelKind = Literal["interrupt", "trigger", "cycle"]
@@ -28,12 +28,12 @@ LevelKind = Literal["interrupt", "trigger", "cycle"]
 
 @dataclass(slots=True, eq=False)
 class Blocked:
-    """A request that waits to be answered.
+    """A request that waits for its answer.
 
-    ``finish`` gives the reply once ``is_ready``, or what is to be waited for next. ``wake`` is a
-    time at which to look again; else it is looked at whenever something happened. ``is_open``: the
-    executor waits for the reply. It does not where a routine has ended whose motions have not, nor
-    behind a RESUME.
+    Once ``is_ready`` is true, ``finish`` returns the reply, or what to wait for next. ``wake`` is a
+    time in µs at which to check; without it, check whenever something has happened. ``is_open`` is
+    set if the executor waits for the reply. It is not set after a RESUME, nor for a routine that
+    has ended before its motions.
     """
 
     request: Request
@@ -43,17 +43,18 @@ class Blocked:
     is_open: bool = True
 
 
-#: What a request is answered: a reply, a `Fault` to be raised in the program, or a wait.
+#: The answer to a request: a reply, a `Fault` to be raised in the program, or a wait.
 Answer = Value | Fault | Blocked | None
 
 
 @dataclass(slots=True, eq=False)
 class Level:
-    """Something that interrupted the program.
+    """A level on top of a program.
 
-    ``depth`` is that of the program then, ``saved`` what it waited for. ``motions`` are the numbers
-    of its own motions that have not ended. ``base`` is $BASE as it was, which the routine changes
-    for itself only [INT-13]. ``braked_at`` are the axes at which its BRAKE stopped the arm.
+    ``depth`` is the call depth of the interrupted program, and ``saved`` what it waited for.
+    ``motions`` are the numbers of the level's own motions that have not ended. ``base`` is the
+    value of $BASE before; a routine changes it only for itself [INT-13]. ``braked_at`` are the axes
+    at which BRAKE stopped the arm.
     """
 
     kind: LevelKind
@@ -73,14 +74,15 @@ class Level:
 
 @dataclass(slots=True, eq=False)
 class Task:
-    """One program with its interrupts, which are its own [INT-17].
+    """One program with its interrupts; each program has its own [INT-17].
 
-    ``exempt_line`` is the line whose requests do not stop the advance run, behind a CONTINUE.
-    ``spent`` are the requests in the slice that ends at ``slice_end``. ``triggers`` wait for the
-    next motion. ``busy_at`` is the time in µs at which it last did more than to read variables,
-    ``idle_at`` where it was when it had only read them for long. ``polling`` is where a WAIT FOR
-    waits, ``last_at`` the place of the last request. ``counting`` and ``recurrent`` are its
-    executor where it is one: to look each time would take longer than a slice.
+    ``exempt_line`` is the line after a CONTINUE, whose requests do not stop the advance run.
+    ``spent`` is the number of requests in the slice that ends at ``slice_end``. ``triggers`` wait
+    for the next motion. ``busy_at`` is the time in µs at which the program last did more than read
+    variables; ``idle_at`` is its place when it had only read them for long. ``polling`` is the
+    place of a waiting WAIT FOR, ``last_at`` the place of the last request. ``counting`` and
+    ``recurrent`` are the executor if it has that protocol; checking each time would take longer
+    than a slice.
     """
 
     name: TaskName
@@ -110,26 +112,26 @@ class Task:
 
     @property
     def level(self) -> Level | None:
-        """What runs on top of the program, if anything does."""
+        """The top level, ``None`` if there is none."""
         return self.levels[-1] if self.levels else None
 
     @property
     def routine(self) -> str:
-        """The name of the routine that runs; "" for the one the program began with."""
+        """The name of the running routine; "" for the one with which the program began."""
         return "" if self.sink is None else self.sink.routine(self.executor.depth)
 
     @property
     def priority(self) -> int:
-        """The priority of what runs: only a lower number interrupts it."""
+        """The priority of what runs; only a lower number interrupts it."""
         return self.levels[-1].priority if self.levels else PROGRAM
 
     @property
     def at(self) -> At:
-        """Where the program is."""
+        """The place that the program has reached."""
         if self.blocked is not None:
             return self.blocked.request.at
         return self.level.at if self.level is not None else self.last_at
 
     def holds(self, condition: CodeHandle, read: Reader) -> bool:
-        """Whether a condition is TRUE now; ``read`` reads system variables. Raises `Fault`."""
+        """Return whether a condition is TRUE; ``read`` reads system variables. Raises `Fault`."""
         return self.executor.evaluate(condition, read) is True

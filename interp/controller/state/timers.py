@@ -1,9 +1,9 @@
-"""The timers, and date and time [TIM-07], on the virtual clock.
+"""Timers, and date and time [TIM-07], on the virtual clock.
 
-A timer counts milliseconds in steps of the interpolation cycle [TIM-05]. At the start all of them
-stand at 0 with their flags FALSE [TIM-02]; a flag follows its timer from the moment on that this is
-started or given a value: TRUE at zero and above [TIM-03]. Programs write flags as well; that holds
-until the timer passes zero from below, or is given a value [TIM-04] (unconfirmed).
+A timer counts ms in steps of the interpolation cycle [TIM-05]. At the start all timers are 0 and
+their flags FALSE [TIM-02]. Once a timer has been started or set, its flag is TRUE if the value is
+zero or more [TIM-03]. A program may also write the flag: the flag keeps that value until the timer
+passes zero from below or is set [TIM-04] (unconfirmed).
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from interp.values.values import StructureValue
 
 @dataclass(slots=True)
 class _Timer:
-    """``base`` is its value in ms at ``since``, the tick in µs at which it was started or set.
+    """A timer with the value ``base`` in ms at ``since``, the tick in µs of its start or setting.
 
-    ``flag`` is what its flag was made, if it does not follow the value; ``was_below`` whether the
-    value was negative then.
+    ``since`` is ``None`` while the timer is stopped. ``flag`` is the value written to its flag,
+    ``None`` if the flag follows the timer; ``was_below`` says whether the timer was negative then.
     """
 
     base: int = 0
@@ -32,14 +32,14 @@ class _Timer:
 
 
 class Timers:
-    """$TIMER, $TIMER_STOP and $TIMER_FLAG [TIM-01]."""
+    """The variables $TIMER, $TIMER_STOP and $TIMER_FLAG [TIM-01]."""
 
     def __init__(self, clock: Clock, size: int) -> None:
         self._clock = clock
         self._timers = [_Timer() for _ in range(size)]
 
     def read(self, path: Path) -> Value:
-        """The value of one of the three; faults `index`."""
+        """Return the value of one of the three variables; faults ``index``."""
         timer = self._timer(path)
         match path[0]:
             case "$TIMER":
@@ -53,7 +53,7 @@ class Timers:
         return timer.flag
 
     def write(self, path: Path, value: Value) -> None:
-        """Set, start or stop a timer, or set its flag; faults `index`, `inadmissible`."""
+        """Set, start or stop a timer, or set its flag; faults ``index``, ``inadmissible``."""
         timer = self._timer(path)
         tick = self._clock.tick
         match path[0], value:
@@ -85,7 +85,7 @@ class Timers:
 
 
 def date_members(start: datetime, now: int, date: StructureValue) -> StructureValue:
-    """Fill a DATE with the time of the virtual clock, µs after a start."""
+    """Fill a DATE with the time ``now``, in µs after ``start``, and return it."""
     at = start + timedelta(microseconds=now)
     members = {
         "CSEC": at.microsecond // 10_000,

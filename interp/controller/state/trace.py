@@ -1,7 +1,7 @@
-"""The trace: what happened, one event after the other, as docs/trace.md has it.
+"""The trace: the events of a run, one after the other, in the format of docs/trace.md.
 
-Two executors conform when the traces of all programs are equal. So an event says nothing of the
-executor, of wall-clock time or of memory, and a line of JSON is written in one way only.
+Two executors conform to each other if the traces of all programs are equal. So an event contains
+nothing about the executor, wall-clock time or memory, and each event has only one form in JSON.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from interp.values.json_form import to_json
 
 TaskName = Literal["robot", "submit"]
 
-#: Events of executors in a trace that is not full.
+#: The kinds of executor events in a trace of the normal level.
 WORLD_KINDS: Final = EVERY_KIND - {"line", "assign"}
 
-#: The kinds of events; ``line`` and ``assign`` are of the full level only.
+#: All kinds of events; ``line`` and ``assign`` occur only at the full level.
 KINDS: Final = tuple(
     """
     line assign call return branch advance_stop motion_planned motion_start blend_start blend_apex
@@ -33,10 +33,10 @@ KINDS: Final = tuple(
 
 @dataclass(frozen=True, slots=True)
 class TraceEvent:
-    """One event: ``time`` in µs, whose it is, its kind, the line it comes from, and its fields.
+    """One event: its ``time`` in µs, its task, its kind, the line that causes it, and its fields.
 
-    ``at`` is ``None`` for what comes from outside the program, such as an input. ``fields`` are
-    ready for JSON.
+    ``at`` is ``None`` for an event that comes from outside the program, such as an input. The
+    values of ``fields`` are ready for JSON.
     """
 
     time: int
@@ -47,17 +47,17 @@ class TraceEvent:
 
     @property
     def place(self) -> str | None:
-        """``file:line``."""
+        """The place as ``file:line``."""
         return None if self.at is None else f"{self.at.file}:{self.at.line}"
 
     def line(self) -> str:
-        """The event as a line of JSON, without the line end."""
+        """Return the event as a line of JSON, without the line end."""
         head = {"t": self.time, "task": self.task, "kind": self.kind, "at": self.place}
         return json.dumps({**head, **self.fields}, ensure_ascii=False, separators=(",", ":"))
 
 
 def path_text(path: Path) -> str:
-    """A path as people write it: ``$OUT[3]``, ``A[1,2].X``, ``$IN[1] TO $IN[8]``."""
+    """Return a path in the notation of KRL: ``$OUT[3]``, ``A[1,2].X``, ``$IN[1] TO $IN[8]``."""
     if len(path) == 4 and path[2] == "TO":
         return f"{path[0]}[{path[1]}] TO {path[0]}[{path[3]}]"
     text, indices = str(path[0]), []
@@ -72,14 +72,13 @@ def path_text(path: Path) -> str:
 
 
 class Trace:
-    """Records events with the time that the controller's clock has.
+    """Records events with the time of the controller's clock.
 
-    ``take`` receives each event as it happens; by default they are kept in ``events``. ``kinds``
-    are those that executors are to report, by default all but lines and assignments, most of what a
-    program is made of; where they are not wanted they only cost time. ``origin``
-    is the task and the line that cause what changes now; the line is ``None`` for what comes from
-    outside. ``arguments`` are those of calls that are reported with them, as they are written, by
-    file, line and name in upper case.
+    ``take`` receives each event when it happens; by default events are stored in ``events``.
+    ``kinds`` are the kinds that executors report. By default these are all but lines and
+    assignments, which are the most frequent ones and cost time. ``origin`` is the task and the line
+    that cause what changes now; the line is ``None`` for changes from outside. ``arguments`` are
+    the arguments to report with calls, as written, by file, line and name in upper case.
     """
 
     def __init__(
@@ -92,14 +91,14 @@ class Trace:
         self.arguments = arguments or {}
         self.events: list[TraceEvent] = []
         self.now = 0
-        #: How many events there were.
+        #: The number of events so far.
         self.count = 0
         self.kinds = kinds
         self.origin: tuple[TaskName, At | None] = ("robot", None)
         self._take = take or self.events.append
 
     def record(self, task: TaskName, kind: str, at: At | None, **fields: Any) -> None:
-        """Record that something happened now."""
+        """Record an event that happens now."""
         self.count += 1
         self._take(TraceEvent(self.now, task, kind, at, fields))
 
@@ -109,7 +108,7 @@ class Trace:
 
     @contextmanager
     def attributed(self, task: TaskName, at: At | None) -> Iterator[None]:
-        """Changes within this context are caused by a line of a task."""
+        """Attribute the changes within this context to a line of a task."""
         before, self.origin = self.origin, (task, at)
         try:
             yield
@@ -123,16 +122,16 @@ class Trace:
         *,
         keeps_calls: bool = True,
     ) -> TaskSink:
-        """The sink of an executor whose events belong into this trace; ``kinds`` as for that."""
+        """Return a sink for an executor whose events go into this trace."""
         return TaskSink(self, task, self.kinds if kinds is None else kinds, keeps_calls)
 
 
 class TaskSink:
     """Records the events of one executor.
 
-    ``left`` is called with the depth of each routine that has ended: interrupts that it declared
-    end with it [INT-04]. ``kinds`` are those that it wants; unless it ``keeps_calls`` the trace has
-    none, and they only serve to know which routines are open.
+    ``left`` is called with the depth of each routine that has ended: the interrupts that it
+    declared end with it [INT-04]. ``kinds`` are the kinds that the sink receives. Without
+    ``keeps_calls``, calls are not recorded, and only serve to know which routines are open.
     """
 
     def __init__(
@@ -146,7 +145,7 @@ class TaskSink:
         self._names: dict[int, str] = {}
 
     def routine(self, depth: int) -> str:
-        """The name of the routine called last to this depth."""
+        """Return the name of the routine that was called last to this depth."""
         return self._names.get(depth, "")
 
     def line(self, at: At) -> None:
@@ -174,5 +173,5 @@ class TaskSink:
             self.left(at.depth)
 
     def branch(self, at: At, way: int) -> None:
-        """A way was taken."""
+        """A statement chose a branch."""
         self._trace.record(self.task, "branch", at, way=way)

@@ -1,12 +1,12 @@
-"""The system variables: values, which of them exist twice, and what stops the advance run.
+"""The system variables: their values, the twins of the main run, and their advance stops.
 
-Which variables there are, their types, who may write them, their limits, their twins in the main
-run [ADV-10] and whether an access stops the advance run [ADV-05 to ADV-07] are data, the tables of
-`grammar.semantics.predefined`. Variables that are more than a value (inputs, timers, positions) are
-answered by a `Live` that is given for them.
+The tables of `grammar.semantics.predefined` say which variables exist, their types, who may write
+them, their limits, their twins in the main run [ADV-10], and whether an access stops the advance
+run [ADV-05 to ADV-07]. Inputs, timers, positions and other variables that are more than a stored
+value are read and written through a `Live` object.
 
-A motion takes a `Snapshot` of the advance values along. When it starts, that becomes what the
-``_C`` variables show.
+Each motion is planned with a `Snapshot` of the values of the advance run. When the motion starts,
+the ``_C`` variables take the values of its snapshot.
 """
 
 from __future__ import annotations
@@ -32,54 +32,54 @@ from interp.values.values import (
 )
 from support.lazy_dataclass import dataclass
 
-#: The advance values of all variables that exist twice, by name.
+#: The values in the advance run of all variables that have a twin in the main run, by name.
 Snapshot = Mapping[str, Any]
 _UNKNOWN_SIZE: Final = 128
 _SIZES: Final = {"$FLAG": "flags", "$CYCFLAG": "cyclic_flags"}
 
 
 class Live(Protocol):
-    """Answers for a system variable that is more than a value."""
+    """A system variable that is computed or has side effects, unlike a stored value."""
 
     def read(self, path: Path) -> Value:
-        """Its value, or that of a part; raises `Fault`."""
+        """Return its value, or that of a part; raise `Fault`."""
         ...
 
     def write(self, path: Path, value: Value) -> None:
-        """Give it a value; raises `Fault`."""
+        """Assign a value; raise `Fault`."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """A variable whose value is computed whenever it is read, and that is never written."""
+    """A read-only variable whose value is computed whenever it is read."""
 
     compute: Callable[[], Value]
 
     def read(self, path: Path) -> Value:
-        """The value, or that of a part."""
+        """Return the value, or that of a part."""
         return part(self.compute(), path[1:])
 
     def write(self, _path: Path, _value: Value) -> None:
-        """A fault."""
+        """Raise the fault ``read_only``."""
         raise fault("read_only")
 
 
-#: Variables that others answer for, and that change only where something happens.
+#: `Live` variables that change only when an event happens, not with time alone.
 _STEADY: Final = frozenset(
     "$IN $OUT $ANIN $ANOUT $OUT_C $STOPMESS $PRO_STATE $PRO_STATE0 $PRO_STATE1 $PRO_ACT $ON_PATH "
     "$NUM_IN $NUM_OUT $NULLFRAME $I_O_ACTCONF $T1 $T2 $AUT $EXT".split()
 )
-#: Those whose changes are events.
+#: Variables whose changes are events of the trace.
 _SIGNALS: Final = frozenset({"$IN", "$OUT", "$ANIN", "$ANOUT"})
 
 
 class Variables:
-    """All system variables; names are in upper case.
+    """All system variables, by their names in upper case.
 
-    ``writes`` counts those that were given a value, but not where they had it already, nor signals,
-    which report their changes. ``has_read_changing``: one was read that changes with time alone,
-    since this was made false.
+    ``writes`` counts the assignments that changed a value, except those to signals, which report
+    their changes themselves. ``has_read_changing`` is set when a variable is read that changes with
+    time alone; the user of this class clears it.
     """
 
     def __init__(self, profile: Profile, given: Mapping[str, Value] | None = None) -> None:
@@ -103,24 +103,24 @@ class Variables:
             self._values[name] = self._initial(name, data)
         for name, value in (given or {}).items():
             self._give(name.upper(), value)
-        #: What the motion had that runs, or ran last.
+        #: The values with which the running motion, or the last one, was planned.
         self.main: Snapshot = self.snapshot()
 
     # ------------------------------------------------------------------------------- the tables
 
     def entry(self, name: str) -> SystemVariable | None:
-        """What the tables say of a variable."""
+        """Return the entry of a variable in the tables, ``None`` if there is none."""
         return self._release.variables.get(name) or self._newest.variables.get(name)
 
     def stops(self, name: str, *, is_write: bool) -> bool:
-        """Whether an access stops the advance run."""
+        """Return whether an access stops the advance run."""
         entry = self.entry(name)
         if entry is None:
             return False
         return bool(entry.stops_on_write if is_write else entry.stops_on_read)
 
     def type_of(self, name: str) -> Type:
-        """The type of a variable, `UNKNOWN` where no table has it."""
+        """Return the type of a variable; `UNKNOWN` if it is not in a table."""
         for system in (self._release, self._newest):
             found = system.variables.get(name)
             if found is not None and found.type != UNKNOWN:
@@ -128,7 +128,7 @@ class Variables:
         return UNKNOWN
 
     def part_type(self, path: Path) -> Type:
-        """The type of a variable or a part of it, `UNKNOWN` where no table has it."""
+        """Return the type of a variable or of a part of it; `UNKNOWN` if it is not in a table."""
         type_ = self.type_of(str(path[0]))
         for step in path[1:]:
             if isinstance(type_, Array):
@@ -146,19 +146,19 @@ class Variables:
         return Array(type_.element, sizes)
 
     def size(self, name: str) -> int:
-        """How many elements a variable has, 1 where it is no array."""
+        """Return the number of elements of an array; 1 for any other variable."""
         type_ = self.type_of(name)
         return prod(size or 1 for size in type_.sizes) if isinstance(type_, Array) else 1
 
     # ------------------------------------------------------------------------------- the values
 
     def connect(self, names: Iterable[str], live: Live) -> None:
-        """Something else answers for these variables."""
+        """Let ``live`` read and write these variables."""
         for name in names:
             self._live[name] = live
 
     def read(self, path: Path) -> Value:
-        """The value of a variable or a part of it, a copy; faults `uninitialised`, `index`."""
+        """Return a copy of a variable or of a part of it; faults ``uninitialised``, ``index``."""
         name = str(path[0])
         live = self._live.get(name)
         if live is not None:
@@ -170,13 +170,13 @@ class Variables:
         return part(root, path[1:])
 
     def write(self, path: Path, value: Value) -> None:
-        """A program writes a variable; faults `read_only`, `invalid`, `inadmissible`, `index`."""
+        """Assign for a program; faults ``read_only``, ``invalid``, ``inadmissible``, ``index``."""
         if path[0] in self._twins:
             raise fault("read_only")
         self.put(path, value)
 
     def put(self, path: Path, value: Value) -> None:
-        """Anybody gives a variable a value, write-protected or not."""
+        """Assign a value, even to a write-protected variable."""
         name = str(path[0])
         entry = self.entry(name)
         if entry is not None and entry.limits is not None and isinstance(value, int | float):
@@ -193,14 +193,14 @@ class Variables:
             self._loose[path] = copied(value)
             return
         before = self._scalar(path)
-        if name in self._twice:  # snapshots keep the old one
+        if name in self._twice:  # existing snapshots keep the old value
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
         self.writes += before is None or before != self._scalar(path)
 
     def _scalar(self, path: Path) -> str | None:
-        """A value that can be compared, if it is one: both zeros differ, and so do 1 and TRUE."""
+        """Return a scalar as text, so that 0.0 and -0.0 differ, and 1 and TRUE; else ``None``."""
         try:
             value = part(self._root(str(path[0])), path[1:])
         except Fault:
@@ -208,9 +208,9 @@ class Variables:
         return repr(value) if isinstance(value, int | float) else None
 
     def _is_loose(self, path: Path) -> bool:
-        """Whether it is a part of a variable of which nothing is known, an option's perhaps.
+        """Return whether a path is a part of a variable of unknown type, perhaps of an option.
 
-        Where something stands in for what is missing, such a part can be written.
+        With a tolerant profile such a part can be written and read.
         """
         name = str(path[0])
         if len(path) == 1 or not self._profile.is_tolerant or self.type_of(name) != UNKNOWN:
@@ -218,7 +218,7 @@ class Variables:
         return not isinstance(self._root(name), StructureValue | ArrayValue)
 
     def snapshot(self, changes: Iterable[tuple[Path, Value]] = ()) -> Snapshot:
-        """The advance values as they are now, with changes that hold for one motion only."""
+        """Return the present values of the advance run, with changes for one motion only."""
         if self._snapshot is None:
             self._snapshot = {name: self._root(name) for name in sorted(self._twice)}
         changed: dict[str, Any] = {}
@@ -253,13 +253,13 @@ class Variables:
             raise ProfileError(f"profile {self._profile.name}: {name}: {error}") from None
 
     def _give(self, name: str, value: Value) -> None:
-        """The value that a data list gives a variable at first."""
+        """Assign the initial value from a data list."""
         if self.type_of(name) == UNKNOWN:
             self._values[name] = copied(value)
             return
         try:
             self._store((name,), value)
-        except Fault:  # the file has another type for it, which then is the right one
+        except Fault:  # the data list declares another type, which is then the right one
             self._values[name] = copied(value)
 
 
@@ -270,13 +270,13 @@ def _twice() -> list[str]:
 
 @dataclass(slots=True)
 class _Holder:
-    """A value of a type, of which a part is replaced."""
+    """A value of a type, in which a part is replaced."""
 
     root: Any
     type: Type
 
     def put(self, steps: Path, value: Value) -> None:
-        """Give the part that the steps lead to a value, converted and copied."""
+        """Assign a value, converted and copied, to the part that ``steps`` lead to."""
         if not steps:
             self.root = self._whole(value)
             return
@@ -323,12 +323,12 @@ class _Holder:
 
 
 def _is_rest(parent: Any, steps: Path) -> bool:
-    """Whether the steps left are the indices of one array."""
+    """Return whether all steps that remain are indices of one array."""
     return isinstance(parent, ArrayValue) and len(steps) <= len(parent.sizes)
 
 
 def _step(parent: Any, steps: Path, place: int) -> tuple[Any, int]:
-    """One step into a value: a member, or all indices of an array."""
+    """Go one step into a value, to a member or an element; return it and the next place."""
     step = steps[place]
     if isinstance(parent, StructureValue) and isinstance(step, str):
         if parent.type.member(step) is None:
@@ -344,7 +344,7 @@ def _step(parent: Any, steps: Path, place: int) -> tuple[Any, int]:
 
 
 def part(value: Any, steps: Path) -> Value:
-    """A part of a value, a copy; faults `uninitialised`, `index`."""
+    """Return a copy of a part of a value; faults ``uninitialised``, ``index``."""
     place = 0
     while place < len(steps):
         value, place = _step(value, steps, place)
@@ -355,7 +355,7 @@ def part(value: Any, steps: Path) -> Value:
 
 
 def _zero(type_: Type) -> Any:
-    """Zeros in every part; of what no type is known, an INT."""
+    """Return a value that is zero in every part; a part of unknown type is an INT."""
     match type_:
         case Array():
             sizes = tuple(_UNKNOWN_SIZE if size is None else size for size in type_.sizes)
