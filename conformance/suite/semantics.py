@@ -16,9 +16,6 @@ from grammar.semantics.rules import is_confirmed
 
 PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
 
-#: Codes that no check gives yet.
-UNUSED: frozenset[str] = frozenset()
-
 #: What can be done for a rule, and the page's word for it; with codes where findings have one.
 _TODAY = {
     "grammar": "grammar",
@@ -100,8 +97,7 @@ def codes_of() -> Mapping[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = dict.fromkeys(registry(), ())
     for code in by_slug().values():
         for rule in code.rules:
-            if code.code not in UNUSED:
-                found[rule] += (code.code,)
+            found[rule] += (code.code,)
     return found
 
 

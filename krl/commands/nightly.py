@@ -136,7 +136,7 @@ def _reported(
     before = _record(out / compared, "conform") if compared else None
     reported = changes(last, run, before, made.get("conform"))
     append_run(history, run)
-    write_json({**run, "changes": reported}, folder / "night.json")
+    write_json({**run, "changes": reported}, folder / "nightly.json")
     write_claims_page(made, folder / "claims")
     pages = {"claims": {"status": "ok", "seconds": 0.0, "page": "claims/index.html"}}
     run = {**run, "steps": {**run["steps"], **pages}}
@@ -157,7 +157,7 @@ def _broken_off(folder: Path) -> "Iterator[Failure]":
     from reports.nightly.nightly_failures import OF_THE_RUN, Failure
 
     earlier = [one for one in folder.parent.iterdir() if one.is_dir() and one.name < folder.name]
-    if earlier and not (last := max(earlier)).joinpath("night.json").exists():
+    if earlier and not (last := max(earlier)).joinpath("nightly.json").exists():
         yield Failure(what=f"{OF_THE_RUN}of {last.name} did not finish", page="", command="")
 
 
@@ -172,7 +172,7 @@ def _write_breakdown(what: str, went: dict[str, dict[str, Any]], folder: Path) -
     run = {"date": folder.name, "steps": went, "failures": [own]}
     with suppress(Exception):  # as writing may be what failed; the caller raises that
         write_atomic(folder / "summary.md", nightly_summary(run))
-        write_json(run, folder / "night.json")
+        write_json(run, folder / "nightly.json")
         write_nightly_page(run, folder)
 
 

@@ -15,7 +15,7 @@ from reports.rendering.page import render, source
 from support.files.atomic_write import write_atomic
 
 #: What is kept of a run when its pages are no longer linked, and of how many runs.
-_SUMS = ("night.json", "summary.md")
+_SUMS = ("nightly.json", "summary.md")
 _MOST_RUNS = 366
 
 
@@ -24,10 +24,10 @@ def write_entry_page(out: Path, date: str, made: datetime) -> Path:
 
     Raises OSError.
     """
-    script = f'"use strict";\n{{\n{source("page.js")}\n{source("nights.js")}}}\n'
+    script = f'"use strict";\n{{\n{source("page.js")}\n{source("nightly-index.js")}}}\n'
     data = embedded_json({"made": made.isoformat()})
     styles = ["page.css", "conform.css", "nightly.css"]
-    page = render("nights.html.j2", script=script, styles=styles, data=data, view=date)
+    page = render("nightly-index.html.j2", script=script, styles=styles, data=data, view=date)
     return write_atomic(out / "index.html", page)
 
 
@@ -42,7 +42,7 @@ def bound_store(folder: Path) -> None:
     for number, run in enumerate((one for one in earlier if one.name != folder.name), 1):
         for cache in folder.glob("*/cache"):
             rmtree(run / cache.relative_to(folder), ignore_errors=True)
-        is_whole = (run / "night.json").is_file()
+        is_whole = (run / "nightly.json").is_file()
         if number > (_MOST_RUNS if is_whole else MOST_EARLIER):
             rmtree(run, ignore_errors=True)
         elif number > MOST_EARLIER:
@@ -53,7 +53,7 @@ def bound_store(folder: Path) -> None:
 
 
 def _is_run(folder: Path) -> bool:
-    is_ours = any((folder / name).is_file() for name in ("night.json", "steps.json"))
+    is_ours = any((folder / name).is_file() for name in ("nightly.json", "steps.json"))
     return is_ours and not folder.is_symlink()
 
 

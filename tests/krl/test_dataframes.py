@@ -45,7 +45,7 @@ def test_what_cannot_be_done_is_reported(dataframes: ModuleType, tmp_path: Path)
         dataframes.record("recover", tmp_path / "missing")
 
 
-def test_a_trace_and_nights_become_tables(dataframes: ModuleType, tmp_path: Path) -> None:
+def test_a_trace_and_nightly_runs_become_tables(dataframes: ModuleType, tmp_path: Path) -> None:
     """Lines of JSON become rows, whatever fields their events have."""
     trace = tmp_path / "t.jsonl"
     trace.write_text(

@@ -23,7 +23,7 @@ def run(folder: Path, capsys: pytest.CaptureFixture[str], *steps: str) -> tuple[
 
 
 def steps_of(folder: Path) -> dict[str, str]:
-    record = json.loads((folder / DATE / "night.json").read_text(encoding="utf-8"))
+    record = json.loads((folder / DATE / "nightly.json").read_text(encoding="utf-8"))
     return {name: step["status"] for name, step in record["steps"].items()}
 
 
@@ -88,7 +88,7 @@ def test_a_night_that_goes_on_knows_how_its_steps_went(
     kept = {"fuzz": {"status": "findings", "seconds": 12.5, "page": ""}}
     (tmp_path / DATE / "steps.json").write_text(json.dumps(kept), encoding="utf-8")
     assert 0 == run(tmp_path, capsys, "fuzz")[0]
-    record = json.loads((tmp_path / DATE / "night.json").read_text(encoding="utf-8"))
+    record = json.loads((tmp_path / DATE / "nightly.json").read_text(encoding="utf-8"))
     assert kept == record["steps"]
 
 
@@ -205,18 +205,20 @@ def test_what_is_kept_is_bounded(
     runs = [f"2024-{day:04}" for day in range(400)]
     for name in (*runs, "mine"):
         (tmp_path / name).mkdir()
-        for file in ("index.html", "summary.md", "night.json"):
+        for file in ("index.html", "summary.md", "nightly.json"):
             (tmp_path / name / file).write_text("{}", encoding="utf-8")
-    (tmp_path / "mine" / "night.json").unlink()
+    (tmp_path / "mine" / "nightly.json").unlink()
     broken = tmp_path / runs.pop(100)
-    (broken / "night.json").rename(broken / "steps.json")
+    (broken / "nightly.json").rename(broken / "steps.json")
     for name in (DATE, runs[-1]):
         (tmp_path / name / "recover" / "cache").mkdir(parents=True)
     _step(monkeypatch, (0, ""))
     assert 0 == run(tmp_path, capsys, "recover")[0]
     pages = sorted(one.parent.name for one in tmp_path.glob("*/index.html"))
     assert [*runs[-30:], DATE, "mine"] == pages
-    assert [*runs[-365:], DATE] == sorted(one.parent.name for one in tmp_path.glob("*/night.json"))
+    assert [*runs[-365:], DATE] == sorted(
+        one.parent.name for one in tmp_path.glob("*/nightly.json")
+    )
     assert not broken.exists()
     assert [DATE] == [one.parents[1].name for one in tmp_path.glob("*/recover/cache")]
 
@@ -266,6 +268,6 @@ def test_a_run_that_cannot_tell_its_results_is_red(
     _step(monkeypatch, (0, ""))
     monkeypatch.setattr("reports.conformance.claims_page.write_claims_page", broken)
     assert 0 != run(tmp_path, capsys, "recover")[0]
-    for name in ("index.html", "summary.md", "night.json"):
+    for name in ("index.html", "summary.md", "nightly.json"):
         text = (tmp_path / DATE / name).read_text(encoding="utf-8")
         assert "the nightly run failed: OSError: [Errno 28] No space left on device" in text

@@ -54,10 +54,10 @@ An input is made from its number, so each can be made again: `make hostile` take
 _KILLED = """\
 ## Killed at any moment
 
-`make killed` kills surveys (30 times), growths (8), nights (5) and acceptances of a construct (7)
-at moments drawn from a seed, and runs them again. What was finished is not done again, records and
-pages are whole or not there, the last record is that of an undisturbed run, and ledger, grammar and
-parser are all those before an acceptance or all those after.
+`make killed` kills surveys (30 times), growths (8), nightly runs (5) and acceptances of a
+construct (7) at moments drawn from a seed, and runs them again. What was finished is not done
+again, records and pages are whole or not there, the last record is that of an undisturbed run, and
+ledger, grammar and parser are all those before an acceptance or all those after.
 """
 
 

@@ -179,7 +179,7 @@ def test_a_night_that_is_killed_goes_on(tmp_path: Path) -> None:
         list(_whole_records(night))
         now = {file.name: file.stat().st_mtime for file in night.glob("*.json")}
         assert known.items() <= now.items(), "a step that was done is done again"
-        known = {name: at for name, at in now.items() if name != "night.json"}
+        known = {name: at for name, at in now.items() if name != "nightly.json"}
     killer.finish(1)
     lines = (tmp_path / "disturbed" / "history.jsonl").read_text(encoding="utf-8").splitlines()
     assert ["2026-01-02"] == [json.loads(line)["date"] for line in lines]
