@@ -1,6 +1,7 @@
-"""The executors by name, and how each is made of a program that was checked.
+"""The executors by name, and their creation from a checked program.
 
-Only what is asked for is imported: the machines need a compiled program, the tree interpreter none.
+Only the needed modules are imported: the machines need a compiled program, the tree interpreter
+does not.
 """
 
 from __future__ import annotations
@@ -19,23 +20,23 @@ from support.files.kept_values import kept
 if TYPE_CHECKING:
     from interp.bytecode.verifier.verify import Verified
 
-#: The reference first.
+#: The names of all executors, the reference executor first.
 EXECUTORS: Final = ("tree", "vm", "native")
-#: The machine in C with native code of the program: takes a C compiler, only where it is asked for.
+#: The machine in C with native code of the program; it needs a C compiler, so it is optional.
 COMPILED: Final = "compiled"
-#: The packages that what is kept of a program depends on.
+#: The packages on whose code a cached program depends.
 CODE: Final = ("grammar", "interp", "support")
 
 
 def available() -> tuple[str, ...]:
-    """The executors that can run here: without a compiler there was no machine in C to build."""
+    """Return the executors that can run here: the machine in C needs a compiler at installation."""
     from interp.native import AVAILABLE
 
     return EXECUTORS if AVAILABLE else EXECUTORS[:-1]
 
 
 def is_available(name: str) -> bool:
-    """Whether an executor can run here, `COMPILED` too."""
+    """Return whether an executor can run here; `COMPILED` is accepted too."""
     from interp.native import AVAILABLE
 
     if name != COMPILED or not AVAILABLE:
@@ -46,12 +47,13 @@ def is_available(name: str) -> bool:
 
 
 class Prepared:
-    """A program for executors of any kind: compiled and verified where one needs it, and once.
+    """A program for executors of any kind; it is compiled and verified at most once, if needed.
 
-    ``routine`` is what it begins with, by default the first one of its first file; ``submits`` may
-    run beside it, as may those in files that end in .sub, which need no name here. ``notes`` says
-    why the machine runs a program that native code was asked for. Where it ``is_kept`` what was
-    verified is kept for the user: not where code may differ from its files, as with mutants.
+    ``routine`` is the routine to begin with, by default the first one of the main file. ``submits``
+    are further routines that may run beside it; those in files that end in .sub need not be named.
+    ``notes`` says why the machine runs a program for which native code was requested. With
+    ``is_kept`` the verified program is cached for the user; this is wrong if the code may differ
+    from its files, as with mutants.
     """
 
     def __init__(
@@ -70,7 +72,7 @@ class Prepared:
 
     @cached_property
     def verified(self) -> Verified:
-        """As bytecode that was verified; raises `LinkError`."""
+        """The program as verified bytecode; raises `LinkError`."""
         if not self._is_kept:
             return self._verified()
         program = self.program
@@ -85,12 +87,12 @@ class Prepared:
 
         named = []
         for name in self._names:
-            with suppress(LinkError):  # reported where an executor begins with it
+            with suppress(LinkError):  # the executor that begins with it reports the error
                 named.append(self.program.start(name))
         return verify(compile_program(self.program, named).program)
 
     def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:
-        """An executor of its own; raises `LinkError`, and `ValueError` for an unknown name."""
+        """Return a new executor; raise `LinkError`, and `ValueError` for an unknown name."""
         match name:
             case "tree":
                 from interp.tree import TreeExecutor
@@ -113,7 +115,7 @@ class Prepared:
         raise ValueError(f"there is no executor {name}")
 
     def _compiled(self, limits: Limits, sink: Sink | None) -> Executor:
-        """One with native code, else the machine that it is made for."""
+        """Return an executor with native code, or the machine in C if that is impossible."""
         from interp.native.c_backend.compiled import CompiledMachine
 
         try:
@@ -124,5 +126,5 @@ class Prepared:
 
     @property
     def start(self) -> str:
-        """The routine to begin with; raises `LinkError` where there is none."""
+        """The name of the routine to begin with; raises `LinkError` if there is none."""
         return self.program.start(self.routine).name

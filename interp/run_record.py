@@ -1,4 +1,4 @@
-"""The record of a run, as the page of a run and notebooks take it: plain data, ready for JSON."""
+"""The record of a run as plain data, ready for JSON, for the page of a run and for notebooks."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from interp.robot.simulation.tracking import PathRecord
 from interp.session import RunResult, RunSetup
 from interp.values.poses import Pose
 
-#: How often a line may take one way until the record has no more of it.
+#: How many times a branch of one line is recorded.
 _MOST_BRANCHES: Final = 1000
 
 Array = npt.NDArray[np.float64]
 
 
 class OutcomeRecord(TypedDict):
-    """How the run ended; ``at`` is ``file:line`` or empty."""
+    """The end of the run; ``at`` is ``file:line`` or empty."""
 
     kind: str
     time: int
@@ -47,9 +47,9 @@ class FileRecord(TypedDict):
 
 
 class LimitsRecord(TypedDict):
-    """Software limit switches, greatest speeds, accelerations and torques of the axes; tool speed.
+    """Software limit switches, speeds, accelerations and torques of the axes; speed of the tool.
 
-    0 where the machine data names none.
+    0 if the machine data has no limit.
     """
 
     axes: list[list[float]]
@@ -60,7 +60,7 @@ class LimitsRecord(TypedDict):
 
 
 class PointRecord(TypedDict):
-    """The end point of a motion; ``place`` is empty where it is unknown."""
+    """The end point of a motion; ``place`` is empty if it is unknown."""
 
     motion: int
     kind: str
@@ -70,14 +70,14 @@ class PointRecord(TypedDict):
 
 
 class SkippedRecord(TypedDict):
-    """A line that failed and was skipped, ``file:line``, and why it did at first."""
+    """A line ``file:line`` that failed and was skipped, with the reason of its first failure."""
 
     at: str
     text: str
 
 
 class ShapeRecord(TypedDict):
-    """A rod with round ends from one point of its link to another; a ball where they are one."""
+    """A capsule between two points of its link; a ball if both are the same."""
 
     start: list[float]
     end: list[float]
@@ -88,10 +88,10 @@ class ShapeRecord(TypedDict):
 class LinkRecord(TypedDict):
     """A body of the arm.
 
-    ``parent`` is the index of the link that carries it, -1 for the world; ``frame`` where it stands
-    there while its axis is at zero, sixteen numbers row by row. ``joint`` is the index of its axis
-    in the columns of the path, -1 where it does not move: it turns by so many degrees about
-    ``axis`` of its own frame, or slides along it by so many mm where ``linear``.
+    ``parent`` is the index of the link that carries it, -1 for the world. ``frame`` is its frame
+    relative to that link with its axis at zero, as sixteen numbers row by row. ``joint`` is the
+    index of its axis in the columns of the path, -1 if it does not move. The axis turns the body
+    about ``axis`` of its own frame by degrees, or shifts it along ``axis`` by mm if ``linear``.
     """
 
     name: str
@@ -104,10 +104,10 @@ class LinkRecord(TypedDict):
 
 
 class ObjectRecord(TypedDict):
-    """An object of the scene: ``frame`` is its middle in $WORLD, or on the flange where ``held``.
+    """An object of the scene; ``frame`` is its centre in $WORLD, or on the flange if ``held``.
 
-    ``shape`` is box, cylinder, sphere or mesh; ``edges`` are those of the box around it in mm, 0
-    for a mesh, whose corners lie in a file.
+    ``shape`` is box, cylinder, sphere or mesh. ``edges`` are those of the bounding box in mm; 0 for
+    a mesh, whose geometry is in a file.
     """
 
     name: str
@@ -118,7 +118,7 @@ class ObjectRecord(TypedDict):
 
 
 class ToolRecord(TypedDict):
-    """From time ``t`` on: $TOOL on the flange, and $BASE in $WORLD, sixteen numbers row by row."""
+    """$TOOL on the flange and $BASE in $WORLD from time ``t``, sixteen numbers row by row each."""
 
     t: int
     tool: list[float]
@@ -126,10 +126,10 @@ class ToolRecord(TypedDict):
 
 
 class ArmRecord(TypedDict):
-    """What the arm is made of, for drawing it; mm, in $WORLD.
+    """The parts of the arm, for drawing it; in mm, relative to $WORLD.
 
-    ``flange`` is the flange in the frame of the link ``hand``. ``tools`` are the frames in force,
-    none where no set-points were sent.
+    ``flange`` is the flange relative to the link ``hand``. ``tools`` are the frames in force; empty
+    if no set-points were sent.
     """
 
     axes: list[str]
@@ -141,11 +141,12 @@ class ArmRecord(TypedDict):
 
 
 class PathSamples(TypedDict):
-    """Set-points, one column a quantity; ``tool_measured`` where the robot measures.
+    """Set-points in columns; ``tool_measured`` is present if the robot measures.
 
-    ``axes`` has a column an axis in degrees or mm, robot axes first; so have ``axis_speeds`` and
-    ``axis_accelerations``, the differences of the set-points over time. Another tool is no speed.
-    ``axis_torques`` in Nm or N are those that the set-points ask for, where the robot has masses.
+    ``axes`` has a column for each axis in degrees or mm, robot axes first. ``axis_speeds`` and
+    ``axis_accelerations`` have the same columns, as difference quotients of the set-points. A
+    change of the tool does not count as speed. ``axis_torques``, in Nm or N, are those that the
+    set-points require; present if the robot has masses.
     """
 
     t: list[int]
@@ -159,14 +160,14 @@ class PathSamples(TypedDict):
 
 
 class DeviationRecord(TypedDict):
-    """How far the measured tool is from its set-point, mm."""
+    """The distance of the measured tool from its set-point in mm."""
 
     most: float
     mean: float
 
 
 class RunRecord(TypedDict):
-    """A run; ``path`` and ``deviation`` where set-points were sent to a robot."""
+    """A run; ``path`` and ``deviation`` are present if set-points were sent to a robot."""
 
     main: str
     executor: str
@@ -186,11 +187,11 @@ class RunRecord(TypedDict):
 
 
 def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRecord:
-    """Outcome, trace, sources, path, limits and programmed points of a run.
+    """Return outcome, trace, sources, path, limits and programmed points of a run.
 
-    Times are µs, lengths mm in $WORLD, speeds of axes deg/s or mm/s, their accelerations deg/s² or
-    mm/s², the speed of the tool m/s. Of a way that one line takes again and again, as a loop that
-    waits does, the first thousand times are recorded; the trace has them all.
+    Times are in µs, lengths in mm in $WORLD, axis speeds in deg/s or mm/s, axis accelerations in
+    deg/s² or mm/s², and tool speeds in m/s. If a line takes the same branch again and again, as in
+    a waiting loop, only the first thousand times are recorded; the trace has them all.
     """
     outcome = run.outcome
     events = [json.loads(event.line()) for event in _events(run.events)]
@@ -236,7 +237,7 @@ def record_of(run: RunResult, program: CheckedProgram, setup: RunSetup) -> RunRe
 
 
 def _events(events: Iterable[TraceEvent]) -> Iterator[TraceEvent]:
-    """The events without the later ones of what a line repeats for ever."""
+    """Yield the events, without later repetitions of the same branch of a line."""
     taken: Counter[tuple[At | None, Any]] = Counter()
     for event in events:
         if event.kind == "branch":
@@ -248,7 +249,7 @@ def _events(events: Iterable[TraceEvent]) -> Iterator[TraceEvent]:
 
 
 def _files(program: CheckedProgram, named: set[str]) -> list[FileRecord]:
-    """The sources that the trace names, the one the program began with first."""
+    """Return the sources that the trace names, the main file first."""
     units = [program.main, *(unit for unit in program.units.values() if unit is not program.main)]
     return [
         {
@@ -261,7 +262,7 @@ def _files(program: CheckedProgram, named: set[str]) -> list[FileRecord]:
 
 
 def tip_of(point: PlannedPoint, machine: MachineData) -> list[float]:
-    """X, Y and Z of the tool in $WORLD where a motion ends, mm; empty where it is unknown."""
+    """Return X, Y, Z of the tool in $WORLD in mm at the end of a motion; empty if unknown."""
     if point.position is None:
         return []
     foot = machine.foot(point.position.axes[len(machine.axes) :])
@@ -356,7 +357,7 @@ def _path(path: PathRecord) -> PathSamples:
 
 
 def _same_tool(path: PathRecord) -> Iterator[slice]:
-    """Rows with one tool each: where it changes the tip is another point, and has not moved."""
+    """Yield rows with the same tool: a change of the tool moves the tip without a motion."""
     changes = [
         time for (_, before), (time, now) in pairwise(path.placements) if before.tool != now.tool
     ]
@@ -366,7 +367,7 @@ def _same_tool(path: PathRecord) -> Iterator[slice]:
 
 
 def _deviation(path: PathRecord) -> DeviationRecord | None:
-    """How far the measured tool is from its set-point, mm."""
+    """Return the distance of the measured tool from its set-point; ``None`` if not measured."""
     if path.tips_measured is None:
         return None
     off = np.linalg.norm(path.tips_measured - path.tips, axis=1)

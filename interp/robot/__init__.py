@@ -1,5 +1,5 @@
-"""The arm: where it is, how it moves, and its commands.
+"""The robot arm: its kinematics, its path and motion planning, its commands, and a simulated robot.
 
-`frames` and `machine` need nothing beyond Python. `kinematics` and all that builds upon it need the
-extra `arm`, and are imported only by those who move an arm.
+`kinematics.machine_data` and what it imports need nothing beyond Python. Modules that compute with
+arrays need the extra `arm`, and are imported only by code that moves an arm.
 """

@@ -1,11 +1,12 @@
-"""The port between whoever owns the motion queue and whatever plans motions.
+"""The interface between the owner of the motion queue and a planner of motions.
 
-A `Motion` is one motion instruction with all that was in force when the advance run met it. An
-`Arm` appends motions to one unbroken path, decides where they blend, and reports when the path
-passes which places. Times are whole microseconds of the virtual clock, lengths millimetres, angles
-degrees, speeds as their system variables have them. What an arm will do may still change while it
-is on its way (a further motion is appended, the override changes, it brakes), so `Arm.next_event`
-is asked anew each time.
+A `Motion` is one motion instruction with all settings that were in force when the advance run
+reached it. An `Arm` appends motions to one continuous path, decides where they are blended, and
+reports when the path passes which places. Times are whole µs of the virtual clock, lengths mm,
+angles degrees, and speeds in the units of their system variables.
+
+The future of an arm may still change while it moves: another motion is appended, the override
+changes, it brakes. So `Arm.next_event` must be called again each time.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-#: The members of a target that the program gave: X…C, S, T, E1…E6 or A1…A6, in upper case. What it
-#: left out is missing and keeps the value of the target before [MOT-16].
+#: The components of a target that the program gives: X…C, S, T, E1…E6 or A1…A6, in upper case. A
+#: component that is missing keeps its value of the previous target [MOT-16].
 Target = Mapping[str, float]
 
 
@@ -42,7 +43,7 @@ class Approximation:
 class Load:
     """A mass in kg at ``centre``, in mm, with its own inertia about X, Y and Z in kg m² [TYP-14].
 
-    ``centre`` counts in front of the flange for $LOAD and $LOAD_A3 (with axes 4 to 6 at 0), of the
+    ``centre`` is relative to the flange for $LOAD and $LOAD_A3 (with axes 4 to 6 at 0), and to the
     robot's foot for $LOAD_A1 (with A1 at 0) and $LOAD_A2 (with A2 at -90).
     """
 
@@ -53,14 +54,15 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The advance values of the motion parameters, as they stood when a motion was planned.
+    """The values of the motion parameters in the advance run when a motion was planned.
 
-    ``velocity`` and ``acceleration`` are $VEL.CP and $ACC.CP in m/s and m/s², ``swivel`` and
-    ``rotation`` the pairs ORI1 and ORI2 of both in deg/s and deg/s² [MOT-04]. ``axis_velocity``,
-    ``axis_acceleration`` and ``axis_jerk`` are per cent of the machine data, robot axes first, then
-    external ones [MOT-02]. ``is_reduced`` is T1 [MOT-07]. ``speed_type`` is $CP_VEL_TYPE, as
-    delivered [MOT-08]; ``target_status`` is $TARGET_STATUS [POS-09]. ``loads`` are those of $LOAD,
-    $LOAD_A1, $LOAD_A2 and $LOAD_A3 that have a mass, by these names.
+    ``velocity`` and ``acceleration`` are $VEL.CP and $ACC.CP in m/s and m/s²; ``swivel`` and
+    ``rotation`` are the pairs of velocity and acceleration for ORI1 and ORI2, in deg/s and deg/s²
+    [MOT-04]. ``axis_velocity``, ``axis_acceleration`` and ``axis_jerk`` are per cent of the machine
+    data, robot axes first, then external axes [MOT-02]. ``is_reduced`` is set in T1 [MOT-07].
+    ``orientation`` is $ORI_TYPE, ``circle`` $CIRC_TYPE, ``speed_type`` $CP_VEL_TYPE [MOT-08], and
+    ``target_status`` $TARGET_STATUS [POS-09]. ``loads`` has those of $LOAD, $LOAD_A1, $LOAD_A2 and
+    $LOAD_A3 that have a mass, by these names.
     """
 
     placement: Placement = field(default_factory=Placement)
@@ -82,11 +84,11 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place of a motion whose passing is asked for: what a trigger is about [TRG-01 to TRG-11].
+    """A place of a motion whose passing is to be reported, for a trigger [TRG-01 to TRG-11].
 
-    ``kind`` DISTANCE: ``position`` 0 is the start, 1 the end; PATH: millimetres from the end, or
-    from the start where ``on_start``. ``delay`` is in µs, negative for earlier. What lies outside
-    the admissible range is moved to its nearest limit [TRG-07].
+    For ``kind`` DISTANCE, ``position`` 0 is the start and 1 the end. For PATH it is in mm from the
+    end, or from the start with ``on_start``. ``delay`` is in µs, negative for earlier. A place
+    outside the permitted range is moved to the nearest limit [TRG-07].
     """
 
     key: int
@@ -100,7 +102,8 @@ class Place:
 class SplinePart:
     """One segment of a spline block, with the ranges and places written before it.
 
-    Places count from its end, or from its start. ``settings`` is ``None`` for those of the block.
+    Places are relative to its end, or to its start. ``settings`` is ``None`` if the segment uses
+    those of the block.
     """
 
     kind: str
@@ -117,11 +120,11 @@ class SplinePart:
 class Motion:
     """One motion instruction.
 
-    ``number`` counts motions from 1 in the order they are planned. ``kind`` is PTP, LIN, CIRC,
-    SPTP, SLIN, SCIRC, SPLINE or PTP_SPLINE; the last two have ``parts`` and no target of their own.
-    ``is_relative`` and ``reference`` (#BASE or #TOOL) are those of the _REL forms [MOT-14].
-    ``criteria`` are C_PTP, C_DIS and so on, in their order. ``stop_places`` are the STOP WHEN PATH
-    of a block: the path can be left there. ``ranges`` are those behind the last of the parts.
+    ``number`` counts planned motions from 1. ``kind`` is PTP, LIN, CIRC, SPTP, SLIN, SCIRC, SPLINE
+    or PTP_SPLINE; the last two have ``parts`` instead of a target. ``is_relative`` and
+    ``reference`` (#BASE or #TOOL) belong to the _REL forms [MOT-14]. ``criteria`` are C_PTP, C_DIS
+    and so on, in their order. ``stop_places`` are the STOP WHEN PATH places of a block, at which
+    the motion may be stopped. ``ranges`` are those after the last part.
     """
 
     number: int
@@ -147,13 +150,13 @@ EventKind = Literal[
 
 @dataclass(frozen=True, slots=True)
 class ArmEvent:
-    """The path passes something at ``time`` (µs).
+    """The path passes a place, or reaches a stage of a motion, at ``time`` in µs.
 
-    Between two motions that blend, ``blend_start`` and ``blend_apex`` have the number of the first
-    and ``blend_end`` that of the second; the first has its ``motion_end`` and the second its
-    ``motion_start`` at the apex. ``key`` is that of a `Place`. ``is_exact_unwanted`` marks the
-    ``motion_end`` of a motion that should have blended and could not [ADV-12]. ``stopped`` comes
-    when the arm stands still after `Arm.brake`.
+    Between two motions that are blended, ``blend_start`` and ``blend_apex`` have the number of the
+    first motion and ``blend_end`` that of the second. At the apex, the first has its
+    ``motion_end`` and the second its ``motion_start``. ``key`` is that of a `Place`.
+    ``is_exact_unwanted`` marks the ``motion_end`` of a motion that should have been blended and
+    could not be [ADV-12]. ``stopped`` occurs when the arm is at rest after `Arm.brake`.
     """
 
     time: int
@@ -165,7 +168,7 @@ class ArmEvent:
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where the arm is: axes in degrees (mm for linear ones), the flange in front of the foot."""
+    """A position of the arm: axes in degrees (mm if linear), the flange relative to the foot."""
 
     axes: tuple[float, ...]
     flange: Pose
@@ -173,20 +176,20 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class Samples:
-    """Set-points at ``n`` times, of shape (n, axes)."""
+    """Set-points at ``n`` times in µs, as an array of shape (n, axes)."""
 
     times: npt.NDArray[np.int64]
     axes: npt.NDArray[np.float64]
 
 
 class Arm(Protocol):
-    """Plans motions and knows where it is at any time from the first motion to the last."""
+    """Plans motions, and returns the set-points of the path at any time."""
 
     def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
-        """Append a motion; it starts at once if the arm stands still with nothing before it.
+        """Append a motion; it starts at once if the arm is at rest and nothing precedes it.
 
-        Returns the numbers of messages that stop nothing, such as 3171 for a motion that goes
-        nowhere [MOT-11].
+        Return the numbers of messages that stop nothing, such as 3171 for a motion to the present
+        position [MOT-11].
 
         Raises `interp.values.faults.Fault` (a point out of reach, a software limit, a degenerate
         circle and so on [MOT-10 to MOT-15]); then nothing is appended.
@@ -194,56 +197,59 @@ class Arm(Protocol):
         ...
 
     def mark(self) -> object:
-        """What `rewind` needs to undo all that is planned from here on."""
+        """Return a mark with which `rewind` can undo all that is planned from here on."""
         ...
 
     def rewind(self, mark: object) -> None:
-        """Undo each `plan` since the mark; no time has passed and nothing else was called."""
+        """Undo each `plan` since the mark; no time may pass and nothing else be called between."""
         ...
 
     def next_event(self) -> ArmEvent | None:
-        """The earliest event not taken yet, as planned today; ``None`` if nothing lies ahead."""
+        """Return the next event not taken yet, by the present plan; ``None`` if there is none."""
         ...
 
     def take(self) -> ArmEvent:
-        """`next_event`, which has now happened."""
+        """Remove and return `next_event`, because it has happened."""
         ...
 
     def pending(self) -> int:
-        """How many motions are planned and not yet ended, the running one included."""
+        """Return the number of motions that have not ended, including the running one."""
         ...
 
     def position(self, time: int) -> Position:
-        """The set-point at a time that is not after the last event planned; else where it stops."""
+        """Return the set-point at a time in µs, which must not be after the last planned event.
+
+        After that time the arm is at rest.
+        """
         ...
 
     def speed(self, time: int) -> float:
-        """The speed of the tool on its path, m/s."""
+        """Return the speed of the tool on its path in m/s."""
         ...
 
     def distances(self, time: int) -> tuple[float, float]:
-        """Of the running motion: mm travelled since its start, and mm left to its end [MOT-18]."""
+        """Return how far the running motion is from its start and from its end, in mm [MOT-18]."""
         ...
 
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
-        """Set-points at rising times, all of them in the past or at `now`."""
+        """Return set-points at increasing times, none of them later than now."""
         ...
 
     def override(self, now: int, percent: float) -> None:
-        """$OV_PRO changes; 0 stops on the path, and any more continues from there."""
+        """Apply a change of $OV_PRO; 0 stops on the path, any other value continues from there."""
         ...
 
     def brake(self, now: int, is_hard: bool) -> None:
-        """Stop on the path, with the ramp of the motion or the hardest one [INT-09]."""
+        """Brake on the path, with the ramp of the motion or the hardest possible one [INT-09]."""
         ...
 
     def proceed(self, now: int) -> None:
-        """Continue with what a brake interrupted."""
+        """Continue the motion that a brake interrupted."""
         ...
 
     def discard(self, now: int) -> None:
-        """Forget all that is not travelled yet; the arm stands, or stops on its path [INT-10].
+        """Discard all that is not travelled yet [INT-10].
 
-        The next motion starts from where it stands [INT-14].
+        The arm stays at rest, or comes to rest on its path. The next motion starts there [INT-14].
         """
         ...

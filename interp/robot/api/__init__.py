@@ -1,1 +1,1 @@
-"""The Robotics API: commands with events, linked into transactions, without KRL."""
+"""The Robotics API: commands with events, linked into transactions, independent of KRL."""

@@ -1,9 +1,9 @@
-"""The paper's strategy: queue motions until one cannot be blended, then execute the batch.
+"""The batch strategy of the paper: queue motions until one cannot be blended, then execute them.
 
-The alternative is the incremental look-ahead of `interp.robot.api.control_core`, where a motion is
-planned as soon as it is known. A batch is planned with all its blends known, but its first motion
-waits until the program has come to its last: that delay is what the strategy costs. A fault is
-found late too, when the arm is asked for the batch, and then none of it is executed.
+The alternative is the incremental look-ahead of `interp.robot.api.control_core`, in which a motion
+is planned as soon as it is known. A batch is planned with all its blends known, but its first
+motion waits until the program has reached its last one: this delay is the cost of the strategy. A
+fault is detected late too, when the batch is planned, and then no motion of it is executed.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from interp.robot.arm import Arm
 from interp.values.faults import Fault
 
 _MOST_HELD = 256
-"""Motions in a batch: a program may loop over approximated motions for ever (a choice of ours)."""
+"""The largest number of motions in a batch: a program may loop over blended motions."""
 
 
 class BatchCore(ControlCore):
-    """A control core that holds transactions with motions back and loads them as one.
+    """A control core that collects transactions with motions, and loads them as one.
 
-    The batch goes when its last motion has no approximation criterion, with `release`, or once so
-    many motions are held that it might never. What has no motion and no link to the batch is loaded
-    at once. Held motions are not `pending`: the program continues, however deep its advance
-    run may be.
+    The batch is loaded when its last motion has no approximation criterion, at `release`, or when
+    it has become too long. A transaction without motions and without a link to the batch is loaded
+    at once. Collected motions are not `pending`: the program continues, whatever the depth of its
+    advance run.
     """
 
     def __init__(self, arm: Arm, switch: Switch, cycle: int) -> None:
@@ -31,10 +31,10 @@ class BatchCore(ControlCore):
         self._held: list[Transaction] = []
 
     def load(self, now: int, transaction: Transaction) -> int | None:
-        """Hold a transaction back, or load it with all that is held.
+        """Collect a transaction, or load it with all collected ones.
 
-        Raises as `ControlCore.load` does; where the fault is one of the batch, all that was held is
-        cancelled.
+        Raises as `ControlCore.load` does; if a motion of the batch causes the fault, all collected
+        commands are cancelled.
         """
         self._advance(now)
         motions = [command for command in transaction.unlinked() if _is_motion(command)]
@@ -49,19 +49,19 @@ class BatchCore(ControlCore):
         return self._load_batch(now, transaction)
 
     def release(self, now: int) -> None:
-        """Execute what is held: the arm will stand behind it. Raises as `load` does."""
+        """Load the batch, because the arm will stop after it. Raises as `load` does."""
         self._advance(now)
         if self._held:
             self._load_batch(now)
 
     def discard(self, now: int) -> None:
-        """Forget what is not travelled yet, and what is held."""
+        """Discard what is not travelled yet, and the batch."""
         super().discard(now)
         self._cancel_held()
 
     @property
     def held(self) -> int:
-        """How many motions wait for the batch to go."""
+        """The number of motions in the batch."""
         commands = (command for held in self._held for command in held.commands)
         return sum(map(_is_motion, commands))
 

@@ -1,17 +1,17 @@
 """The Robotics API: commands, their events, and transactions that link them.
 
-After the paper "On reverse-engineering the KUKA Robot Language" (Mühe, Angerer, Hoffmann, Reif
-2010). A command is something to do once: a motion, an output, a wait, a call. What it goes through
-are events, and an event of one command may start, cancel or stop another one. Commands and links
-that belong together are a transaction, which `interp.robot.api.control_core` loads as a whole or
-not at all.
+It follows the paper "On reverse-engineering the KUKA Robot Language" (Mühe, Angerer, Hoffmann, Reif
+2010). A command is an action that is executed once: a motion, an output, a wait, a call. Its
+execution causes events, and an event of one command may start, cancel or stop another command.
+Commands and links that belong together form a transaction, which `interp.robot.api.control_core`
+loads as a whole or not at all.
 
     ignite = MotionCommand(motion)
     gas = OutputCommand(("$OUT", 1), True)
     core.load(now, Transaction(ignite, gas).link(ignite.ended, "start", gas))
 
-A command goes its way once: ``created``, ``linked`` once it is loaded, ``active`` from its start
-on, and then ``ended``, ``cancelled`` or ``failed``. Times are whole microseconds.
+The state of a command is ``created``, ``linked`` once it is loaded, ``active`` from its start on,
+and finally ``ended``, ``cancelled`` or ``failed``. Times are whole µs.
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ from interp.robot.arm import ArmEvent, Motion, Place
 from interp.values.faults import Fault
 from support.lazy_dataclass import dataclass
 
-#: What an event does to a command: ``cancel`` ends it gently, a motion by its own braking ramp;
+#: The effect of an event on a command: ``cancel`` ends it gently, a motion with its own braking
+#: ramp; ``stop`` ends it at once, a motion with the hardest ramp.
 #: ``stop`` ends it at once, a motion by the hardest ramp.
 Effect = Literal["start", "cancel", "stop"]
 
 #: What happens to a command. ``reached`` is a place of a motion, ``apex`` the middle of the blend
+#: after it; ``stopped`` is an event of the arm, which is at rest after a brake.
 #: behind it; ``stopped`` is the arm's, which stands still after it braked.
 What = Literal[
     "started",
@@ -46,11 +48,11 @@ What = Literal[
 
 
 class CommandError(Exception):
-    """Commands or links make no sense together; the text is one line for a person."""
+    """Commands or links are inconsistent; the text is one line."""
 
 
 class CommandState(Enum):
-    """How far a command is."""
+    """The state of a command."""
 
     CREATED = "created"
     LINKED = "linked"
@@ -61,13 +63,13 @@ class CommandState(Enum):
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing can happen to the command any more."""
+        """Whether nothing more can happen to the command."""
         return self in {CommandState.ENDED, CommandState.CANCELLED, CommandState.FAILED}
 
 
 @dataclass(slots=True, eq=False)
 class Command:
-    """Something to do once. Its state is changed by the control core only."""
+    """An action that is executed once; only the control core changes its state."""
 
     state: CommandState = field(default=CommandState.CREATED, init=False)
 
@@ -78,32 +80,32 @@ class Command:
 
     @property
     def ended(self) -> Event:
-        """It is done: a motion is at its end, or at the apex of the blend behind it."""
+        """It is complete: a motion is at its end, or at the apex of the blend after it."""
         return Event(self, "ended")
 
     @property
     def cancelled(self) -> Event:
-        """It was ended before its time, or can never begin any more."""
+        """It was ended early, or can no longer begin."""
         return Event(self, "cancelled")
 
     @property
     def failed(self) -> Event:
-        """A fault kept it from being done."""
+        """A fault prevented it."""
         return Event(self, "failed")
 
 
 @dataclass(slots=True, eq=False)
 class MotionCommand(Command):
-    """Append a motion to the path. One that is not linked to an event is planned when loaded.
+    """Append a motion to the path. If no event starts it, it is planned when it is loaded.
 
-    ``notices`` are the numbers of messages that planning gave and that stop nothing.
+    ``notices`` are the numbers of messages from planning that stop nothing.
     """
 
     motion: Motion
     notices: tuple[int, ...] = field(default=(), init=False)
 
     def reached(self, place: Place) -> Event:
-        """The path passes one of the motion's places. Raises `CommandError` for any other."""
+        """Return the event that the path passes a place; raise `CommandError` if it is unknown."""
         event = Event(self, "reached", place.key)
         if place.key not in self.place_keys():
             raise CommandError(f"{event}: the motion has no such place")
@@ -111,11 +113,11 @@ class MotionCommand(Command):
 
     @property
     def apex(self) -> Event:
-        """The middle of the blend behind the motion; nothing where it ends exactly."""
+        """The middle of the blend after the motion; it never happens if the motion ends exactly."""
         return Event(self, "apex")
 
     def place_keys(self) -> frozenset[int]:
-        """The keys of all places of the motion and of its parts."""
+        """Return the keys of all places of the motion and of its parts."""
         motion = self.motion
         parts = (place for part in motion.parts for place in part.places)
         return frozenset(place.key for place in (*motion.places, *motion.stop_places, *parts))
@@ -126,7 +128,7 @@ class MotionCommand(Command):
 
 @dataclass(slots=True, eq=False)
 class OutputCommand(Command):
-    """Switch an output, or set any system variable; takes no time."""
+    """Switch an output or set a system variable; this takes no time."""
 
     path: Path
     value: Value
@@ -137,7 +139,7 @@ class OutputCommand(Command):
 
 @dataclass(slots=True, eq=False)
 class WaitCommand(Command):
-    """Let ``duration`` µs pass."""
+    """Wait for ``duration`` µs."""
 
     duration: int
 
@@ -151,9 +153,9 @@ class WaitCommand(Command):
 
 @dataclass(slots=True, eq=False)
 class CallCommand(Command):
-    """Have the core's owner do something: it receives ``started`` and calls `complete` at the end.
+    """Let the owner of the core act: it receives ``started``, and calls `complete` when done.
 
-    ``what`` means something to the owner only, such as the routine of a trigger.
+    ``what`` has a meaning only for the owner, such as the action of a trigger.
     """
 
     what: object
@@ -177,7 +179,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """When ``event`` happens, and ``delay`` µs after it, ``effect`` is done to ``command``."""
+    """Apply ``effect`` to ``command`` when ``event`` happens, after ``delay`` µs."""
 
     event: Event
     effect: Effect
@@ -196,9 +198,9 @@ class Link:
 
 
 class Transaction:
-    """Commands, and links between events and commands, that are loaded as one.
+    """Commands, and links from events to commands, that are loaded together.
 
-    What no link starts is started when the transaction is loaded, in the order given here.
+    Commands that no link starts are started when the transaction is loaded, in their order.
     """
 
     def __init__(self, *commands: Command) -> None:
@@ -206,25 +208,25 @@ class Transaction:
         self.links: list[Link] = []
 
     def add(self, *commands: Command) -> Transaction:
-        """Further commands; returns the transaction."""
+        """Add commands; return the transaction."""
         self.commands += commands
         return self
 
     def link(self, event: Event, effect: Effect, command: Command, delay: int = 0) -> Transaction:
-        """A link; its event may be that of a command loaded before. Returns the transaction."""
+        """Add a link, whose event may be of a command loaded earlier; return the transaction."""
         self.links.append(Link(event, effect, command, delay))
         return self
 
     def unlinked(self) -> Iterator[Command]:
-        """The commands that no link starts."""
+        """Return the commands that no link starts."""
         started = {link.command for link in self.links if link.effect == "start"}
         return (command for command in self.commands if command not in started)
 
     def check(self) -> None:
-        """Raise `CommandError` where it makes no sense whatever else is loaded.
+        """Raise `CommandError` if the transaction is inconsistent in itself.
 
-        A command stands in it once, and is started by the load or by something that can happen;
-        links start no command of another transaction.
+        Each command must occur once, and must be started by the load or by an event that can
+        happen. A link must not start a command of another transaction.
         """
         mine = set(self.commands)
         if len(mine) < len(self.commands):
@@ -253,10 +255,10 @@ class Transaction:
 
 @dataclass(frozen=True, slots=True)
 class CoreEvent:
-    """Something happened at ``time``.
+    """Something happened at ``time`` in µs.
 
-    ``command`` is ``None`` for what only the arm knows of. ``key`` is that of a place, ``arm`` the
-    arm's own word for it, and ``fault`` why a command failed.
+    ``command`` is ``None`` for an event of the arm alone. ``key`` is that of a place, ``arm`` the
+    event of the arm behind it, and ``fault`` the reason why a command failed.
     """
 
     time: int

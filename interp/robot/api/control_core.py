@@ -1,8 +1,8 @@
-"""The control core: loads transactions, follows the arm's path, and acts when an event happens.
+"""The control core: it loads transactions, follows the path of the arm, and executes links.
 
-It has no clock of its own. Whoever has one asks `ControlCore.next_time`, goes on to any time with
-`ControlCore.run_until`, which returns what happened up to there. Whatever an event starts is done
-at the very microsecond of that event, on the path as it is planned by then.
+The core has no clock. Its owner asks `ControlCore.next_time`, and advances it to any time with
+`ControlCore.run_until`, which returns the events up to that time. An effect of an event happens at
+the very microsecond of the event, on the path as planned at that moment.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ _WHAT: Final[dict[str, What]] = {
     "stopped": "stopped",
 }
 
-#: What may still happen to a motion that has ended, in the blend behind it.
+#: What may still happen to a motion that has ended, in the blend after it.
 _BEHIND: Final = frozenset({"reached", "apex"})
 
 
 class ControlCore:
     """Executes commands on one arm.
 
-    ``cycle`` is the interpolation cycle in µs: a transaction takes effect at its next multiple; 1
-    for an owner whose own times are exact. Events at one time come in the order of their causes:
-    what an event starts comes before the next event of the path. Times never go back; `ValueError`
-    where the owner's do.
+    ``cycle`` is the interpolation cycle in µs: a transaction takes effect at the next multiple of
+    it; it is 1 for an owner whose own times are exact. Events at the same time are in the order of
+    their causes: the effects of an event come before the next event of the path. `ValueError` is
+    raised for a time before the present one.
     """
 
     def __init__(self, arm: Arm, switch: Switch, cycle: int) -> None:
@@ -69,13 +69,13 @@ class ControlCore:
         self._due: list[tuple[int, int, Effect | None, Command]] = []
         self._order = count()
         self._links: dict[Event, list[Link]] = defaultdict(list)
-        #: How many links may still start a command.
+        #: The number of links that may still start a command.
         self._chances: dict[Command, int] = {}
-        #: Motions from the plan to their end, by number, in their order.
+        #: Planned motions that have not ended, by number, in their order.
         self._motions: dict[int, MotionCommand] = {}
-        #: Motions that ended, as long as places in the blend behind them may still come.
+        #: Ended motions, as long as places in the blend after them may still be passed.
         self._behind: dict[int, MotionCommand] = {}
-        #: Which motion was planned before another one, by number.
+        #: The number of the motion that was planned before a motion, by the number of the latter.
         self._before: dict[int, int] = {}
         self._newest = 0
         self._last_number = 0
@@ -84,10 +84,10 @@ class ControlCore:
     # ---------------------------------------------------------------------------------- the owner
 
     def load(self, now: int, transaction: Transaction) -> int | None:
-        """Load a transaction; returns the time at which it took effect, ``None`` if it is held.
+        """Load a transaction; return the time at which it takes effect, ``None`` if it is held.
 
-        Raises `CommandError` where it makes no sense, and the `Fault` of a motion that cannot be
-        planned. In both cases nothing of it was loaded and no command's state changed.
+        Raises `CommandError` if it is inconsistent, and the `Fault` of a motion that cannot be
+        planned. In both cases nothing was loaded and no state of a command has changed.
         """
         at = -(-now // self._cycle) * self._cycle
         self._advance(at)
@@ -107,7 +107,7 @@ class ControlCore:
         return at
 
     def link(self, event: Event, effect: Effect, command: Command, delay: int = 0) -> None:
-        """A further link between commands that are loaded. Raises `CommandError`."""
+        """Add a link between loaded commands; raise `CommandError` if it is inconsistent."""
         link = Link(event, effect, command, delay)
         self._check_link(link, frozenset())
         if effect == "start" and command not in self._chances:
@@ -115,7 +115,7 @@ class ControlCore:
         self._attach(link)
 
     def next_time(self) -> int | None:
-        """When something happens next, as planned today; ``None`` if nothing will by itself."""
+        """Return the time of the next event by the present plan; ``None`` if there is none."""
         ahead = self.arm.next_event()
         times = [self._due[0][0]] if self._due else []
         if ahead is not None:
@@ -123,53 +123,53 @@ class ControlCore:
         return min(times, default=None)
 
     def run_until(self, time: int) -> list[CoreEvent]:
-        """Go on to a time; returns what happened since the last call, in its order."""
+        """Advance to a time, and return the events since the last call, in their order."""
         self._advance(time)
         events, self._events = self._events, []
         return events
 
     def run_out(self) -> list[CoreEvent]:
-        """Continue until nothing more happens by itself; returns what happened, as `run_until`."""
+        """Advance until nothing more happens by itself; return the events as `run_until` does."""
         while (time := self.next_time()) is not None:
             self._advance(time)
         return self.run_until(self.now)
 
     def complete(self, now: int, command: CallCommand) -> None:
-        """The owner has done what it was called for; nothing if that was cancelled meanwhile."""
+        """End a command that the owner has executed, unless it was cancelled meanwhile."""
         self._advance(now)
         if command.state is CommandState.ACTIVE:
             self._finish(command, CommandState.ENDED, "ended")
             self._settle()
 
     def apply(self, now: int, effect: Effect, command: Command) -> None:
-        """Start, cancel or stop a loaded command, as an event linked to it would."""
+        """Start, cancel or stop a loaded command, as a link from an event would."""
         self._advance(now)
         self._act(effect, command)
         self._settle()
 
     def release(self, now: int) -> None:
-        """Hold nothing back: there will be no further motion before the arm stands.
+        """Load what is held back: no motion will follow before the arm is at rest.
 
-        This core never does; `interp.robot.api.batch` does.
+        This core holds nothing back; `interp.robot.api.batch` does.
         """
 
     def pending(self) -> int:
-        """How many motions are planned and not yet ended."""
+        """Return the number of planned motions that have not ended."""
         return self.arm.pending()
 
     def brake(self, now: int, *, is_hard: bool) -> None:
-        """The arm stops on its path; ``stopped`` reports when it has stopped."""
+        """Brake on the path; the event ``stopped`` says that the arm is at rest."""
         self._advance(now)
         self.arm.brake(now, is_hard)
 
     def proceed(self, now: int) -> None:
-        """The arm continues after a brake, unless that is to end its motions."""
+        """Continue after a brake, unless the brake is to end the motions."""
         self._advance(now)
         if not self._is_ending:
             self.arm.proceed(now)
 
     def discard(self, now: int) -> None:
-        """Forget what is not travelled yet: all motions are cancelled."""
+        """Discard what is not travelled yet: all motions are cancelled."""
         self._advance(now)
         self._is_ending = False
         self.arm.discard(now)
@@ -181,7 +181,7 @@ class ControlCore:
         self._settle()
 
     def override(self, now: int, percent: float) -> None:
-        """$OV_PRO changes."""
+        """Apply a change of $OV_PRO."""
         self._advance(now)
         self.arm.override(now, percent)
 
@@ -225,13 +225,13 @@ class ControlCore:
         self.now = time
 
     def _settle(self) -> None:
-        """Do what is due by now; the path goes on with time only."""
+        """Execute effects that are due now; events of the path need time to pass."""
         while self._due and self._due[0][0] <= self.now:
             self._act_when_due()
 
     def _act_when_due(self) -> None:
         _, _, effect, command = heapq.heappop(self._due)
-        if effect is None:  # a wait is over
+        if effect is None:  # the end of a wait
             if command.state is CommandState.ACTIVE:
                 self._finish(command, CommandState.ENDED, "ended")
             return
@@ -240,7 +240,7 @@ class ControlCore:
         self._act(effect, command)
 
     def _pass(self, event: ArmEvent) -> None:
-        """The path passes something."""
+        """Handle an event of the path."""
         what = _WHAT[event.kind]
         if event.kind == "stopped":
             self._tell(None, what, arm=event)
@@ -277,7 +277,7 @@ class ControlCore:
         return isinstance(command, MotionCommand) and command.motion.number in self._motions
 
     def _begin(self, command: Command) -> None:
-        """Start a command that an event starts; a motion is planned only now."""
+        """Start a command because of an event; a motion is planned only now."""
         self._chances.pop(command, None)
         if isinstance(command, MotionCommand):
             try:
@@ -288,7 +288,7 @@ class ControlCore:
         self._start(command)
 
     def _plan_all(self, now: int, commands: Iterable[MotionCommand]) -> None:
-        """Plan motions, all of them or none. Raises the `Fault` of the first that cannot be."""
+        """Plan all motions or none; raise the `Fault` of the first that cannot be planned."""
         mark = self.arm.mark()
         planned: dict[int, MotionCommand] = {}
         notices: list[tuple[int, ...]] = []
@@ -308,7 +308,7 @@ class ControlCore:
     def _start(self, command: Command) -> None:
         match command:
             case MotionCommand():
-                return  # it is planned, and starts when the arm gets there
+                return  # it is planned, and starts when the arm reaches it
             case OutputCommand(path=path, value=value):
                 command.state = CommandState.ACTIVE
                 self._tell(command, "started")
@@ -325,7 +325,7 @@ class ControlCore:
                     self._schedule(command.duration, None, command)
 
     def _end_path(self, *, is_hard: bool) -> None:
-        """There is one path: to end one of its motions is to end all of them."""
+        """Brake and cancel all motions: the path is one, so ending one motion ends them all."""
         self._is_ending = True
         self.arm.brake(self.now, is_hard)
         is_moving = any(one.state is CommandState.ACTIVE for one in self._motions.values())
@@ -363,19 +363,19 @@ class ControlCore:
         arm: ArmEvent | None = None,
         fault: Fault | None = None,
     ) -> None:
-        """Record an event and do what is linked to it, at once or after its delay."""
+        """Record an event, and execute its links at once or after their delays."""
         self._events.append(CoreEvent(self.now, command, what, key, arm, fault))
         if command is None:
             return
         for link in self._links.pop(Event(command, what, key), ()):
-            # Even what is due at once goes through the queue, so that effects come in order.
+            # Effects that are due at once are queued too, so that all effects are in order.
             self._schedule(link.delay, link.effect, link.command)
 
     def _schedule(self, delay: int, effect: Effect | None, command: Command) -> None:
         heapq.heappush(self._due, (self.now + delay, next(self._order), effect, command))
 
     def _drop(self, command: Command, but: frozenset[str] = frozenset()) -> None:
-        """What the command could have caused, but for some events, cannot happen any more."""
+        """Remove links from the events of a command that can no longer happen, except ``but``."""
         mine = [event for event in self._links if event.command is command]
         for event in [event for event in mine if event.what not in but]:
             for link in self._links.pop(event):
@@ -405,7 +405,7 @@ class ControlCore:
             self._finish(stuck, CommandState.CANCELLED, "cancelled")
 
     def _stuck(self) -> Command | None:
-        """The first of commands that wait for one another and for nothing else."""
+        """Return the first of the commands that wait only for one another, if there are any."""
         waiting = [one for one in self._chances if one.state is CommandState.LINKED]
         coming = {command for _, _, effect, command in self._due if effect == "start"}
         starts = [

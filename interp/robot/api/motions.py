@@ -1,4 +1,4 @@
-"""Motions written in Python: what a program in KRL writes as PTP, LIN and CIRC."""
+"""Motions as Python calls: the equivalents of PTP, LIN and CIRC."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _MEMBERS: Final = frozenset(
 
 @dataclass(slots=True)
 class MotionFactory:
-    """Makes the commands of motions and numbers them in their order.
+    """Creates motion commands, and numbers them in their order.
 
-    A target names what it gives, in mm and degrees: ``x``, ``y``, ``z``, ``a``, ``b``, ``c``, ``s``
-    and ``t`` of a point, or ``a1`` to ``a6`` of axes, and ``e1`` to ``e6``. What it leaves out
-    stays as it is. ``settings`` hold for all motions made from then on; ``criteria`` are C_PTP,
-    C_DIS and so on. Raises `ValueError` for a member that no target has.
+    A target gives components in mm and degrees: ``x``, ``y``, ``z``, ``a``, ``b``, ``c``, ``s`` and
+    ``t`` of a point, or axes ``a1`` to ``a6``, and ``e1`` to ``e6``. Omitted components keep their
+    values. ``settings`` apply to all motions created afterwards; ``criteria`` are C_PTP, C_DIS and
+    so on. Raises `ValueError` for an unknown component.
     """
 
     settings: Settings = field(default_factory=Settings)
@@ -31,13 +31,13 @@ class MotionFactory:
     def ptp(
         self, *, criteria: Sequence[str] = (), places: Sequence[Place] = (), **target: float
     ) -> MotionCommand:
-        """A synchronous motion of the axes."""
+        """Return a synchronous motion of the axes."""
         return self._made("PTP", target, None, None, criteria, places)
 
     def lin(
         self, *, criteria: Sequence[str] = (), places: Sequence[Place] = (), **target: float
     ) -> MotionCommand:
-        """A straight line of the tool."""
+        """Return a motion of the tool along a straight line."""
         return self._made("LIN", target, None, None, criteria, places)
 
     def circ(
@@ -49,7 +49,7 @@ class MotionFactory:
         places: Sequence[Place] = (),
         **target: float,
     ) -> MotionCommand:
-        """An arc of the tool through an auxiliary point; ``angle`` is CA in degrees."""
+        """Return an arc of the tool through an auxiliary point; ``angle`` is CA in degrees."""
         return self._made("CIRC", target, auxiliary, angle, criteria, places)
 
     def _made(

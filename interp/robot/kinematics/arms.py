@@ -1,4 +1,4 @@
-"""Choice of the kinematics that fit a machine."""
+"""The choice of a kinematics class for a machine."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ if TYPE_CHECKING:
 
 
 def kinematics_of(machine: MachineData) -> Kinematics:
-    """Closed forms for a central wrist and for palletisers that have one, else numbers.
+    """Return the kinematics of a machine.
 
-    Raises `interp.robot.kinematics.machine_data.MachineDataError` for what none of them solves.
+    This is a closed form for an arm with a central wrist and for a palletiser that has one, else a
+    numerical solution. Raises `interp.robot.kinematics.machine_data.MachineDataError` if none of
+    them can solve the arm.
     """
     from interp.robot.kinematics.central_wrist import CentralWrist
     from interp.robot.kinematics.numeric import NumericKinematics

@@ -1,8 +1,8 @@
 """External kinematic systems: what external axes carry, such as a robot on a linear unit.
 
-The chain is ``ETn_TA1KR · move · ETn_TA2A1 · move · ETn_TA3A2 · move · ETn_TFLA3``; each axis turns
-about the Z of the frame before it, or slides along it (KUKA, *KR C2, Machine Data* and *External
-Axes*). #ERSYS carries the robot and begins at $ERSYSROOT.
+The chain is ``ETn_TA1KR · move · ETn_TA2A1 · move · ETn_TA3A2 · move · ETn_TFLA3``. Each axis turns
+about the Z axis of the frame before it, or slides along it (KUKA, *KR C2, Machine Data* and
+*External Axes*). #ERSYS carries the robot and begins at $ERSYSROOT.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Carrier:
-    """The frame behind up to three external axes, in $WORLD.
+    """The frame that up to three external axes carry, relative to $WORLD.
 
-    ``columns`` are the places of its axes among the external ones, in the order of the chain.
+    ``columns`` are the indices of these axes among all external axes, in the order of the chain.
     """
 
     chain: Chain
@@ -31,11 +31,11 @@ class Carrier:
     root: Pose = IDENTITY
 
     def with_frames(self, root: Pose, offset: Pose) -> Carrier:
-        """The same axes from another root, and a frame on what they carry."""
+        """Return the same axes with another root, and with a further frame on what they carry."""
         return Carrier(Chain(self.chain.joints, self.chain.end @ offset), self.columns, root)
 
     def pose(self, externals: Sequence[float]) -> Pose:
-        """Where the frame is for external axes in degrees or mm."""
+        """Return the frame for external axes in degrees or mm."""
         pose = self.root
         for joint, column in zip(self.chain.joints, self.columns, strict=True):
             way = float(externals[column]) * joint.axis[2]
@@ -44,7 +44,7 @@ class Carrier:
         return pose @ self.chain.end
 
     def poses(self, externals: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """The same for external axes (n, axes): homogeneous matrices (n, 4, 4)."""
+        """Return homogeneous matrices (n, 4, 4) of the frame for external axes (n, axes)."""
         import numpy as np
 
         return np.array([self.pose(row).matrix for row in externals.tolist()]).reshape(-1, 4, 4)

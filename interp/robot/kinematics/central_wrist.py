@@ -1,10 +1,11 @@
-"""From axes to poses and back, for an arm of six axes with a central wrist.
+"""Closed-form kinematics of a six-axis arm with a central (spherical) wrist.
 
 Forward kinematics is the chain of `interp.robot.kinematics.machine_data`, step by step. Inverse
-kinematics is in closed form: the wrist centre gives the main axes by the law of cosines, what is
-left of the rotation the others, as Euler angles of a wrist that is upright at zero.
+kinematics separates position and orientation (Pieper): the wrist centre determines the main axes by
+the law of cosines, and the remaining rotation determines the wrist axes as Euler angles.
 
-Arrays are those of `interp.robot.kinematics.solver`.
+Inside this module, the *upright arm* is the same arm with the senses and zero positions of its axes
+removed. Arrays are those of `interp.robot.kinematics.solver`.
 """
 
 from __future__ import annotations
@@ -19,29 +20,29 @@ from interp.robot.kinematics.machine_data import MachineData, MachineDataError
 from interp.robot.kinematics.solver import Array, matrix_of
 from interp.values.poses import sine_cosine
 
-_SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # in front of axis 1, or behind it
-_ELBOW = np.array([-1.0, 1.0, -1.0, 1.0])  # of which sign the bend is
+_SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # wrist centre in front of axis 1, or behind it
+_ELBOW = np.array([-1.0, 1.0, -1.0, 1.0])  # sign of the bend
 _STRAIGHT = 1e-12
-"""Sine of A5 below which axes 4 and 6 turn about the same line."""
+"""Sine of A5 below which axes 4 and 6 are collinear."""
 _UNDETERMINED = 2e-9
-"""Sine of A5 below which A4 is free to stay where it is: 1e-7 degrees."""
+"""Sine of A5 below which A4 is free and stays where it is: 1e-7 degrees."""
 _BENT = 1e-3
-"""Sine of A5 above which the wrist is plainly bent."""
-_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
+"""Sine of A5 above which the wrist is clearly bent."""
+_SAME_WAY = 30.0  # degrees between two samples up to which a path counts as continuous
 _MARGIN = 1e-7
-"""mm that rounding may take away of reach."""
+"""mm of reach that may be lost by rounding."""
 _OVERHEAD = 1e-3
-"""mm from axis 1 within which a point is on it: a REAL has 32 bits, which is 1e-4 mm at 1 m."""
+"""mm from axis 1 within which a point counts as on it; a REAL resolves 1e-4 mm at 1 m."""
 _FAR = 1e9
-"""mm beyond which no pose is looked at, nor where it is no number."""
+"""mm beyond which a pose counts as unreachable, like one that is NaN."""
 _TOLERANCE = 1e-9  # degrees, or of a cosine
 
 
 class CentralWrist:
-    """The kinematics of one machine: a `interp.robot.kinematics.solver.Kinematics`.
+    """The kinematics of one machine, as a `interp.robot.kinematics.solver.Kinematics`.
 
-    Raises `MachineDataError` for a wrist that is not central or whose axes are not square, and for
-    lengths that no arm has.
+    Raises `MachineDataError` for a wrist that is not central or whose axes are not perpendicular,
+    and for impossible lengths.
     """
 
     has_wrist_singularity = True
@@ -67,15 +68,15 @@ class CentralWrist:
         self._reverse = np.diag([along, 1.0, along])
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
-        """All axes are free."""
+        """Return the axes as they are: none is coupled to another."""
         return np.asarray(axes, dtype=np.float64)
 
     def about_tips(self, poses: Array, _tool: Array, /) -> Array:
-        """Every orientation can be had."""
+        """Return the poses as they are: the arm can take every orientation."""
         return poses
 
     def forward(self, axes: npt.ArrayLike) -> Array:
-        """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
+        """Return poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
         theta = np.asarray(axes, dtype=np.float64) * self._turns
         main = _about_z(theta[..., 0]) @ _about_y(theta[..., 1] + theta[..., 2])
         wrist = (
@@ -93,10 +94,10 @@ class CentralWrist:
         return moved
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
-        """All ways to reach poses ``(..., 4, 4)``: axes ``(..., 8, 6)``, NaN where there is none.
+        """Return all solutions for poses ``(..., 4, 4)`` as axes ``(..., 8, 6)``; NaN if none.
 
-        Angles lie above -180 and up to 180 degrees, whatever the software limits. The first four
-        ways differ in shoulder and elbow, the others turn the wrist over. Where the wrist is
+        Angles are in (-180, 180] degrees, whatever the software limits. The first four solutions
+        differ in shoulder and elbow; the other four have the wrist flipped. If the wrist is
         straight, A4 is 0.
         """
         given = np.asarray(poses, dtype=np.float64)
@@ -120,11 +121,11 @@ class CentralWrist:
         return degrees + 0.0
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
-        """For each pose the way that a reference stands in: axes ``(n, 6)``, NaN where none is.
+        """Return the solution with the configuration of a reference: axes ``(n, 6)``, NaN if none.
 
-        ``poses`` are ``(n, 4, 4)``, ``references`` ``(n, 6)`` axes beside the solution: they name
-        the shoulder, the elbow and the turn of each axis. The wrist is turned over or not, as lies
-        nearer; where it is straight, A4 is that of the reference.
+        ``poses`` are ``(n, 4, 4)``. ``references`` ``(n, 6)`` are axes near the solution: they
+        determine shoulder, elbow, and the full turns of each axis. The wrist is flipped if that is
+        nearer; if it is straight, A4 is that of the reference.
         """
         main, wrist = self._main_and_wrist(poses, references * self._turns)
         own = references[:, 3] / self._senses[3] + self._zeros[3]
@@ -142,10 +143,10 @@ class CentralWrist:
         return near
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
-        """Axes ``(n, 6)`` along a path of poses in the way that ``start`` stands in, unbroken.
+        """Return continuous axes ``(n, 6)`` along a path, in the configuration of ``start``.
 
-        ``None`` where that is not plain: the wrist is or becomes straight, the path leaves the way,
-        or its samples are too far apart.
+        Return ``None`` if that is not certain: the wrist is or becomes straight, the path leaves
+        the configuration, or its samples are too far apart.
         """
         references = np.array(start, dtype=np.float64)
         theta = np.broadcast_to(references * self._turns, (len(poses), 6))
@@ -161,7 +162,7 @@ class CentralWrist:
         return path[1:] if bool((steps < _SAME_WAY).all()) else None
 
     def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
-        """Main axes of the upright arm, and the rotation that is left for its wrist."""
+        """Return the main axes of the upright arm, and the rotation that remains for its wrist."""
         inner = self._to_inner @ poses @ self._to_wrist
         forward, _, up = self._forearm
         bend = np.sin(math.atan2(up, forward) - theta[:, 2])
@@ -169,13 +170,13 @@ class CentralWrist:
         return main, self._wrist_of(main, inner)
 
     def _wrist_of(self, main: Array, inner: Array) -> Array:
-        """The rotation that main axes leave for the wrist, of poses in front of $TIRORO."""
+        """Return the rotation that main axes leave for the wrist, for poses relative to $TIRORO."""
         upper = _about_z(main[..., 0]) @ _about_y(main[..., 1] + main[..., 2])
         wrist: Array = np.swapaxes(upper, -1, -2) @ inner[..., :3, :3] @ self._reverse
         return wrist
 
     def _degrees(self, main: Array, a4: Array, a5: Array, wrist: Array) -> Array:
-        """Axes in degrees; A6 is what A4 leaves over of the wrist's rotation."""
+        """Return axes in degrees; A6 completes the rotation of the wrist after A4 and A5."""
         s4, c4 = np.sin(a4), np.cos(a4)
         a6 = np.arctan2(
             c4 * wrist[..., 1, 0] - s4 * wrist[..., 0, 0],
@@ -186,9 +187,9 @@ class CentralWrist:
         return degrees
 
     def _main_axes(self, places: Array, shoulder: Array, elbow: Array) -> Array:
-        """Main axes of the upright arm in radians ``(..., 3)`` for wrist centres.
+        """Return the main axes of the upright arm in radians, ``(..., 3)``, for wrist centres.
 
-        ``shoulder`` and ``elbow`` have the signs of its ways. NaN for what is out of reach.
+        ``shoulder`` and ``elbow`` have the signs of the solutions. NaN if out of reach.
         """
         forward, aside, up = self._forearm
         upper, lower = self.machine.length_b, math.hypot(forward, up)
@@ -211,10 +212,10 @@ class CentralWrist:
         return main
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03, POS-04, POS-05, CON-01].
+        """Return bits 0 to 2 of the Status of axes ``(..., 6)`` [POS-03, POS-04, POS-05, CON-01].
 
-        1 where the wrist centre lies behind axis 1, 2 where A3 is not below `MachineData.elbow`, 4
-        where A5 is negative.
+        1 if the wrist centre is behind axis 1, 2 if A3 is not below `MachineData.elbow`, 4 if A5 is
+        negative.
         """
         given = np.asarray(axes, dtype=np.float64)
         behind = self._ahead(given * self._turns) < -_MARGIN
@@ -223,7 +224,7 @@ class CentralWrist:
         return status
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """How far the wrist centre is from axis 1, in mm, for axes ``(..., 6)``."""
+        """Return the distance of the wrist centre from axis 1 in mm, for axes ``(..., 6)``."""
         ahead = self._ahead(np.asarray(axes, dtype=np.float64) * self._turns)
         distance: Array = np.hypot(ahead, self._forearm[1])
         return distance
@@ -231,7 +232,7 @@ class CentralWrist:
     # ------------------------------------------------------------------------------- the geometry
 
     def _ahead(self, theta: Array) -> Array:
-        """How far the wrist centre lies in front of axis 1, in mm, along the turned X axis."""
+        """Return how far the wrist centre is in front of axis 1, in mm, along the turned X axis."""
         lean, both = theta[..., 1], theta[..., 1] + theta[..., 2]
         forward, _, up = self._forearm
         ahead: Array = (
@@ -243,7 +244,7 @@ class CentralWrist:
         return ahead
 
     def _wrist_centre(self, theta: Array) -> Array:
-        """The wrist centre in front of $TIRORO, in mm."""
+        """Return the wrist centre relative to $TIRORO, in mm."""
         lean, both = theta[..., 1], theta[..., 1] + theta[..., 2]
         forward, aside, up = self._forearm
         ahead = self._ahead(theta)
@@ -266,9 +267,10 @@ class CentralWrist:
             raise MachineDataError("X and Z of $TX3P3 are 0: the arm has no forearm")
 
     def _wrist(self) -> tuple[float, float]:
-        """Whether axis 4 points along the forearm (1) or against it (-1), and where it is at zero.
+        """Return the sense of axis 4 and the zero position of the wrist.
 
-        The second is the angle of the first wrist axis about axis 4, in radians.
+        The sense is 1 if axis 4 points along the forearm, -1 if against it. The zero position is
+        the angle of the first wrist axis about axis 4 in radians.
         """
         name = "the wrist"
         for link in (self.machine.dh_4, self.machine.dh_5):

@@ -1,4 +1,4 @@
-"""A serial chain of joints: what kinematics, models and drawings of an arm have in common."""
+"""A serial chain of joints, for kinematics, models and drawings of an arm."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A joint that turns about ``axis``, or slides along it where ``is_linear``.
+    """A joint that turns about ``axis``, or slides along it if ``is_linear``.
 
-    ``frame`` is where it stands at zero in the moving frame of the joint before it, in mm. ``axis``
-    is a unit vector in that frame, with the sense in which the axis counts. ``name`` is that of the
-    axis; one without a name never moves.
+    ``frame`` is the joint's frame at zero, relative to the moving frame of the previous joint, in
+    mm. ``axis`` is a unit vector in that frame, pointing in the positive sense of the axis.
+    ``name`` is the name of the axis; a joint without a name never moves.
     """
 
     name: str
@@ -25,7 +25,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Joints from the foot outwards; ``end`` is the flange in the frame of the last of them."""
+    """Joints from the foot outwards; ``end`` is the flange relative to the last joint."""
 
     joints: tuple[Joint, ...]
     end: Pose = IDENTITY

@@ -1,7 +1,7 @@
-"""The initial values that a data list gives, without running anything.
+"""The initial values of a data list, read without running a program.
 
-Machine data is a data list like any other. What it needs from the language is little: literals with
-a sign, aggregates of them, and elements of arrays set one by one.
+Machine data is a data list like any other. It needs few constructs of the language: literals with a
+sign, aggregates of them, and assignments to single elements of arrays.
 """
 
 from __future__ import annotations
@@ -14,22 +14,22 @@ from grammar.syntax.build import read_module
 
 #: A name in upper case and its indices: ``("$LENGTH_A",)``, ``("$AXIS_DIR", 3)``.
 Key = tuple[str | int, ...]
-#: A number, a truth value, a text, ``#NAME`` of an enumeration, or the components of an aggregate
-#: by their names in upper case.
+#: A number, a truth value, a text, an enumeration constant as ``#NAME``, or the components of an
+#: aggregate by their names in upper case.
 Value = int | float | bool | str | dict[str, Any]
 
-_MOST_UNREADABLE = 100  # lines; with more of them it is something else
+_MOST_UNREADABLE = 100  # lines; a file with more of them is no data list
 
 
 class DataListError(Exception):
-    """The text is no data list; its own text is one line for a person."""
+    """The text is not a data list; the message is one line."""
 
 
 def read_data_list(text: str, path: str = "") -> Mapping[Key, Value]:
-    """The values of a data list; the last one counts where there are several.
+    """Return the values of a data list; if a variable is set several times, the last value.
 
-    A line that the grammar does not know is left out, and so is a value that is no literal. Raises
-    `DataListError` where it is no data list; ``path`` is how that names it.
+    A line that the grammar does not accept is ignored, and so is a value that is no literal. Raises
+    `DataListError`, with ``path`` in its text, if the text is not a data list.
     """
     module = _tolerant(text, path)
     if not isinstance(module.content, ast.DataList):
@@ -46,7 +46,7 @@ def read_data_list(text: str, path: str = "") -> Mapping[Key, Value]:
 
 
 def _tolerant(text: str, path: str) -> ast.Module:
-    """The tree of the lines that can be read."""
+    """Return the syntax tree of the readable lines."""
     dropped = 0
     while True:
         read = read_module(text, path)
@@ -63,7 +63,7 @@ def _tolerant(text: str, path: str) -> ast.Module:
 
 
 def _without_line(text: str, offset: int) -> str:
-    """The text with blanks in place of the line around an offset, so that offsets stay true."""
+    """Return the text with the line around an offset blanked, so that offsets stay valid."""
     start = max(text.rfind("\n", 0, offset), text.rfind("\r", 0, offset)) + 1
     ends = [end for end in (text.find("\n", offset), text.find("\r", offset)) if end >= 0]
     end = min(ends, default=len(text))
@@ -85,7 +85,7 @@ def _key(target: ast.Expression) -> Key | None:
 
 
 def _named(name: ast.Name, indices: tuple[ast.Expression | None, ...] | None) -> Key | None:
-    """A name with the indices that are given: none for a whole array such as ``NAME[]``."""
+    """Return a name with its indices, if they are literals; a whole array ``NAME[]`` has none."""
     key: list[str | int] = [name.key]
     for index in indices or ():
         if isinstance(index, ast.IntegerLiteral):

@@ -1,8 +1,9 @@
-"""Torques of gears, from the dynamic model in a `$robcor.dat`.
+"""The torques of gears, read from the dynamic model in a `$robcor.dat`.
 
-$DYN_DAT is not documented. Its places 12 to 15, 17 and 18 repeat the lengths of the machine data;
-37 to 42 are read as what the gears of the axes bear, in Nm (unconfirmed: in four archives they are
-of that size, and a half to a tenth of motor torque by gear ratio).
+$DYN_DAT is undocumented. Its elements 12 to 15, 17 and 18 repeat lengths of the machine data.
+Elements 37 to 42 are read as the torques that the gears of the axes can bear, in Nm (unconfirmed:
+in four archives they are of that size, and between a half and a tenth of motor torque times gear
+ratio).
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ _CLOSE = 0.5  # mm
 
 
 def with_torques(machine: MachineData, text: str, path: str) -> MachineData:
-    """The machine with the torques that its gears bear; as it is where the file has none.
+    """Return the machine with the torques that its gears can bear; unchanged if the file has none.
 
-    Raises `MachineDataError` where the file is of another arm, and
-    `interp.robot.kinematics.data_list.DataListError` for no data list.
+    Raises `MachineDataError` if the file belongs to another arm, and
+    `interp.robot.kinematics.data_list.DataListError` if it is not a data list.
     """
     values = read_data_list(text, path)
 

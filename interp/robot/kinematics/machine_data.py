@@ -1,15 +1,15 @@
 """Machine data: what a `$machine.dat` says about an arm [POS-11, MOT-05, MOT-06].
 
-The meaning of each datum is that of KUKA's operating handbook *KR C2, Machine Data* (2005), which
-later releases keep. Lengths are millimetres, angles degrees, times seconds.
+The meaning of each variable is that of KUKA's operating handbook *KR C2, Machine Data* (2005),
+which later releases keep. Lengths are in mm, angles in degrees, times in seconds.
 
-The chain from the robot's foot to its flange, each step in the frame of the one before::
+The chain from the robot's foot to its flange, each step relative to the previous one::
 
     $TIRORO · Rz(A1) · x $LENGTH_A · Ry(A2) · x $LENGTH_B · Ry(A3)
             · $TX3P3 · Rz(A4) · $DH_4 · Rz(A5) · $DH_5 · Rz(A6) · $TFLWP
 
-with every angle multiplied by its $AXIS_DIR. At zero of all axes the arm is stretched forward;
-$MAMES says where the axes are mastered and has no part in the chain.
+with every angle multiplied by its $AXIS_DIR. With all axes at zero the arm is stretched forward.
+$MAMES says where the axes are mastered and does not affect the chain.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from support.lazy_dataclass import dataclass
 ROBOT_AXES = 6
 _MOST_EXTERNAL = 6
 _LINKS = ("TA1KR", "TA2A1", "TA3A2", "TFLA3")
-"""Frames of an external kinematic system, one before each of its three axes and one behind."""
+"""The frames of an external kinematic system: one before each of its three axes, one at its end."""
 
-_UNKNOWN_JERK = 1e18  # what the files say where there is no limit
+_UNKNOWN_JERK = 1e18  # the value in files of an axis without a jerk limit
 _RUN_UP_TIME = 0.4
-"""Seconds to full speed where the data says nothing; an assumption, of the size of other arms'."""
+"""Seconds to full speed if the data has no run-up time; assumed, similar to that of other arms."""
 _TOLERANCE = 1e-9  # mm, or of a cosine
 _ANGLE = 1e-6  # degrees
-_FILTER_TIME = 0.1  # seconds over which acceleration builds up, likewise
+_FILTER_TIME = 0.1  # seconds over which acceleration builds up; assumed too
 
 
 class MachineDataError(Exception):
-    """The data does not describe an arm; its text is one line for a person."""
+    """The data does not describe an arm; the text is one line."""
 
 
 class AxisKind(Enum):
-    """How an axis moves; the values are those of $AXIS_TYPE."""
+    """The kind of an axis; the values are those of $AXIS_TYPE."""
 
     LINEAR = 1
     ROTARY = 3
@@ -56,7 +56,7 @@ class AxisKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Dynamics:
-    """The most that an axis may do: speed, acceleration, jerk, in deg or mm and seconds."""
+    """The limits of an axis: velocity, acceleration and jerk, in degrees or mm and seconds."""
 
     velocity: float
     acceleration: float
@@ -67,10 +67,10 @@ class Dynamics:
 class Axis:
     """One axis. ``lower`` and ``upper`` are its software limit switches in degrees or mm.
 
-    ``direction`` is 1 or -1, the sense of rotation that the kinematic chain gives a positive angle.
-    ``dynamics`` is ``None`` where the data has no speed. ``approximation`` is the largest distance
-    at which a PTP motion may be approximated. Limits that are ``assumed``, of an arm that stands
-    in, choose between ways and stop nothing.
+    ``direction`` is 1 or -1: the sense of rotation of a positive angle in the kinematic chain.
+    ``dynamics`` is ``None`` if the data has no velocity. ``approximation`` is the largest distance
+    over which a PTP motion may be blended. Limits that are ``assumed``, for a stand-in arm, only
+    help to choose between solutions, and no motion is rejected for them.
     """
 
     name: str
@@ -83,12 +83,12 @@ class Axis:
     assumed: bool = False
 
     def unlimited(self) -> Axis:
-        """The axis as it turns where its limits are assumed, else itself."""
+        """Return the axis without limits if they are assumed, else the axis itself."""
         return replace(self, lower=-math.inf, upper=math.inf) if self.assumed else self
 
 
 class Palletising(Enum):
-    """What holds the wrist of a palletiser: $DEF_A4FIX alone, or $DEF_A5LINK too."""
+    """What constrains the wrist of a palletiser: $DEF_A4FIX alone, or $DEF_A5LINK too."""
 
     FIXED_A4 = "A4"
     LINKED_A5 = "A5"
@@ -96,7 +96,7 @@ class Palletising(Enum):
 
 @dataclass(frozen=True, slots=True)
 class WristLink:
-    """Denavit-Hartenberg parameters between two wrist axes: mm and degrees."""
+    """Denavit-Hartenberg parameters between two wrist axes, in mm and degrees."""
 
     a: float
     d: float
@@ -104,13 +104,13 @@ class WristLink:
 
     @property
     def pose(self) -> Pose:
-        """The step behind the turn about Z."""
+        """The transform after the rotation about Z."""
         return Pose.of(z=self.d) @ Pose.of(x=self.a, c=self.alpha)
 
 
 @dataclass(frozen=True, slots=True)
 class CartesianLimits:
-    """Path, swivel and rotation: m and degrees per second, or per second squared [MOT-05]."""
+    """Limits of path, swivel and rotation: m or degrees, per second or second squared [MOT-05]."""
 
     path: float
     swivel: float
@@ -119,15 +119,15 @@ class CartesianLimits:
 
 @dataclass(frozen=True, slots=True)
 class MachineData:
-    """An arm and its external axes, by the names that $machine.dat has for them.
+    """An arm and its external axes; most attributes are named as in $machine.dat.
 
-    ``singul_pos`` is $SINGUL_POS [POS-08].
-    ``t1_speed`` is in m/s and ``t1_reduction`` a share of 1 [MOT-07]. ``carrier`` is the external
-    kinematic system that the robot stands on [#ERSYS], ``tables`` those that carry bases, by names
-    such as #EASYS, each from the root that EK gives it. ``torques`` are the most that the robot
-    axes bear, in Nm (N for linear ones); none where they are unknown, infinite where one is.
-    ``palletising`` is ``None`` for an arm whose axes are all free. ``own_chain`` is that of an arm
-    which was described joint by joint; lengths and frames of the wrist mean nothing then.
+    ``singul_pos`` is $SINGUL_POS [POS-08]. ``t1_speed`` is in m/s, ``t1_reduction`` a fraction of 1
+    [MOT-07]. ``carrier`` is the external kinematic system that carries the robot [#ERSYS].
+    ``tables`` are those that carry bases, by names such as #EASYS, each from the root that EK gives
+    it. ``torques`` are the largest that the robot axes can bear, in Nm (N for linear axes): empty
+    if all are unknown, infinite for a single unknown one. ``palletising`` is ``None`` if all axes
+    are free. ``own_chain`` is set for an arm that was described joint by joint; its wrist lengths
+    and frames have no meaning.
     """
 
     name: str
@@ -154,16 +154,17 @@ class MachineData:
     own_chain: Chain | None = None
 
     def standing(self, axes: Sequence[float]) -> tuple[float, ...]:
-        """All axes, where those that are given stand: others at 0, or the limit nearest to it.
+        """Return values for all axes, beginning with the given ones.
 
-        Degrees, or mm for linear ones, robot axes first; what there is no axis for is left out.
+        The others are at 0, or at the limit nearest to 0. Values are in degrees, or mm if linear,
+        robot axes first; surplus values are dropped.
         """
         every = (*self.axes, *self.externals)
         rest = (min(max(0.0, axis.lower), axis.upper) for axis in every[len(axes) :])
         return (*(float(value) for value in axes[: len(every)]), *rest)
 
     def foot(self, externals: Sequence[float]) -> Pose:
-        """The foot of the robot in $WORLD, where external axes stand."""
+        """Return the foot of the robot relative to $WORLD, for external axes in degrees or mm."""
         return self.robroot if self.carrier is None else self.carrier.pose(externals)
 
     @property
@@ -187,7 +188,7 @@ class MachineData:
 
     @property
     def is_wrist_central(self) -> bool:
-        """Whether the wrist axes meet in one point, at right angles, axis 4 along the forearm."""
+        """Whether the wrist axes meet in one point at right angles, axis 4 along the forearm."""
         links = self.dh_4, self.dh_5
         if any(abs(link.a) > _TOLERANCE or abs(link.d) > _TOLERANCE for link in links):
             return False
@@ -198,26 +199,26 @@ class MachineData:
     def elbow(self) -> float:
         """The angle of A3 in degrees at which the arm is stretched, where bit 1 of S changes.
 
-        0 where A3 and A4 intersect; an offset between them shifts it [POS-04]. The two positions of
-        the elbow that reach a point lie on either side of it, which is what POS-12 asks for.
+        It is 0 if A3 and A4 intersect; an offset between them shifts it [POS-04]. The two elbow
+        positions that reach a point lie on either side of it, as POS-12 requires.
         """
         forward, _, up = self.tx3p3.position
         return self.axes[2].direction * math.degrees(math.atan2(up, forward))
 
 
 def read_machine(text: str, path: str = "") -> MachineData:
-    """The machine that the text of a $machine.dat describes.
+    """Return the machine that the text of a $machine.dat describes.
 
-    Raises `MachineDataError`, and `interp.robot.kinematics.data_list.DataListError` for no data
-    list.
+    Raises `MachineDataError`, and `interp.robot.kinematics.data_list.DataListError` if the text is
+    not a data list.
     """
     return _Reader(read_data_list(text, path), path, text).machine()
 
 
 def with_axis_limits_of(machine: MachineData, text: str, path: str = "") -> MachineData:
-    """A machine in place of one whose data cannot be understood, as far as that data goes.
+    """Return a stand-in for a machine whose data is only partly understood.
 
-    Its axes get the limits and dynamics that the data has for rotary axes; lengths stay.
+    It is ``machine`` with the limits and dynamics that the data has for rotary axes.
     """
     try:
         values = read_data_list(text, path)
@@ -229,7 +230,7 @@ def with_axis_limits_of(machine: MachineData, text: str, path: str = "") -> Mach
 
 
 class _Reader:
-    """Takes values by name, with a clear word for what is missing or of the wrong kind."""
+    """Reads values by name, with a clear error for one that is missing or of the wrong kind."""
 
     def __init__(self, values: Mapping[Key, Value], path: str, text: str = "") -> None:
         self._values = values
@@ -289,7 +290,10 @@ class _Reader:
         return Palletising.FIXED_A4 if self._values.get(("$DEF_A4FIX",)) is True else None
 
     def axis_or(self, other: Axis, number: int) -> Axis:
-        """The limits and dynamics of a rotary axis, with the direction of another machine's."""
+        """Return limits and dynamics of a rotary axis, with the direction of ``other``.
+
+        Return ``other`` if the data of the axis is unusable.
+        """
         try:
             axis = self._axis(number)
         except MachineDataError:
@@ -299,7 +303,7 @@ class _Reader:
         return replace(axis, direction=other.direction)
 
     def _carriers(self, externals: Sequence[Axis]) -> dict[str, Carrier]:
-        """The external kinematic systems that $EX_KIN names."""
+        """Return the external kinematic systems that $EX_KIN names."""
         kinds = self._members("$EX_KIN", default={})
         names = {i: kinds.get(f"ET{i}") for i in _numbers(_MOST_EXTERNAL)}
         return {
@@ -360,12 +364,12 @@ class _Reader:
             raise self._error(f"$AXIS_TYPE[{number}] is {kind}, not 1, 3 or 5") from None
 
     def _dynamics(self, number: int, kind: AxisKind) -> Dynamics | None:
-        """Speed from motor and gear [MOT-06]; run-up time or jerk, whichever the data has.
+        """Return the limits of an axis from motor and gear, and from run-up time or jerk [MOT-06].
 
-        $RAT_MOT_AX is in revolutions of the motor a revolution of the axis, or a metre of travel.
-        Older data has the run-up time in $RAISE_TIME, over which a filter of $DEF_FLT_PTP then
-        rounds the ramp. Newer data has the jerk instead. With it, run-up in the shortest time takes
-        twice the root of velocity by jerk; the acceleration here is the mean of that.
+        $RAT_MOT_AX is in revolutions of the motor per revolution of the axis, or per metre of
+        travel. Older data has the run-up time in $RAISE_TIME; a filter of length $DEF_FLT_PTP then
+        rounds the ramp. Newer data has the jerk instead: the shortest run-up then takes twice the
+        square root of velocity by jerk, and the acceleration here is its mean.
         """
         motor = self._number(f"$VEL_AXIS_MA[{number}]", default=0.0)
         ratio = self._fraction(f"$RAT_MOT_AX[{number}]")
@@ -408,7 +412,7 @@ class _Reader:
         return Pose.of(*(self._member(name, members, part) for part in "XYZABC"))
 
     def _fraction(self, name: str) -> float:
-        """An N by its D; 0 where there is none."""
+        """Return the quotient of the members N and D; 0 if D is missing or 0."""
         members = self._members(name, default={"D": 1})
         below = self._member(name, members, "D")
         return self._member(name, members, "N") / below if below else 0.0
@@ -458,7 +462,7 @@ class _Reader:
             raise self._error(f"{name} is {shown}; only {what} is supported")
 
     def _error(self, what: str) -> MachineDataError:
-        """An error whose text begins with the name of a datum, which stands in a line maybe."""
+        """Return an error that begins with the name of a variable, with its line if it has one."""
         name = re.escape(re.split(r"[ .]", what, maxsplit=1)[0])
         lines = self._text_of_file.splitlines()
         places = (
@@ -472,7 +476,7 @@ class _Reader:
 
 
 def _held(axes: tuple[Axis, ...], palletising: Palletising) -> tuple[Axis, ...]:
-    """The axes of a palletiser: those that the mechanics hold are where they have to be."""
+    """Return the axes of a palletiser: those that the mechanics fix or guide have no limits."""
     held = (4, 5) if palletising is Palletising.LINKED_A5 else (4,)
     return tuple(
         replace(axis, kind=AxisKind.ROTARY, lower=-math.inf, upper=math.inf)
@@ -483,11 +487,11 @@ def _held(axes: tuple[Axis, ...], palletising: Palletising) -> tuple[Axis, ...]:
 
 
 def _numbers(count: int) -> range:
-    """1 to ``count``, as KRL counts."""
+    """Return the range from 1 to ``count``, as KRL counts."""
     return range(1, count + 1)
 
 
 def _key(name: str) -> Key:
-    """The key of a name as a person writes it: ``$AXIS_DIR[3]``."""
+    """Return the key of a name as written in a program: ``$AXIS_DIR[3]``."""
     head, _, rest = name.partition("[")
     return (head, *(int(index) for index in rest.removesuffix("]").split(",") if index))

@@ -1,12 +1,12 @@
-"""Kinematics of a chain of up to six joints, solved by numbers.
+"""Numerical kinematics of a serial chain of up to six joints.
 
-For arms without a central wrist, and for those that were described joint by joint. Inverse
-kinematics is the Levenberg-Marquardt method with the damping of Sugihara (2011), from many starts
-at once; lengths count as shares of the arm's size. An arm of fewer than six joints reaches a pose
-where it can be met; what keeps it from that may turn the flange by `_OFF` at most.
+It serves arms without a central wrist, and arms that were described joint by joint. Inverse
+kinematics is the Levenberg-Marquardt method with the damping of Sugihara (2011), from many start
+positions at once. Lengths are scaled by the size of the arm. An arm with fewer than six joints
+reaches a pose only if the pose is compatible with it, up to a rotation of `_OFF`.
 
-Status and Turn are distinguished as for other arms, with axis 5 for the wrist; no source says how
-such arms count (unconfirmed).
+Status and Turn are defined as for other arms, with axis 5 as the wrist. No source says how they are
+defined for such arms (unconfirmed).
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ _WAYS = 16
 _ROUNDS = 60
 _NEAR_ROUNDS = 25
 _HOPEFUL = 20, 0.05
-"""Rounds after which a start is given up unless its error is below the second figure."""
+"""A start is abandoned after so many rounds unless its error is below the second number."""
 _MET = 1e-11
-"""Length of the error, in shares of the arm's size and radians, at which a pose is met."""
+"""The norm of the error, in fractions of the size and radians, at which a pose is reached."""
 _LEAST_DAMPING = 1e-13
-_OFF = 0.002  # radians that an arm of fewer joints may be off
-_SAME = 1e-4  # degrees between axes that count as one way
-_TURN = 1e-9  # radians of rounding
-_NEAR = 30.0  # degrees or mm from a reference to what is still the same way
+_OFF = 0.002  # radians by which an arm of fewer joints may miss an orientation
+_SAME = 1e-4  # degrees below which two solutions are the same
+_TURN = 1e-9  # degrees of rounding
+_NEAR = 30.0  # degrees or mm from a reference within which a solution has the same configuration
 _COARSE = 32
 _FAR = 1e9  # mm
 
 
 class NumericKinematics:
-    """The kinematics of one machine: a `interp.robot.kinematics.solver.Kinematics`.
+    """The kinematics of one machine, as a `interp.robot.kinematics.solver.Kinematics`.
 
-    Raises `MachineDataError` for a chain of no joints, or more than six.
+    Raises `MachineDataError` for a chain without joints, or with more than six.
     """
 
     has_wrist_singularity = False
@@ -71,13 +71,13 @@ class NumericKinematics:
         return len(self._frames)
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
-        """Axes that the chain does not have stay at 0, and so does an axis 4 that is fixed."""
+        """Return the axes with missing axes, and an axis 4 that is fixed, at 0."""
         found = np.zeros_like(np.asarray(axes, dtype=np.float64))
         found[..., self._free] = np.asarray(axes, dtype=np.float64)[..., self._free]
         return found
 
     def about_tips(self, poses: Array, _tool: Array, /) -> Array:
-        """Poses as they are: what the chain cannot have is sought about the flange."""
+        """Return the poses as they are; an incompatible orientation is handled in the solution."""
         return poses
 
     def forward(self, axes: npt.ArrayLike) -> Array:
@@ -87,7 +87,7 @@ class NumericKinematics:
         return pose
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
-        """Ways that were found from starts spread over the range of the axes, 16 at most."""
+        """Return up to 16 solutions, found from starts spread over the range of the axes."""
         given = np.asarray(poses, dtype=np.float64)
         shape = given.shape[:-2]
         given = given.reshape(-1, 4, 4)
@@ -111,7 +111,7 @@ class NumericKinematics:
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array:
         """See `interp.robot.kinematics.solver.Kinematics.inverse_along`.
 
-        A few samples one after the other, then all others between them at once.
+        It solves a few samples one after the other, then all samples between them at once.
         """
         places = np.unique(np.linspace(0, len(poses) - 1, _COARSE + 1).astype(int))
         before = np.array(start, dtype=np.float64)[None]
@@ -141,7 +141,7 @@ class NumericKinematics:
     # ------------------------------------------------------------------------------- the solution
 
     def _solve(self, poses: Array, starts: Array, rounds: int) -> Array:
-        """Joints ``(n, joints)`` in radians or mm that reach poses, from starts; NaN where none."""
+        """Return joints ``(n, joints)`` in radians or mm that reach poses; NaN if not found."""
         theta = starts.copy()
         busy = np.arange(len(theta))
         error = np.full(len(theta), math.inf)
@@ -165,7 +165,7 @@ class NumericKinematics:
         return theta
 
     def _is_met(self, poses: Array, theta: Array, error: Array) -> npt.NDArray[np.bool_]:
-        """Whether joints reach their poses, as far as an arm of so few of them can."""
+        """Return which joints reach their poses; fewer than six have a larger tolerance."""
         if len(self._free) == ROBOT_AXES:
             return error < 1e3 * _MET
         missing = self._missing(poses, self._poses(theta)[0])
@@ -174,7 +174,7 @@ class NumericKinematics:
         return met
 
     def _missing(self, wanted: Array, pose: Array) -> Array:
-        """What lies between poses: shares of the size, and a turn in radians, ``(n, 6)``."""
+        """Return the errors of poses ``(n, 6)``: scaled lengths and rotation vectors in rad."""
         turn = wanted[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2)
         axial = np.stack(
             (
@@ -191,13 +191,14 @@ class NumericKinematics:
         missing[:, :3] = (wanted[:, :3, 3] - pose[:, :3, 3]) / self._size
         missing[:, 3:] = axial * share[:, None]
         is_over = (sine <= 1e-12) & (np.trace(turn, axis1=1, axis2=2) < 1.0)
-        missing[is_over, 3] = math.pi  # any axis leads away from a half turn, which shows none
+        missing[is_over, 3] = math.pi  # a half turn shows no axis here; any axis leads away from it
         return missing
 
     def _poses(self, theta: Array) -> tuple[Array, Array]:
-        """Poses ``(..., 4, 4)`` of the flange, and how they change with the free joints.
+        """Return poses ``(..., 4, 4)`` of the flange, and their Jacobian for the free joints.
 
-        The changes ``(..., 6, free)`` count lengths as shares of the size, along with joints.
+        The Jacobian is ``(..., 6, free)``; lengths in it, and linear joints, are scaled by the size
+        of the arm.
         """
         pose = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
         origins, axes = [], []
@@ -216,7 +217,7 @@ class NumericKinematics:
         pose = pose @ self._end
         turns = np.stack([axes[place] for place in self._free], axis=-1)
         arms = pose[..., :3, 3:] - np.stack([origins[place] for place in self._free], axis=-1)
-        shifts = np.empty_like(arms)  # their cross products
+        shifts = np.empty_like(arms)  # the cross products of turns and arms
         for row, (one, other) in enumerate(((1, 2), (2, 0), (0, 1))):
             shifts[..., row, :] = (
                 turns[..., one, :] * arms[..., other, :] - turns[..., other, :] * arms[..., one, :]
@@ -232,14 +233,14 @@ class NumericKinematics:
         return pose, slopes
 
     def _turn(self, place: int, angle: Array) -> Array:
-        """A turn about the axis of a joint, by Rodrigues."""
+        """Return rotations about the axis of a joint (Rodrigues' formula)."""
         skew = self._skews[place]
         angle = angle[..., None, None]
         turn: Array = np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * (skew @ skew)
         return turn
 
     def _starts(self) -> Array:
-        """Joints spread evenly over their range (the additive sequence of Roberts 2018)."""
+        """Return starts spread evenly over the joint ranges (the R sequence, Roberts 2018)."""
         count = self._count
         golden = 1.5
         for _ in range(40):
@@ -252,20 +253,20 @@ class NumericKinematics:
         return starts
 
     def _held(self, joints: Array) -> Array:
-        """Joints ``(n, joints)`` with fixed ones at 0."""
+        """Return joints ``(n, joints)`` with the fixed ones set to 0."""
         found = np.zeros_like(joints)
         found[:, self._free] = joints[:, self._free]
         return found
 
     def _degrees(self, theta: Array) -> Array:
-        """Axes ``(n, 6)`` in degrees or mm."""
+        """Return axes ``(n, 6)`` in degrees or mm."""
         axes = np.zeros((len(theta), ROBOT_AXES))
         axes[:, : self._count] = theta / self._units
         axes[np.isnan(theta).any(axis=1)] = math.nan
         return axes
 
     def _wrapped(self, axes: Array) -> Array:
-        """Angles above -180 and up to 180 degrees."""
+        """Return axes with angles in (-180, 180] degrees."""
         turning = np.append(~self._linear, [False] * (ROBOT_AXES - self._count))
         whole = 360.0 * np.ceil((axes - 180.0 - _TURN) / 360.0)
         wrapped: Array = np.where(turning, axes - whole, axes)
@@ -274,7 +275,7 @@ class NumericKinematics:
     # ------------------------------------------------------------------------------- the geometry
 
     def _wrist(self, axes: Array) -> Array:
-        """Where axis 5 (the last, of shorter chains) is, in front of axis 1 turned by A1."""
+        """Return the place of axis 5, or of the last axis, relative to axis 1 turned by A1."""
         theta = axes[..., : self._count] * self._units
         pose = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
         last = min(5, self._count)
@@ -291,7 +292,7 @@ class NumericKinematics:
         return found
 
     def _stretched(self) -> float:
-        """The angle of A3 at which axis 5 is farthest from axis 2."""
+        """Return the angle of A3 in degrees at which axis 5 is farthest from axis 2."""
         if self._count < 4 or self._linear[1:4].any():
             return 0.0
         beyond = self._frames[3]
@@ -309,13 +310,13 @@ def _skew(axis: Array) -> Array:
 
 
 def _bound(value: float, sign: float, is_linear: bool) -> float:
-    """An end of the range that starts are spread over: within half a turn, or a metre."""
+    """Return a limit of the range of starts: at most half a turn, or 1 m, from zero."""
     most = 1000.0 if is_linear else 180.0
     return value if abs(value) < most or (is_linear and math.isfinite(value)) else sign * most
 
 
 def _distinct(ways: Array) -> Array:
-    """Ways ``(n, 6)`` without those that are no way or the same as another, in a fixed order."""
+    """Return the solutions ``(n, 6)`` without NaN and duplicates, in their order."""
     kept: list[Array] = []
     for way in ways[~np.isnan(ways).any(axis=1)]:
         differences = (np.abs((way - other + 180.0) % 360.0 - 180.0).max() for other in kept)

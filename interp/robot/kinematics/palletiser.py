@@ -1,10 +1,10 @@
-"""Palletisers: arms of five or four axes, whose axis 4 is fixed at 0 [$DEF_A4FIX, $DEF_A5LINK].
+"""Palletisers: arms with four or five axes, whose axis 4 is fixed at 0 [$DEF_A4FIX, $DEF_A5LINK].
 
-The flange then lies in the upright plane of the arm, so a pose is reached as far as it can be: the
-tip of the tool exactly, its orientation turned by the least angle that brings the axis of the
-flange into that plane. With $DEF_A5LINK a parallelogram keeps the flange level, and A5 follows from
-A2 and A3. That a controller takes orientations so is unconfirmed; $ORI_CHECK, which would have it
-look at them, is delivered as 0.
+The flange axis then lies in the vertical plane of the arm, so not every pose can be reached. The
+tip of the tool is reached exactly, and its orientation is turned by the smallest angle that brings
+the flange axis into that plane. With $DEF_A5LINK a parallelogram keeps the flange level, and A5
+follows from A2 and A3. That a controller treats orientations in this way is unconfirmed;
+$ORI_CHECK, which would make it check them, is 0 as delivered.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from interp.robot.kinematics.solver import Array, matrix_of
 _WAYS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
 _FLAT = 1e-6
-"""Length of the axis of the flange within the plane of the arm, below which it has no direction."""
-_ROUNDS = 100  # of which few are needed but close to axis 1
-_BESIDE = 1e-6  # mm that a tip may be off
-_SAME_WAY = 30.0  # degrees from one sample to the next at which a path is taken for unbroken
+"""Length of the projection of the flange axis on the arm's plane, below which it is undefined."""
+_ROUNDS = 100  # more than a few are needed only near axis 1
+_BESIDE = 1e-6  # mm by which the tip may be missed
+_SAME_WAY = 30.0  # degrees between two samples up to which a path counts as continuous
 
 
 class Palletiser:
-    """The kinematics of a palletiser: a `interp.robot.kinematics.solver.Kinematics`.
+    """The kinematics of a palletiser, as a `interp.robot.kinematics.solver.Kinematics`.
 
-    ``arm`` are those of the same machine with all axes free. Raises `MachineDataError` for a wrist
-    or flange beside the plane of the arm.
+    ``arm`` is the kinematics of the same machine with all axes free. Raises `MachineDataError` if
+    the wrist or flange is not in the plane of the arm.
     """
 
     has_wrist_singularity = False
@@ -65,7 +65,7 @@ class Palletiser:
             )
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
-        """A4 at 0, and with a parallelogram A5 as it is guided."""
+        """Return the axes with A4 at 0, and with a parallelogram A5 as it is guided."""
         found = np.array(axes, dtype=np.float64)
         found[..., 3] = 0.0
         if self._is_linked:
@@ -76,8 +76,8 @@ class Palletiser:
     def about_tips(self, poses: Array, tool: Array, /) -> Array:
         """See `interp.robot.kinematics.solver.Kinematics.about_tips`.
 
-        Which plane the flange lies in depends on where it is, and that on how it is turned. NaN
-        where that comes to no end, above axis 1.
+        The plane of the flange depends on its position, and the position on its orientation, so the
+        solution is a fixed-point iteration. NaN if it does not converge, above axis 1.
         """
         tip = tool[:3, 3]
         reached = self._reachable(poses)
@@ -99,7 +99,7 @@ class Palletiser:
         return self._arm.forward(self.coupled(axes))
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
-        """Four ways, as shoulder and elbow go; A4 is 0 in all of them."""
+        """Return four solutions, which differ in shoulder and elbow; A4 is 0 in all of them."""
         reached = self._reachable(np.asarray(poses, dtype=np.float64))
         main = self._arm.inverse(reached)[..., :_WAYS, :3]
         return self._with_wrist(main, reached[..., None, :, :])
@@ -131,7 +131,7 @@ class Palletiser:
     # ------------------------------------------------------------------------------- the geometry
 
     def _unturned(self, axes: Array) -> Array:
-        """Rotations ``(..., 3, 3)`` of the wrist with axes 4 to 6 at 0, in front of $TIRORO."""
+        """Return rotations ``(..., 3, 3)`` of the wrist relative to $TIRORO, axes 4 to 6 at 0."""
         still = axes.copy()
         still[..., 3:] = 0.0
         flange = self._to_inner[:3, :3] @ self._arm.forward(still)[..., :3, :3]
@@ -139,7 +139,7 @@ class Palletiser:
         return found
 
     def _with_wrist(self, main: Array, poses: Array) -> Array:
-        """Axes ``(..., 6)`` for main axes ``(..., 3)`` and poses that they reach with A4 at 0."""
+        """Return axes ``(..., 6)`` for main axes ``(..., 3)`` and poses reachable with A4 at 0."""
         axes = np.zeros((*main.shape[:-1], 6))
         axes[..., :3] = main
         wanted = self._to_inner[:3, :3] @ poses[..., :3, :3] @ self._after.T
@@ -152,9 +152,9 @@ class Palletiser:
         return axes
 
     def _reachable(self, poses: Array) -> Array:
-        """Poses ``(..., 4, 4)`` with the axis of the flange turned into the plane of the arm.
+        """Return poses ``(..., 4, 4)`` with the flange axis turned into the plane of the arm.
 
-        NaN where it stands upright on that plane.
+        NaN if the flange axis is perpendicular to that plane.
         """
         inner = self._to_inner @ poses
         axis = inner[..., :3, 2]
@@ -179,9 +179,9 @@ class Palletiser:
 
 
 def _least_turn(before: Array, after: Array) -> Array:
-    """The rotations ``(..., 3, 3)`` of least angle that take unit vectors to others.
+    """Return the rotations ``(..., 3, 3)`` of smallest angle that map unit vectors to others.
 
-    NaN between opposite ones.
+    NaN for opposite vectors.
     """
     cross = np.cross(before, after)
     cosine = (before * after).sum(axis=-1)[..., None, None]

@@ -1,10 +1,10 @@
-"""Pose of the flange for a programmed point: $BASE, $TOOL, $ROBROOT and $IPO_MODE.
+"""The pose of the flange for a programmed point: $BASE, $TOOL, $ROBROOT and $IPO_MODE.
 
-A point P is the pose of the tool in the base. So the flange is in the world at
-``BASE · P · TOOL⁻¹``, and in front of the robot's foot at ``ROBROOT⁻¹ · BASE · P · TOOL⁻¹``
-[ARI-09]. That holds for a fixed tool as well: there $BASE is the tool, and $TOOL the workpiece on
-the flange. What $IPO_MODE changes is the path between points, which is that of the tool in the base
-(#BASE) or that of the base in the tool (#TCP) [ORI-07].
+A point P is the pose of the tool relative to the base. So the flange is at ``BASE · P · TOOL⁻¹``
+relative to the world, and at ``ROBROOT⁻¹ · BASE · P · TOOL⁻¹`` relative to the robot's foot
+[ARI-09]. This holds for a fixed tool as well: then $BASE is the tool, and $TOOL the workpiece on
+the flange. $IPO_MODE changes only the path between points: that of the tool relative to the base
+(#BASE), or that of the base relative to the tool (#TCP) [ORI-07].
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class IpoMode(Enum):
-    """$IPO_MODE: which frame the path is planned in."""
+    """$IPO_MODE: the frame in which the path is planned."""
 
     BASE = "#BASE"
     TCP = "#TCP"
@@ -32,8 +32,9 @@ class IpoMode(Enum):
 class Placement:
     """The frames in force, each with the value of its system variable.
 
-    Where a ``carrier`` has the robot, its foot is not at ``robroot`` but where external axes have
-    brought it, and so is the base on a ``table``: `at` says where.
+    If a ``carrier`` carries the robot, its foot is not at ``robroot`` but where the external axes
+    have moved it; the same holds for a base on a ``table``. `at` returns the frames for given
+    external axes.
     """
 
     base: Pose = IDENTITY
@@ -45,11 +46,11 @@ class Placement:
 
     @property
     def is_carried(self) -> bool:
-        """Whether a frame moves with external axes."""
+        """Whether external axes move one of the frames."""
         return self.carrier is not None or self.table is not None
 
     def at(self, externals: Sequence[float]) -> Placement:
-        """The frames where external axes stand."""
+        """Return the frames for external axes in degrees or mm."""
         if not self.is_carried:
             return self
         robroot = self.robroot if self.carrier is None else self.carrier.pose(externals)
@@ -57,11 +58,11 @@ class Placement:
         return replace(self, robroot=robroot, base=base, carrier=None, table=None)
 
     def feet(self, externals: Array) -> Array:
-        """The foot of the robot where external axes ``(n, axes)`` stand: (n, 4, 4), or (4, 4)."""
+        """Return the robot's foot for external axes ``(n, axes)``: (n, 4, 4), or one (4, 4)."""
         return _poses(self.robroot, self.carrier, externals)
 
     def chains_before(self, externals: Array) -> Array:
-        """`before` where external axes ``(n, axes)`` stand: (n, 4, 4), or one (4, 4) for all."""
+        """Return `before` for external axes ``(n, axes)``: (n, 4, 4), or one (4, 4) for all."""
         from numpy.linalg import inv
 
         if not self.is_carried:
@@ -71,24 +72,24 @@ class Placement:
 
     @property
     def before(self) -> Pose:
-        """What comes before the point in the chain to the flange."""
+        """The transform before the point, in the chain from the foot to the flange."""
         return self.robroot.inverse() @ self.base
 
     @property
     def after(self) -> Pose:
-        """What comes after the point in the chain to the flange."""
+        """The transform after the point, in the chain from the foot to the flange."""
         return self.tool.inverse()
 
     def flange(self, point: Pose) -> Pose:
-        """The flange in front of the robot's foot for a programmed point."""
+        """Return the flange relative to the robot's foot for a programmed point."""
         return self.before @ point @ self.after
 
     def point(self, flange: Pose) -> Pose:
-        """The point, as $POS_ACT shows it, for a flange in front of the robot's foot."""
+        """Return the point, as $POS_ACT shows it, for a flange relative to the robot's foot."""
         return self.before.inverse() @ flange @ self.tool
 
     def in_path(self, point: Pose) -> Pose:
-        """The pose that is interpolated for a point."""
+        """Return the pose that is interpolated for a point."""
         return point if self.mode is IpoMode.BASE else point.inverse()
 
 

@@ -1,9 +1,9 @@
-"""The interface of an arm's kinematics, whatever its structure.
+"""The interface of the kinematics of an arm, whatever its structure.
 
-Arrays are of float64: ``(..., 6)`` for axes in degrees (mm for linear ones), ``(..., 4, 4)`` for
-homogeneous matrices with positions in mm. A pose is that of the flange in the frame of the robot's
-foot, $ROBROOT; `interp.robot.kinematics.placement` gets it from the programmed point.
-`interp.robot.kinematics.arms.kinematics_of` chooses for a machine.
+Arrays are of float64: ``(..., 6)`` for axes in degrees (mm if linear), ``(..., 4, 4)`` for
+homogeneous matrices with positions in mm. A pose is that of the flange relative to the robot's
+foot, $ROBROOT; `interp.robot.kinematics.placement` computes it from a programmed point.
+`interp.robot.kinematics.arms.kinematics_of` chooses the class for a machine.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ Array = npt.NDArray[np.float64]
 
 
 class Kinematics(Protocol):
-    """From axes to poses and back."""
+    """Forward and inverse kinematics of an arm."""
 
     @property
     def machine(self) -> MachineData:
-        """The machine whose kinematics they are."""
+        """The machine data of the arm."""
         ...
 
     @property
@@ -35,52 +35,53 @@ class Kinematics(Protocol):
 
     @property
     def has_wrist_singularity(self) -> bool:
-        """Whether A4 is undetermined where A5 is 0."""
+        """Whether A4 is undetermined if A5 is 0."""
         ...
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
-        """Axes ``(..., 6)`` with those that the mechanics set set: of a palletiser A4 and A5."""
+        """Return axes ``(..., 6)`` with those set that the mechanics of a palletiser determine."""
         ...
 
     def about_tips(self, poses: Array, tool: Array, /) -> Array:
-        """Poses ``(..., 4, 4)`` turned to what the arm can have, about the tip of a tool (4, 4)."""
+        """Return poses ``(..., 4, 4)`` turned about the tip of a tool (4, 4) to be reachable."""
         ...
 
     def forward(self, axes: npt.ArrayLike) -> Array:
-        """Poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
+        """Return poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
         ...
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
-        """Ways to reach poses ``(..., 4, 4)``: axes ``(..., ways, 6)``, NaN where there is none.
+        """Return solutions for poses ``(..., 4, 4)``: axes ``(..., solutions, 6)``, NaN for none.
 
-        Angles lie above -180 and up to 180 degrees, whatever the software limits.
+        Angles are in (-180, 180] degrees, whatever the software limits.
         """
         ...
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
-        """For each pose the way that a reference stands in: axes ``(n, 6)``, NaN where none is.
+        """Return the solution with the configuration of a reference: axes ``(n, 6)``, NaN if none.
 
-        ``poses`` are ``(n, 4, 4)``, ``references`` ``(n, 6)`` axes beside the solution.
+        ``poses`` are ``(n, 4, 4)``, ``references`` ``(n, 6)`` axes near the solution.
         """
         ...
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
-        """Axes ``(n, 6)`` along a path of poses in the way that ``start`` stands in, unbroken.
+        """Return continuous axes ``(n, 6)`` along a path, in the configuration of ``start``.
 
-        ``None`` where that is not plain; then it has to be followed way by way. Raises
-        `interp.values.faults.Fault` 1366 where it cannot be followed at all.
+        ``poses`` are ``(n, 4, 4)``. Return ``None`` if that is not certain; then the path has to be
+        followed sample by sample. Raises `interp.values.faults.Fault` 1366 if the path cannot be
+        followed at all.
         """
         ...
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """Status of axes ``(..., 6)``, its bits 0 to 2 [POS-03, POS-04, POS-05]."""
+        """Return bits 0 to 2 of the Status of axes ``(..., 6)`` [POS-03, POS-04, POS-05]."""
         ...
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """How far the wrist is from axis 1, in mm, for axes ``(..., 6)``."""
+        """Return the distance of the wrist from axis 1 in mm, for axes ``(..., 6)``."""
         ...
 
 
 def matrix_of(pose: Pose) -> Array:
-    """A pose as an array of four by four."""
+    """Return a pose as a homogeneous matrix, (4, 4)."""
     return np.array(pose.matrix, dtype=np.float64)

@@ -1,8 +1,9 @@
-"""Solutions for a point: Status, Turn, singularities [POS-04 to POS-08].
+"""The choice of a solution for a point: Status, Turn and singularities [POS-04 to POS-08].
 
-A pose can be reached in up to eight ways, and each axis that turns further than 360 degrees reaches
-it more than once. The Status names the way; among the ways within the software limits no two share
-it [POS-12]. The Turn then only says which sense such an axis has [POS-07]. Axes are in degrees.
+Up to eight solutions reach a pose, and more if an axis can turn further than 360 degrees. Status
+selects the configuration; among the solutions within the software limits no two have the same
+[POS-12]. Turn then only selects the sense of an axis that can turn further [POS-07]. Axes are in
+degrees.
 """
 
 from __future__ import annotations
@@ -24,23 +25,23 @@ Axes = tuple[float, ...]
 
 _ALL_BITS = 7
 _ZERO = 1e-7
-"""Degrees below zero that still count as zero for a Turn: points are given to six digits or so."""
+"""Degrees below zero that still count as zero for Turn: points have about six digits."""
 _LIMIT = 1e-6
-"""Degrees by which an axis may lie beyond its software limit switch, for the sake of rounding."""
+"""Degrees by which an axis may exceed its software limit switch, because of rounding."""
 _WRIST = 0.01812  # degrees of A5, given in [POS-08]
-_ELBOW = 1e-4  # degrees of A3, and below it mm from axis 1: ours, the manual has no figure
+_ELBOW = 1e-4  # degrees of A3; this and the next, mm from axis 1, are ours: the manual has none
 _OVERHEAD = 1e-6
 
 
 class TargetStatus(Enum):
-    """$TARGET_STATUS: the Status of a target that names none [POS-09]."""
+    """$TARGET_STATUS: the Status of a target that gives none [POS-09]."""
 
     SOURCE = "#SOURCE"
     BEST = "#BEST"
 
 
 class Singularity(Enum):
-    """Positions in which an axis is not determined; the values are indices of $SINGUL_POS."""
+    """Positions in which an axis is undetermined; the values are indices of $SINGUL_POS."""
 
     OVERHEAD = 1
     EXTENDED = 2
@@ -49,7 +50,7 @@ class Singularity(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """Six axes in degrees, their Status and Turn, and the singularities they lie in."""
+    """Six axes in degrees, their Status and Turn, and the singularities in which they lie."""
 
     axes: Axes
     status: int
@@ -58,12 +59,12 @@ class Solution:
 
 
 def turn_of(axes: Sequence[float]) -> int:
-    """The Turn of six axes: bit i-1 is set where axis i is negative [POS-07]."""
+    """Return the Turn of six axes: bit i-1 is set if axis i is negative [POS-07]."""
     return sum(1 << place for place, value in enumerate(axes) if value < -_ZERO)
 
 
 def singularities(arm: Kinematics, axes: Sequence[float]) -> tuple[Singularity, ...]:
-    """The singularities that six axes lie in [POS-08]."""
+    """Return the singularities in which six axes lie [POS-08]."""
     found = {
         Singularity.OVERHEAD: float(arm.distance_to_axis_1(axes)) <= _OVERHEAD,
         Singularity.EXTENDED: abs(axes[2] - arm.elbow) <= _ELBOW,
@@ -73,17 +74,17 @@ def singularities(arm: Kinematics, axes: Sequence[float]) -> tuple[Singularity, 
 
 
 def check_limits(axes: Sequence[Axis], values: Sequence[float]) -> None:
-    """Raise `Fault` 1447 where a value lies beyond a software limit switch, or is no number."""
+    """Raise `Fault` 1447 if a value exceeds a software limit switch, or is NaN."""
     for axis, value in zip((axis.unlimited() for axis in axes), values, strict=True):
         if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
             raise _beyond(axis, value)
 
 
 def check_path(axes: Sequence[Axis], path: Array) -> None:
-    """Raise `Fault` where a path ``(n, axes)`` leads beyond a software limit switch [MOT-15].
+    """Raise `Fault` if a path ``(n, axes)`` exceeds a software limit switch [MOT-15].
 
-    1447 where it ends there, as no point behind a limit can be reached; 1211 where the limit lies
-    on the way to a point that could.
+    It is 1447 if the path ends there, because no point beyond a limit can be reached, and 1211 if
+    the limit is exceeded on the way to a point within it.
     """
     axes = [axis.unlimited() for axis in axes]
     lower = np.array([axis.lower for axis in axes]) - _LIMIT
@@ -107,18 +108,18 @@ def solve(
     start: Sequence[float] | None = None,
     preference: TargetStatus = TargetStatus.SOURCE,
 ) -> Solution:
-    """The axes for a pose of the flange in front of the robot's foot.
+    """Return the axes for a pose of the flange relative to the robot's foot.
 
-    An orientation that the arm cannot have is turned about the tip of ``tool``.
+    An orientation that the arm cannot take is turned about the tip of ``tool``.
 
-    ``status`` selects the way; bits 3 and 4 of it mean nothing [POS-06]. Without it the way is that
-    of ``start``, or with ``preference`` `TargetStatus.BEST` the one whose leading axis gets there
-    first. ``turn`` selects among whole turns of an axis where it can; without it the shortest way
-    from ``start`` is taken [POS-02]. Without ``start`` all axes count from 0, so that the most
-    central solution is taken.
+    ``status`` selects the configuration; its bits 3 and 4 have no meaning [POS-06]. Without it the
+    configuration is that of ``start``, or with ``preference`` `TargetStatus.BEST` the one whose
+    leading axis arrives first. ``turn`` selects among full turns of an axis if there are several;
+    without it each axis takes the shortest way from ``start`` [POS-02]. Without ``start`` all axes
+    start at 0, so that the most central solution is taken.
 
-    Raises `Fault` 1366 where the pose cannot be reached in that way, 1447 where it can but not
-    within the software limits [MOT-15].
+    Raises `Fault` 1366 if no such solution exists, 1447 if it exists but not within the software
+    limits [MOT-15].
     """
     ways = np.empty((0, 6))
     if flange.is_finite:
@@ -136,10 +137,11 @@ def ptp_target(
     turn: int | None = None,
     preference: TargetStatus = TargetStatus.SOURCE,
 ) -> Solution:
-    """The axes of a PTP target: as `solve`, and undetermined axes as $SINGUL_POS says [POS-08].
+    """Return the axes of a PTP target as `solve` does, with undetermined axes as in $SINGUL_POS.
 
-    Axis 1 or axis 4 goes to 0, or stays where it is at the start. Near a straight wrist that leaves
-    the orientation off by up to 0.018 degrees. With the arm extended nothing is undetermined.
+    In a singularity, axis 1 or axis 4 goes to 0 or keeps its value at the start [POS-08]. Near a
+    straight wrist this changes the orientation by up to 0.018 degrees. If the arm is extended,
+    nothing is undetermined.
     """
     found = solve(
         arm, flange, tool=tool, status=status, turn=turn, start=start, preference=preference
@@ -157,11 +159,11 @@ def ptp_target(
 
 
 def follow(arm: Kinematics, flanges: npt.ArrayLike, start: Sequence[float]) -> Array:
-    """Axes ``(n, 6)`` along a path of flange poses ``(n, 4, 4)``, unbroken from ``start`` on.
+    """Return continuous axes ``(n, 6)`` from ``start`` along a path of flange poses ``(n, 4, 4)``.
 
-    Status and Turn result from the path [POS-01, POS-02]: each sample takes the way nearest to the
-    one before it. Raises `Fault` as `solve` does, for the first sample that cannot be reached, and
-    as `check_path`.
+    Status and Turn result from the path [POS-01, POS-02]: each sample takes the solution nearest to
+    the previous one. Raises `Fault` as `solve` does, for the first sample out of reach, and as
+    `check_path` does.
     """
     ways = arm.inverse(flanges)
     path = _nearest_ways(arm, ways, np.asarray(start, dtype=np.float64))
@@ -202,7 +204,7 @@ def _choose(
 
 
 def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bool_]:
-    """Which ways ``(n, 6)`` have a Status; in a singularity its bit says nothing."""
+    """Return which solutions ``(n, 6)`` have a Status; in a singularity its bit is ignored."""
     free = 1 * (arm.distance_to_axis_1(ways) <= _OVERHEAD)
     free |= 2 * (np.abs(ways[:, 2] - arm.elbow) <= _ZERO)
     free |= 4 * (np.abs(ways[:, 4]) <= _ZERO)
@@ -211,7 +213,7 @@ def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bo
 
 
 def _fit(axes: Sequence[Axis], way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
-    """A way with each axis turned so that it lies within its limits, or ``None``."""
+    """Return a solution with full turns added so that all axes are within limits, or ``None``."""
     fitted = []
     for place, (axis, value) in enumerate(zip(axes, way, strict=True)):
         choices = _turns(axis, value, origin[place])
@@ -225,12 +227,12 @@ def _fit(axes: Sequence[Axis], way: Sequence[float], turn: int | None, origin: A
 
 
 def _nearest(choices: Sequence[float], origin: float) -> float:
-    """The choice nearest to an origin; of two, the greater, so that rounding decides nothing."""
+    """Return the choice nearest to an origin; of two, the greater, whatever the rounding."""
     return min(choices, key=lambda choice: (round(abs(choice - origin), 6), -choice))
 
 
 def _turns(axis: Axis, value: float, origin: float) -> list[float]:
-    """The angles within the limits that differ from one by whole turns."""
+    """Return the angles within the limits that differ from ``value`` by full turns."""
     lower = max(axis.lower, min(origin, 0.0) - 360.0) - _LIMIT
     upper = min(axis.upper, max(origin, 0.0) + 360.0) + _LIMIT
     first = math.ceil((lower - value) / 360.0)
@@ -239,7 +241,10 @@ def _turns(axis: Axis, value: float, origin: float) -> list[float]:
 
 
 def _effort(machine_axes: Sequence[Axis], axes: Axes, origin: Axes) -> tuple[float, float]:
-    """How long the leading axis takes at full speed; in degrees where speeds are unknown."""
+    """Return the time of the leading axis at full speed, and the sum over all axes.
+
+    They are in degrees instead of seconds if speeds are unknown.
+    """
     ways = [abs(value - start) for value, start in zip(axes, origin, strict=True)]
     speeds = [axis.dynamics.velocity if axis.dynamics else 1.0 for axis in machine_axes]
     times = [way / speed for way, speed in zip(ways, speeds, strict=True)]
@@ -249,7 +254,7 @@ def _effort(machine_axes: Sequence[Axis], axes: Axes, origin: Axes) -> tuple[flo
 def _settled_wrist(
     arm: Kinematics, found: Solution, a4: float, turn: int | None, start: Sequence[float]
 ) -> Solution:
-    """A straight wrist with axis 4 at an angle of choice; as it was where axis 6 cannot follow."""
+    """Return a straight wrist with axis 4 at ``a4``; unchanged if axis 6 cannot compensate."""
     axes = arm.machine.axes
     difference = found.axes[3] - a4
     a5 = found.axes[4] * math.cos(math.radians(difference))
@@ -264,7 +269,7 @@ def _settled_wrist(
 
 
 def _nearest_ways(arm: Kinematics, ways: Array, start: Array) -> Array:
-    """The path sample by sample; passes straight wrists, where axis 4 stays as it is."""
+    """Return the path sample by sample; in a straight wrist, axis 4 keeps its value."""
     path = np.empty((len(ways), 6))
     before = start
     forearm, hand = arm.machine.axes[3].direction, arm.machine.axes[5].direction
@@ -282,7 +287,7 @@ def _nearest_ways(arm: Kinematics, ways: Array, start: Array) -> Array:
 
 
 def _near(ways: Array, origin: Array) -> Array:
-    """Ways turned by whole turns so that they lie nearest to an origin."""
+    """Return solutions with full turns added so that they are nearest to an origin."""
     near: Array = ways + 360.0 * np.round((origin - ways) / 360.0)
     return near
 

@@ -1,8 +1,9 @@
-"""Curves: what the axes do along a path, over its parameter u from 0 to 1.
+"""Curves in joint space: the axes along a path, as functions of its parameter u from 0 to 1.
 
-Axes are arrays ``(n, axes)``, the six of the robot first, then the external ones, which go along in
-step with u. `Curve.rates` are first to third derivatives by u: exact for joint curves, elsewhere
-those of a spline through enough points of the curve. The axes themselves are always exact.
+Axes are arrays ``(n, axes)``: the six of the robot, then the external axes, which usually move in
+proportion to u. `Curve.rates` are the first to third derivatives by u. They are exact for joint
+curves; for others they are those of a spline through sufficiently many points of the curve. The
+axes themselves are always exact.
 """
 
 from __future__ import annotations
@@ -30,44 +31,44 @@ if TYPE_CHECKING:
 Rates = tuple[Array, Array, Array]
 
 _FEWEST = 65
-"""Points of a curve at the fewest: the third derivative of a blend changes quickly."""
+"""The smallest number of points of a curve: the third derivative of a blend changes quickly."""
 _COARSE = 8
 _NOISE = 1e-11
-"""Degrees of fourth differences below which every eighth point is kept, as `_COARSE` says: the
-differences of points nearer to one another would be those of rounding."""
+"""Degrees of fourth differences below which only every `_COARSE`-th point is kept: for closer
+points, rounding would dominate the differences."""
 _MOST = 8193
 _SMOOTH = 0.004
-"""Degrees of the fourth differences of points. A cubic spline misses by 5/384 of it at most."""
-_NEAR = 1e-4  # of u: half the width of a difference
-_ROUGH = 0.05  # degrees of them at which, with most points, an axis is taken to jump
+"""Largest fourth difference of points in degrees; a cubic spline errs by 5/384 of it at most."""
+_NEAR = 1e-4  # of u: half the width of a central difference
+_ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axis jumps
 
 
 class Curve(Protocol):
-    """What the axes do along a path."""
+    """A path of the axes."""
 
     @property
     def arm(self) -> Kinematics:
-        """The kinematics."""
+        """The kinematics of the arm."""
         ...
 
     @property
     def placement(self) -> Placement:
-        """The frames in force, which give the place of the tool."""
+        """The frames in force, which determine the place of the tool."""
         ...
 
     @property
     def pose_path(self) -> PosePath | None:
-        """The path of the tool, where that is what was programmed."""
+        """The path of the tool, if the motion was programmed as one."""
         ...
 
     @property
     def is_straight(self) -> bool:
-        """Whether the axes go in step, so that the second derivative is zero."""
+        """Whether the axes are linear in u, so that the second derivative is zero."""
         ...
 
     @property
     def grid(self) -> Array:
-        """Parameters ``(n,)`` from 0 to 1, close enough to see all of the curve."""
+        """Parameters ``(n,)`` from 0 to 1, close enough to capture the whole curve."""
         ...
 
     @property
@@ -76,29 +77,29 @@ class Curve(Protocol):
         ...
 
     def axes(self, u: Array) -> Array:
-        """Axes at parameters."""
+        """Return the axes at parameters ``(n,)``."""
         ...
 
     def rates(self, u: Array) -> Rates:
-        """First to third derivatives of the axes by u."""
+        """Return the first to third derivatives of the axes by u."""
         ...
 
 
 class Others(Protocol):
-    """What the external axes do along a path, over its u; arrays ``(n, axes)``."""
+    """The path of the external axes, as a function of u; arrays are ``(n, axes)``."""
 
     def at(self, u: Array) -> Array:
-        """Axes at parameters."""
+        """Return the external axes at parameters ``(n,)``."""
         ...
 
     def rates(self, u: Array) -> Rates:
-        """First to third derivatives by u."""
+        """Return the first to third derivatives by u."""
         ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class InStep:
-    """External axes that go in step with the path."""
+    """External axes that are linear in u."""
 
     start: Array
     end: Array
@@ -115,7 +116,7 @@ class InStep:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlendedOthers:
-    """External axes of a blend, as `BlendedAxes` has all of them."""
+    """External axes of a blend, combined as in `BlendedAxes`."""
 
     first: Others
     second: Others
@@ -135,7 +136,7 @@ class BlendedOthers:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piecewise:
-    """A part of a spline that all knots share: from its parameter ``start`` over ``length``."""
+    """A section of a spline: from its parameter ``start`` over ``length``."""
 
     spline: CubicSpline
     start: float
@@ -155,7 +156,7 @@ class Piecewise:
 
 @dataclass(frozen=True, eq=False)
 class JointSpline:
-    """All axes along a part of a spline through several positions: PTP spline blocks."""
+    """All axes along a section of a spline through several positions: PTP spline blocks."""
 
     arm: Kinematics
     placement: Placement
@@ -186,7 +187,7 @@ class JointSpline:
 
 @dataclass(frozen=True, eq=False)
 class JointLine:
-    """All axes in step from one position to another: PTP [MOT-01]."""
+    """All axes from one position to another, linear in u: PTP [MOT-01]."""
 
     arm: Kinematics
     placement: Placement
@@ -216,7 +217,7 @@ class JointLine:
 class BlendedAxes:
     """A blend of axes: ``first(one(u)) - P + second(other(u))`` [BLD-12].
 
-    P are the axes at the point between.
+    P is the position of the axes at the point between the two motions.
     """
 
     first: Curve
@@ -266,11 +267,11 @@ class BlendedAxes:
 
 
 class PosePathCurve:
-    """The axes along a path, unbroken from ``start`` on; Turn results from the path [POS-02].
+    """The axes along a path of poses, continuous from ``start``; Turn results from it [POS-02].
 
-    ``start`` are the six axes of the robot; ``others`` what the external ones do. Raises `Fault`:
-    1366, 1447 or 1211 where the path cannot be followed, 1102 where it leads through a
-    singularity that would make an axis jump.
+    ``start`` are the six axes of the robot, ``others`` the path of the external axes. Raises
+    `Fault` 1366, 1447 or 1211 if the path cannot be followed, and 1102 if it leads through a
+    singularity in which an axis would jump.
     """
 
     is_straight = False
@@ -311,21 +312,21 @@ class PosePathCurve:
         return first, second, third
 
     def _beside(self, u: Array, references: Array) -> Array:
-        """The six axes exactly, from some beside them."""
+        """Return the exact six axes, given approximate ones."""
         robot = self.arm.inverse_near(self._flanges(u), references)
         lost = np.isnan(robot).any(axis=1)
-        if lost.any():  # stretched out to the last nanometre
+        if lost.any():  # fully extended, to within a nanometre
             robot[lost] = references[lost]
         return robot
 
     def _along(self, u: Array, start: Array) -> Array:
-        """The six axes at rising parameters, unbroken from the start on."""
+        """Return the six axes at increasing parameters, continuous from the start."""
         flanges = self._flanges(u)
         axes = self.arm.inverse_along(flanges, start.tolist())
         return follow(self.arm, flanges, start.tolist()) if axes is None else axes
 
     def _befores(self, u: Array) -> Array:
-        """What comes before the points of the path in the chain to the flange."""
+        """Return the transforms before the points of the path, in the chain to the flange."""
         if not self.placement.is_carried:
             return self._before
         return self.placement.chains_before(self.others.at(u))
@@ -338,7 +339,7 @@ class PosePathCurve:
         return flanges if is_turned else self.arm.about_tips(flanges, self._tool)
 
     def _points(self, start: Array) -> tuple[Array, Array]:
-        """Parameters and axes of so many points that a spline through them is the curve."""
+        """Return parameters and axes of enough points for a spline to represent the curve."""
         count = _FEWEST
         while True:
             grid = np.linspace(0.0, 1.0, count)
@@ -360,7 +361,7 @@ class PosePathCurve:
 
 
 def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> Rates:
-    """Derivatives of a blend by u, from those of both its parts."""
+    """Return the derivatives of a blend by u, from those of its two parts."""
     parameters, rates = blend.transition.at(u), blend.transition.rates(u)
     leaving = chained(blend.first.rates(parameters[0]), rates[0][:, :, None])
     joining = chained(blend.second.rates(parameters[1]), rates[1][:, :, None])
@@ -369,7 +370,7 @@ def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> Rates:
 
 
 def tool_positions(curve: Curve, u: Array) -> Array:
-    """Where the tool is in the base, or with a fixed tool the base in the tool: mm, ``(n, 3)``."""
+    """Return the tool relative to the base in mm, ``(n, 3)``; for a fixed tool, the reverse."""
     if curve.pose_path is not None:
         return curve.pose_path.at(u)[0]
     axes = curve.axes(u)
@@ -384,7 +385,7 @@ def tool_positions(curve: Curve, u: Array) -> Array:
 
 
 def tool_tangents(curve: Curve, u: Array) -> Array:
-    """Positions of the tool differentiated by u, ``(n, 3)`` in mm."""
+    """Return the derivatives of the tool positions by u in mm, ``(n, 3)``."""
     if curve.pose_path is not None:
         return curve.pose_path.tangents(u)
     middle = np.clip(u, _NEAR, 1.0 - _NEAR)

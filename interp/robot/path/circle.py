@@ -10,17 +10,17 @@ import numpy as np
 from interp.robot.kinematics.solver import Array
 from interp.values.faults import Fault
 
-_SAME = 1e-6  # mm: points that are one
+_SAME = 1e-6  # mm below which two points are the same
 _STRAIGHT = 1e-6
-"""Sine of the angle at a point, below which three points lie on a line."""
+"""Sine of the angle at a point below which three points are collinear."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Circle:
     """An arc: ``centre + radius · (cos φ · first + sin φ · second)``, φ from 0 to ``angle``.
 
-    ``normal`` is the axis about which φ grows. ``programmed`` is φ at the programmed end point,
-    which an angle of one's own may not reach, or go beyond. Angles in radians, lengths in mm.
+    ``normal`` is the axis about which φ increases. ``programmed`` is φ at the programmed end point;
+    a programmed circular angle may end before or after it. Angles are in radians, lengths in mm.
     """
 
     centre: Array
@@ -32,7 +32,7 @@ class Circle:
 
     @property
     def normal(self) -> Array:
-        """The unit axis of the circle."""
+        """The unit vector along the axis of the circle."""
         return np.cross(self.first, self.second)
 
     @property
@@ -41,7 +41,7 @@ class Circle:
         return self.radius * abs(self.angle)
 
     def at(self, u: Array) -> Array:
-        """Points ``(n, 3)`` for parameters of 0 to 1."""
+        """Return points ``(n, 3)`` for parameters from 0 to 1."""
         phi = (u * self.angle)[:, None]
         return self.centre + self.radius * (np.cos(phi) * self.first + np.sin(phi) * self.second)
 
@@ -49,11 +49,11 @@ class Circle:
 def circle_through(
     start: Array, auxiliary: Array, end: Array, degrees: float | None = None
 ) -> Circle:
-    """The arc from start over the auxiliary point to the end, or as far as an angle goes.
+    """Return the arc from start through the auxiliary point to the end, or over a given angle.
 
-    A positive angle goes the way of the auxiliary point, a negative one the other way; it may be
-    more than a whole turn. Raises `Fault` 1456 to 1458 where two points are one, and 1506 where
-    the three lie on a line or the angle is no number.
+    A positive angle goes in the direction of the auxiliary point, a negative one in the other; it
+    may exceed a full turn. Raises `Fault` 1456 to 1458 if two points coincide, and 1506 if all
+    three are collinear or the angle is infinite or NaN.
     """
     for one, other, number, what in (
         (start, end, 1456, "start and end"),

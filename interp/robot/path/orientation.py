@@ -1,8 +1,8 @@
-"""Orientation of the tool along a path [ORI-01 to ORI-06].
+"""The orientation of the tool along a path [ORI-01 to ORI-06].
 
-The change from one orientation to another is a swivel, which turns the tool's direction the
-shortest way, and then a rotation about that direction; both grow in step with the path. The
-direction of a tool is its X axis. Rotations are matrices ``(…, 3, 3)``, angles radians.
+The change between two orientations is a swivel, which turns the tool direction the shortest way,
+followed by a rotation about that direction. Both are linear in u. The tool direction is the X axis
+of the tool. Rotations are matrices ``(…, 3, 3)``, angles are in radians.
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ import numpy.typing as npt
 from interp.robot.kinematics.solver import Array
 
 _PARALLEL = 1e-12
-_MANY = 3  # dimensions of an array of matrices
+_MANY = 3  # dimensions of a stack of matrices
 _DIRECTION = np.array([1.0, 0.0, 0.0])
 
 
 class Orientation(Protocol):
-    """An orientation over the parameter of a path, 0 to 1."""
+    """An orientation as a function of the path parameter from 0 to 1."""
 
     @property
     def swivel(self) -> float:
-        """By what angle the tool's direction changes, in radians, 0 or more."""
+        """The angle by which the tool direction changes in radians, 0 or more."""
         ...
 
     @property
     def rotation(self) -> float:
-        """By what angle the tool turns about its direction, in radians, 0 or more."""
+        """The angle by which the tool turns about its direction in radians, 0 or more."""
         ...
 
     def at(self, u: Array) -> Array:
-        """Rotations ``(n, 3, 3)`` for parameters ``(n,)``."""
+        """Return rotations ``(n, 3, 3)`` for parameters ``(n,)``."""
         ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Turning:
-    """Swivel and rotation in step: ``start · R(axis, u·swivel) · Rx(u·twist)``."""
+    """Swivel and rotation, both linear in u: ``start · R(axis, u·swivel) · Rx(u·twist)``."""
 
     start: Array
     axis: Array
@@ -65,7 +65,7 @@ class Turning:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Carried:
-    """A rotation in a frame that rotates about an axis by ``angle``: #PATH on circles."""
+    """An orientation in a frame that turns about an axis by ``angle``: #PATH on circles."""
 
     inner: Turning
     axis: Array
@@ -73,7 +73,7 @@ class Carried:
 
     @property
     def swivel(self) -> float:
-        """See `Orientation.swivel`; an upper bound, since both turnings add."""
+        """See `Orientation.swivel`; an upper bound, because the two rotations add up."""
         return self.inner.swivel + abs(self.angle)
 
     @property
@@ -88,13 +88,13 @@ class Carried:
 
 
 def turning(start: Array, end: Array, extent: float = 1.0) -> Turning:
-    """From one rotation to another; with ``extent`` the other is reached at 1 / extent."""
+    """Return the change between two rotations; with ``extent``, ``end`` is at 1 / extent."""
     change = start.T @ end
     ahead, left, up = change[:, 0]
     aside = math.hypot(left, up)
     swivel = math.atan2(aside, ahead)
     if aside < _PARALLEL:
-        # The tool's direction stays, or is reversed and no axis is the shortest way.
+        # The tool direction stays, or is reversed, in which case no shortest way exists.
         axis = np.array([0.0, 1.0, 0.0])
         swivel = 0.0 if ahead > 0.0 else math.pi
     else:
@@ -107,7 +107,7 @@ def turning(start: Array, end: Array, extent: float = 1.0) -> Turning:
 
 
 def about(axis: Array, radians: npt.NDArray[np.float64]) -> Array:
-    """Rotations ``(n, 3, 3)`` about a unit axis by angles ``(n,)``."""
+    """Return rotations ``(n, 3, 3)`` about a unit axis by angles ``(n,)``."""
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     sine, versine = np.sin(radians), 2.0 * np.sin(radians / 2.0) ** 2

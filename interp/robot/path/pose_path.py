@@ -1,8 +1,8 @@
-"""Paths of poses, given in the frame in which they are programmed.
+"""Paths of poses, relative to the frame in which they are programmed.
 
-A path is pure geometry. Its parameter u runs from 0 to 1 and grows in step with the way along
-it; only in blends and splines does the way a unit of u takes vary. What an arm makes of a path is
-`interp.robot.path.axis_path`. Positions are mm, arrays ``(n, 3)``; rotations are ``(n, 3, 3)``.
+A path is pure geometry. Its parameter u runs from 0 to 1 and is proportional to the path length,
+except in blends and splines. `interp.robot.path.axis_path` computes the axes along a path.
+Positions are in mm, arrays ``(n, 3)``; rotations are ``(n, 3, 3)``.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ class PosePath(Protocol):
 
     @property
     def length(self) -> float:
-        """The way from start to end in mm."""
+        """The length of the path in mm."""
         ...
 
     @property
     def angles(self) -> tuple[float, float]:
-        """By how many radians the tool swivels, and turns about its direction."""
+        """The angles by which the tool swivels, and turns about its direction, in radians."""
         ...
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """Positions and rotations."""
+        """Return positions and rotations at parameters ``(n,)``."""
         ...
 
     def tangents(self, u: Array) -> Array:
-        """Positions differentiated by u."""
+        """Return the derivatives of the positions by u in mm."""
         ...
 
 
@@ -70,7 +70,7 @@ class StraightLine:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arc:
-    """A piece of a circle."""
+    """An arc of a circle."""
 
     circle: Circle
     orientation: Orientation
@@ -100,10 +100,10 @@ class Arc:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """From one path into the next around the point P between them [BLD-12].
+    """A blend from one path into the next, around the point P between them [BLD-12].
 
-    ``first(one(u)) - P + second(other(u))``, and the same with rotations. Between straight lines it
-    lies in their plane.
+    It is ``first(one(u)) - P + second(other(u))``, and likewise for rotations. A blend between
+    straight lines lies in their plane.
     """
 
     first: PosePath
@@ -141,7 +141,7 @@ class Blend:
 
 
 def poses_of(pose_path: PosePath, u: Array) -> Array:
-    """Homogeneous matrices ``(n, 4, 4)``."""
+    """Return the poses at parameters ``(n,)`` as homogeneous matrices ``(n, 4, 4)``."""
     poses = np.zeros((len(u), 4, 4))
     poses[:, :3, 3], poses[:, :3, :3] = pose_path.at(u)
     poses[:, 3, 3] = 1.0

@@ -1,11 +1,13 @@
-"""Spline blocks: one path through all points, whatever the speed [SPL-01 to SPL-03, BLD-09].
+"""Spline blocks: one path through all points, independent of the speed [SPL-01 to SPL-03, BLD-09].
 
-SLIN and SCIRC are exact lines and arcs. Between them a run of SPL is a cubic spline over the
-distances of its points, whose ends take tangent and curvature from a line or an arc beside them; so
-position, tangent and curvature go on unbroken wherever one end is free to fit. Where two exact
-segments meet at an angle, or the tool only turns, the arm stands. Orientations are a spline of
-rotations over the length of the path. How a real controller shapes SPL is not published, so that
-shape is an assumption; that the path passes the points is not.
+SLIN and SCIRC are exact lines and arcs. A run of SPL between them is a cubic spline over the
+distances of its points; its ends take tangent and curvature from an adjacent line or arc. So
+position, tangent and curvature are continuous wherever one side is free to adapt. The arm stops
+where two exact segments meet at an angle, and before and after a segment in which the tool only
+turns. Orientations are a spline of rotations over the length of the path.
+
+How a real controller shapes SPL is not published: the shape is an assumption. That the path passes
+through the points is not.
 """
 
 from __future__ import annotations
@@ -25,8 +27,8 @@ from interp.robot.path.way import Way
 if TYPE_CHECKING:
     from scipy.spatial.transform import RotationSpline
 
-_BEND = 1e-6  # radians between tangents that count as one
-_SHORT = 1e-3  # mm of path below which the tool does little but turn, and stands on either side
+_BEND = 1e-6  # norm of the difference of two unit tangents below which they are equal
+_SHORT = 1e-3  # mm of path below which the tool hardly does more than turn
 _SAMPLES = 129
 
 
@@ -40,7 +42,7 @@ class Knot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segment:
-    """A segment as programmed, from one knot to the next. SCIRC has its ``circle``."""
+    """A segment as programmed, from one knot to the next; ``circle`` is set for SCIRC."""
 
     kind: str
     start: Knot
@@ -49,31 +51,31 @@ class Segment:
 
     @property
     def is_exact(self) -> bool:
-        """Whether it has a shape of its own."""
+        """Whether its shape is determined by its own points."""
         return self.kind != "SPL"
 
     @property
     def chord(self) -> float:
-        """The distance of its ends in mm, along an arc its length."""
+        """The distance between its ends in mm, or the length of the arc."""
         if self.circle is not None:
             return self.circle.length
         return float(np.linalg.norm(self.end.position - self.start.position))
 
     def shape(self) -> StraightLine | Arc:
-        """The line or arc of an exact segment."""
+        """Return the line or arc of an exact segment, with a constant orientation."""
         keeps = turning(self.start.rotation, self.start.rotation)
         if self.circle is not None:
             return Arc(self.circle, keeps)
         return StraightLine(self.start.position, self.end.position, keeps)
 
     def tangent(self, u: float) -> Array:
-        """The unit tangent of an exact segment."""
+        """Return the unit tangent of an exact segment."""
         (tangent,) = self.shape().tangents(np.array([u]))
         direction: Array = tangent / np.linalg.norm(tangent)
         return direction
 
     def curvature(self, u: float) -> Array:
-        """The curvature vector of an exact segment, in 1/mm."""
+        """Return the curvature vector of an exact segment in 1/mm."""
         if self.circle is None:
             return np.zeros(3)
         (place,) = self.circle.at(np.array([u]))
@@ -83,7 +85,7 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Swept:
-    """Orientation on a part of a spline of rotations over the length of a path."""
+    """The orientation on a section of a spline of rotations over the length of a path."""
 
     spline: RotationSpline
     start: float
@@ -97,10 +99,10 @@ class _Swept:
 
 
 class Free:
-    """An SPL: a curve of the fifth degree over its own parameter, parametrised by its length.
+    """An SPL segment: a quintic polynomial, reparametrised by its length.
 
-    ``ends`` has position, first and second derivative at both ends, ``(2, 3, 3)``, over a parameter
-    that grows by ``span``.
+    ``ends`` has position, first and second derivative at both ends, ``(2, 3, 3)``, by a parameter
+    whose range is ``span``.
     """
 
     def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
@@ -115,11 +117,11 @@ class Free:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """See `interp.robot.path.pose_path.PosePath.angles`: here the greatest rate over u."""
+        """See `interp.robot.path.pose_path.PosePath.angles`; here the largest rate over u."""
         return self._orientation.swivel, self._orientation.rotation
 
     def turned(self, orientation: Orientation) -> Free:
-        """The same with another orientation."""
+        """Return the same curve with another orientation."""
         other = object.__new__(Free)
         other.__dict__.update(self.__dict__, _orientation=orientation)
         return other
@@ -146,7 +148,7 @@ class Free:
 
 
 def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
-    """The segments in rows that are passed without standing still."""
+    """Return the segments grouped into chains that are passed without a stop."""
     chains: list[list[Segment]] = []
     for segment in segments:
         before = chains[-1][-1] if chains else None
@@ -158,7 +160,7 @@ def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
 
 
 def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
-    """The paths of the segments of one chain, unbroken."""
+    """Return the paths of the segments of one chain, which join smoothly."""
     if chain[0].chord < _SHORT:
         start, end = chain[0].start, chain[0].end
         turned = turning(start.rotation, end.rotation)
@@ -201,7 +203,7 @@ def _is_corner(before: Segment, segment: Segment) -> bool:
 def _run(
     run: Sequence[Segment], before: Segment | None, behind: Segment | None
 ) -> tuple[Array, Array]:
-    """Position, first and second derivative at each point of a run of SPL, and the spans."""
+    """Return position, first and second derivative at the points of a run of SPL, and its spans."""
     points = np.array([run[0].start.position, *(segment.end.position for segment in run)])
     spans = np.array([segment.chord for segment in run])
     free = (2, np.zeros(3))
@@ -225,7 +227,7 @@ def _run(
 
 
 def _quintic(ends: Array, span: float) -> Array:
-    """Coefficients ``(6, 3)``, lowest power first, over a parameter of 0 to 1."""
+    """Return coefficients ``(6, 3)``, lowest power first, for a parameter from 0 to 1."""
     (p0, v0, a0), (p1, v1, a1) = ends * np.array([1.0, span, span * span])[:, None]
     rest = p1 - p0 - v0 - a0 / 2.0
     slope = v1 - v0 - a0

@@ -1,7 +1,7 @@
-"""Meaning of a programmed target: omitted components, relative targets, axes and points.
+"""The meaning of a programmed target: omitted components, relative targets, axes and points.
 
-`Programmed` is the last target that was programmed, whether the arm has got there or not: relative
-motions add to it, and components left out keep its values [MOT-14, MOT-16].
+`Programmed` is the last programmed target, whether the arm has reached it or not: relative motions
+add to it, and omitted components keep its values [MOT-14, MOT-16].
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _EXTERNALS = tuple(f"E{i}" for i in range(1, 7))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Goal:
-    """Where a PTP motion leads; ``components`` where it was given as a point.
+    """The end of a PTP motion; ``components`` is set if it was given as a point.
 
-    ``is_singular`` is message 2868, a notification [POS-08].
+    ``is_singular`` leads to message 2868, a notification [POS-08].
     """
 
     axes: Array
@@ -39,10 +39,10 @@ class Goal:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Programmed:
-    """A target as it stands: all axes, and the point with the frames it was given in.
+    """The last target: all axes, and the point with the frames in which it was given.
 
-    ``components`` are X…C as the program gave them, so that one left out keeps its very value;
-    in other frames the components are those of the same place there (unconfirmed).
+    ``components`` are X…C as the program gave them, so that an omitted one keeps exactly its value.
+    In other frames, the components are those of the same place in these frames (unconfirmed).
     """
 
     arm: Kinematics
@@ -52,27 +52,27 @@ class Programmed:
 
     @property
     def flange(self) -> Pose:
-        """The flange in front of the robot's foot."""
+        """The flange relative to the robot's foot."""
         return Pose.from_matrix(self.arm.forward(self.axes[:ROBOT_AXES]).tolist())
 
     def reached(
         self, axes: Array, components: tuple[float, ...] | None, placement: Placement
     ) -> Programmed:
-        """The next target, with its components where a point was given."""
+        """Return the next target, with its components if it was given as a point."""
         return Programmed(self.arm, axes, components, placement)
 
     def point(self, placement: Placement) -> tuple[float, ...]:
-        """X, Y, Z, A, B, C of the target in given frames."""
+        """Return X, Y, Z, A, B, C of the target in given frames."""
         if self.components is not None and placement == self.placement:
             return self.components
         return self.pose_in(placement).components
 
     def pose_in(self, placement: Placement) -> Pose:
-        """The target as a point in given frames, where its external axes have brought them."""
+        """Return the target as a pose in given frames, at the positions of its external axes."""
         return placement.at(self.axes[ROBOT_AXES:].tolist()).point(self.flange)
 
     def externals(self, target: Target, is_relative: bool) -> Array:
-        """External axes of a target. Raises `Fault` 1447 beyond their limits."""
+        """Return the external axes of a target; raise `Fault` 1447 beyond their limits."""
         values = self.axes[ROBOT_AXES:].copy()
         for place, name in enumerate(_EXTERNALS[: len(values)]):
             if name in target:
@@ -87,10 +87,10 @@ class Programmed:
         is_relative: bool = False,
         reference: str | None = None,
     ) -> tuple[float, ...]:
-        """X, Y, Z, A, B, C of a Cartesian target; one of axes is the point where they lead.
+        """Return X, Y, Z, A, B, C of a Cartesian target, or of the point to which axes lead.
 
-        Relative to #TOOL the target is a frame in the last point; relative to #BASE each
-        component adds to that of the last point [MOT-14].
+        Relative to #TOOL, the target is a frame in the last point. Relative to #BASE, each
+        component is added to that of the last point [MOT-14].
         """
         check_finite(target)
         if has_axes(target):
@@ -108,7 +108,7 @@ class Programmed:
         return tuple(one + other for one, other in zip(before, change, strict=True))
 
     def goal(self, motion: Motion, target: Target, placement: Placement) -> Goal:
-        """The axes of a PTP target. Raises `Fault` 1366, 1447, or 1422 for what is no number."""
+        """Return the axes of a PTP target; raise `Fault` 1366, 1447, or 1422 for a bad number."""
         check_finite(target)
         if has_axes(target) or not any(name in target for name in (*_COMPONENTS, "S", "T")):
             return Goal(self._axes(target, motion.is_relative))
@@ -138,12 +138,12 @@ class Programmed:
 
 
 def has_axes(target: Target) -> bool:
-    """Whether it is a target of axes rather than a point."""
+    """Return whether a target has axes and not a point."""
     return any(name in target for name in _AXES)
 
 
 def check_finite(target: Target) -> None:
-    """Raise `Fault` 1422 where a component is no number or an infinite one."""
+    """Raise `Fault` 1422 if a component is infinite or NaN."""
     for name, value in target.items():
         if not math.isfinite(value):
             text = f"component {name} of the target is not a finite number"
@@ -151,10 +151,9 @@ def check_finite(target: Target) -> None:
 
 
 def check_numbers(motion: Motion) -> None:
-    """Raise `Fault` 1422 where a motion parameter, a place or a range is no finite number.
+    """Raise `Fault` 1422 if a motion parameter, a place or a range is infinite or NaN.
 
-    Components of targets are looked at where they are read; what has to be more than a number is
-    too.
+    Components of targets, and numbers with a further requirement, are checked where they are used.
     """
     settings, apo = motion.settings, motion.settings.approximation
     percent = (*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk)

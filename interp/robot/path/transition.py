@@ -1,10 +1,10 @@
-"""The transition of a blend from one path to the next: parameters of both, over its own.
+"""The transition of a blend from one path to the next: the parameters of both as functions of u.
 
 A blend is ``first(one(u)) - P + second(other(u))`` with u from 0 to 1. ``one`` runs from the start
-of the zone to the end of the first path, ``other`` from the start of the second path to the end of
-the zone. Where ``one`` ends and where ``other`` starts, derivatives up to the second are zero. So
-the curve leaves one path and joins the other with tangent and curvature unbroken, whatever they
-are, and its jerk is bounded.
+of the blend zone to the end of the first path, ``other`` from the start of the second path to the
+end of the zone. At the end of ``one`` and at the start of ``other``, the first and second
+derivatives are zero. So the blend leaves one path and joins the other with continuous tangent and
+curvature, whatever the paths are, and its jerk is bounded.
 """
 
 from __future__ import annotations
@@ -23,47 +23,48 @@ from interp.robot.path.way import Way
 _ROUNDS = 60
 _EXACT = 1e-15
 _UNEVEN = 2.0
-"""Ratio of the times of both sides: at most 1.41 times slower both at once, half of it saved."""
+"""Largest ratio of the durations of both sides: beyond it, a blend may cost more than it saves."""
 _BEHIND = 1e-9
-"""Of u: rounding never takes a place so far behind a break to before it."""
+"""Offset in u after a break; rounding never moves it to before the break."""
 
 
 class Transition(Protocol):
-    """The parameters of both paths in a blend; ``before`` and ``after`` are the shares it takes."""
+    """The parameters of both paths in a blend; ``before`` and ``after`` are the shares it uses."""
 
     @property
     def before(self) -> float:
-        """Share of the first path."""
+        """The share of the first path that the blend uses."""
         ...
 
     @property
     def after(self) -> float:
-        """Share of the second path."""
+        """The share of the second path that the blend uses."""
         ...
 
     @property
     def breaks(self) -> Array:
-        """Just behind where on u from 0 to 1 a third derivative jumps."""
+        """The values of u at which a third derivative jumps, moved slightly to after the jump."""
         ...
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """Parameters ``(n,)`` of the first path and of the second."""
+        """Return the parameters ``(n,)`` of the first and of the second path."""
         ...
 
     def rates(self, u: Array) -> tuple[Array, Array]:
-        """First to third derivatives of both by u, each ``(3, n)``."""
+        """Return the first to third derivatives of both by u, each ``(3, n)``."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class Rounding:
-    """A corner that is rounded; where the paths go straight on, a line at constant speed.
+    """A rounded corner; if the paths continue straight, a line at constant speed.
 
-    ``weights`` are the lengths of both sides of the zone in one unit. Over a parameter v both sides
-    follow ``h = (4 - slope)·v³ + (slope - 3)·v⁴``. With a slope of 1 the curve between two lines
-    has the apex of a parabola and is within 0.3 per cent of the zone of it; its curvature rises
-    quickly. A slope of 2 takes the whole zone for that. u grows with the sum of both sides; with
-    the ``cosine`` of the angle between two lines, it grows with the way along the curve.
+    ``weights`` are the lengths of both sides of the zone, in the same unit. Both sides follow
+    ``h = (4 - slope)·v³ + (slope - 3)·v⁴`` over a parameter v. With a slope of 1, a blend between
+    two lines has the apex of a parabola and differs from it by at most 0.3 per cent of the zone,
+    but its curvature rises quickly. With a slope of 2 the curvature rises over the whole zone. u is
+    proportional to the sum of both sides, or, with the ``cosine`` of the angle between two lines,
+    to the length along the curve.
     """
 
     before: float
@@ -88,7 +89,7 @@ class Rounding:
         return _rates(self, u.tobytes())
 
     def rates_at(self, u: Array) -> tuple[Array, Array]:
-        """`rates` without a memory of them."""
+        """Compute `rates` without the cache."""
         v = self._inner(u)
         _, *left = _side(1.0 - v, self.slope)
         _, *right = _side(v, self.slope)
@@ -116,14 +117,14 @@ class Rounding:
         return self.weights[0] / total, self.weights[1] / total
 
     def _inner(self, u: Array) -> Array:
-        """The parameter v for u."""
+        """Return the parameter v for u."""
         if self.cosine == 1.0:
             return _inner(*self._shares, self.slope, u.tobytes())
         return self._way.parameters(u * self._length)
 
     @cached_property
     def _way(self) -> Way:
-        """The way along the curve over v, in sums of both sides."""
+        """The length along the curve as a function of v, in sums of both sides."""
         (a, b), c = self._shares, self.cosine
 
         def tangents(v: Array) -> Array:
@@ -139,16 +140,17 @@ class Rounding:
 
 @dataclass(frozen=True, eq=False)
 class Cubics:
-    """A parameter over time: cubics in a row, each with start, value and three derivatives there.
+    """A parameter as a function of time: consecutive cubics, given by the state at their starts.
 
-    ``knots`` is ``(n, 5)``; it lasts for ``duration``.
+    ``knots`` is ``(n, 5)``: start time, value, and first to third derivative. ``duration`` is the
+    time of all of them.
     """
 
     knots: Array
     duration: float
 
     def at(self, times: Array) -> Array:
-        """Values and first to third derivatives, ``(4, n)``."""
+        """Return values and first to third derivatives, ``(4, n)``."""
         place = np.maximum(np.searchsorted(self.knots[:, 0], times, side="right") - 1, 0)
         start, value, speed, bend, jerk = self.knots.T[:, place]
         dt = times - start
@@ -160,12 +162,12 @@ class Cubics:
         return found
 
     def since(self, value: float) -> Cubics:
-        """The part from where a value is reached on; values rise."""
+        """Return the part from the time at which a value is reached; values must increase."""
         time = self._time(value)
         return self.between(time, self.duration)
 
     def until(self, value: float) -> Cubics:
-        """The part up to where a value is reached; values rise."""
+        """Return the part up to the time at which a value is reached; values must increase."""
         return self.between(0.0, self._time(value))
 
     def _time(self, value: float) -> float:
@@ -182,7 +184,7 @@ class Cubics:
         return float(start + high)
 
     def between(self, start: float, end: float) -> Cubics:
-        """The part between two times."""
+        """Return the part between two times."""
         times = self.knots[:, 0]
         inside = self.knots[(times > start) & (times < end)] - [start, 0.0, 0.0, 0.0, 0.0]
         first = np.concatenate(([0.0], self.at(np.array([start]))[:, 0]))
@@ -191,12 +193,11 @@ class Cubics:
 
 @dataclass(frozen=True, eq=False)
 class Overlap:
-    """The end of one motion and the start of the next at once, each as if it were alone.
+    """The end of one motion and the start of the next, executed at the same time.
 
     ``ending`` is the parameter of the first path over time while it brakes to its end, ``starting``
-    that of the second while it speeds up from its start. Both zones are entered and left as they
-    are alone; so travelling the blend takes the longer of both times, where stopping takes their
-    sum.
+    that of the second path while it accelerates from its start. Each motion is executed as it would
+    be alone. So the blend takes the longer of both times, while a stop takes their sum.
     """
 
     ending: Cubics
@@ -204,17 +205,17 @@ class Overlap:
 
     @cached_property
     def duration(self) -> float:
-        """Seconds, where no axis finds both at once too fast."""
+        """The duration in s, unless an axis is too fast when both motions are executed at once."""
         return max(self.ending.duration, self.starting.duration)
 
     @property
     def is_even(self) -> bool:
-        """Whether neither side takes so long that the whole costs more time than it saves."""
+        """Whether the durations are similar enough for the blend to save more than it costs."""
         durations = self.ending.duration, self.starting.duration
         return max(durations) <= _UNEVEN * min(durations)
 
     def evened(self) -> Overlap:
-        """The part in which both motions are on at once: where only one is, it goes its own way."""
+        """Return the part in which both motions are executed; outside it, each runs alone."""
         both = min(self.ending.duration, self.starting.duration)
         ending = self.ending.between(self.ending.duration - both, self.ending.duration)
         return Overlap(ending, self.starting.between(0.0, both))
@@ -246,7 +247,7 @@ class Overlap:
         return _rates(self, u.tobytes())
 
     def rates_at(self, u: Array) -> tuple[Array, Array]:
-        """`rates` without a memory of them."""
+        """Compute `rates` without the cache."""
         times = u * self.duration
         one, other = self._both(u)
         one = one[1:] * (times <= self.ending.duration)
@@ -254,7 +255,7 @@ class Overlap:
         return one, other
 
     def _both(self, u: Array) -> tuple[Array, Array]:
-        """Values and derivatives by u, ``(4, n)`` each."""
+        """Return values and derivatives by u, ``(4, n)`` each."""
         times, powers = u * self.duration, self.duration ** np.arange(4.0)[:, None]
         ending = np.minimum(times, self.ending.duration)
         starting = np.maximum(times - (self.duration - self.starting.duration), 0.0)
@@ -264,17 +265,17 @@ class Overlap:
 def chained(
     outer: Sequence[Array] | Array, inner: Sequence[Array] | Array
 ) -> tuple[Array, Array, Array]:
-    """First to third derivatives of a function of a parameter that is a function itself.
+    """Return the first to third derivatives of a composed function, by the chain rule.
 
-    ``outer`` are those of the function, ``inner`` those of its parameter: three arrays each, of
-    shapes that NumPy broadcasts.
+    ``outer`` are the derivatives of the function by its parameter, ``inner`` those of the
+    parameter: three arrays each, of shapes that NumPy can broadcast.
     """
     (f1, f2, f3), (x1, x2, x3) = outer, inner
     return (f1 * x1, f2 * x1**2 + f1 * x2, f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3)
 
 
 def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:
-    """The polynomial of one side of a rounding and its derivatives."""
+    """Return the polynomial of one side of a rounding, and its derivatives."""
     c, d = 4.0 - slope, slope - 3.0
     return (
         v**3 * (c + d * v),
@@ -284,20 +285,21 @@ def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:
     )
 
 
-@lru_cache(maxsize=16)  # what a blend is judged by are samples of the same few transitions
+@lru_cache(maxsize=16)  # checks of a blend sample the same few transitions repeatedly
 def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Array]:
-    """The rates at the float64 of an array ``(n,)``; they must not be written to."""
+    """Return the rates at the float64 of an array ``(n,)``; they are read-only."""
     one, other = transition.rates_at(np.frombuffer(parameters))
     one.setflags(write=False)
     other.setflags(write=False)
     return one, other
 
 
-@lru_cache(maxsize=16)  # values and derivatives are asked for at the same parameters
+@lru_cache(maxsize=16)  # values and derivatives are computed at the same parameters
 def _inner(a: float, b: float, slope: float, parameters: bytes) -> Array:
-    """The parameter v of a rounding for u, by Newton's method within bounds that close in.
+    """Return the parameter v of a rounding for u, by Newton's method with bisection as fallback.
 
-    ``a`` and ``b`` are the shares of both sides; ``parameters`` the float64 of an array ``(n,)``.
+    ``a`` and ``b`` are the shares of both sides; ``parameters`` are the float64 of an array
+    ``(n,)``.
     """
     u: Array = np.frombuffer(parameters)
     c, d = 4.0 - slope, slope - 3.0

@@ -1,7 +1,7 @@
-"""A spline through evenly spaced points, made and read quickly.
+"""A cubic spline through evenly spaced points that is fast to create and to evaluate.
 
-The coefficients of a cubic spline are linear in its points. For a given number of points the map is
-worked out once; then a spline is one product of matrices.
+The coefficients of a cubic spline are linear in its points. The matrix of this map is computed once
+for each number of points; a spline then costs one matrix product.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import numpy.typing as npt
 from interp.robot.kinematics.solver import Array
 
 _MAPPED = 129
-"""Points above which the map takes more room than it is worth."""
+"""The number of points above which the matrix would need too much memory."""
 
 
 class Table:
-    """A twice smooth function of 0 to 1 through points ``(n, columns)``, with its derivatives."""
+    """A cubic spline on [0, 1] through points ``(n, columns)``, with its derivatives."""
 
     def __init__(self, points: Array) -> None:
         self._count = len(points) - 1
@@ -32,13 +32,13 @@ class Table:
             self._coefficients = np.ascontiguousarray(spline.c)
 
     def at(self, u: Array) -> Array:
-        """Values ``(n, columns)``."""
+        """Return values ``(n, columns)``."""
         (c3, c2, c1, c0), dt, _ = self._local(u)
         values: Array = c0 + dt * (c1 + dt * (c2 + dt * c3))
         return values
 
     def rates(self, u: Array) -> tuple[Array, Array, Array]:
-        """First to third derivatives; the third is a line from point to point."""
+        """Return first to third derivatives; the third is interpolated linearly between points."""
         (c3, c2, c1, _), dt, place = self._local(u)
         share = dt * self._count
         third = self._thirds[place] * (1.0 - share) + self._thirds[place + 1] * share
@@ -46,9 +46,10 @@ class Table:
 
     @cached_property
     def _thirds(self) -> Array:
-        """Third derivatives at the points, from those of the cubics between them.
+        """The third derivatives at the points, from those of the cubics on either side.
 
-        The two cubics at either end are one, whose third derivative is that between them.
+        The not-a-knot condition makes the two cubics at each end one, whose third derivative is
+        that at the point between them.
         """
         between = 6.0 * self._coefficients[0]
         thirds = np.empty((self._count + 1, between.shape[1]))
@@ -58,14 +59,14 @@ class Table:
         return thirds
 
     def _local(self, u: Array) -> tuple[Array, Array, npt.NDArray[np.intp]]:
-        """The coefficients in force at each parameter, how far behind their point, and which."""
+        """Return for each parameter its coefficients, and the distance and index of its point."""
         place = np.minimum((u * self._count).astype(np.intp), self._count - 1)
         return self._coefficients[:, place], (u - place / self._count)[:, None], place
 
 
 @lru_cache(maxsize=8)
 def _map(count: int) -> Array:
-    """From points to coefficients, ``(4 (count - 1), count)``."""
+    """Return the matrix from points to coefficients, ``(4 (count - 1), count)``."""
     from scipy.interpolate import CubicSpline
 
     coefficients = CubicSpline(np.linspace(0.0, 1.0, count), np.eye(count)).c

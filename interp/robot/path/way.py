@@ -1,4 +1,4 @@
-"""The length of a curve, and where on it a length is reached."""
+"""The arc length of a curve, and the parameter at which a length is reached."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 
 from interp.robot.kinematics.solver import Array
 
-#: Nodes and weights of Gauss on 0 to 1, which integrate polynomials of degree 9 exactly.
+#: Nodes and weights of Gauss-Legendre quadrature on [0, 1], exact for polynomials of degree 9.
 _NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]
 _PARTS = 32
 _EXACT = 1e-12  # of u
 
 
 class Way:
-    """The length of a curve up to any of its parameters, from its tangents."""
+    """The arc length of a curve up to any parameter, computed from its tangents."""
 
     def __init__(self, tangents: Callable[[Array], Array], parts: int = _PARTS) -> None:
         self._tangents = tangents
@@ -29,13 +29,13 @@ class Way:
         return float(self._sums[-1])
 
     def at(self, u: Array) -> Array:
-        """Lengths ``(n,)`` from 0 to u."""
+        """Return the lengths ``(n,)`` from 0 to u."""
         place = np.searchsorted(self._knots[1:-1], u, side="right")
         lengths: Array = self._sums[place] + self._between(self._knots[place], u)
         return lengths
 
     def parameters(self, lengths: Array) -> Array:
-        """Parameters at which lengths are reached; within 0 to 1."""
+        """Return the parameters in [0, 1] at which lengths are reached."""
         wanted = np.clip(lengths, 0.0, self.length)
         low, high = np.zeros_like(wanted), np.ones_like(wanted)
         u = np.interp(wanted, self._sums, self._knots)

@@ -1,7 +1,8 @@
-"""$ORI_TYPE #JOINT: the tool keeps to its path while the wrist axes go in step [ORI-01, ORI-03].
+"""$ORI_TYPE #JOINT: the tool follows its path while the wrist axes are linear in u [ORI-01].
 
-Axes 4 to 6 turn evenly from their values at the start to those at the end, so a straight wrist is
-no obstacle. Axes 1 to 3 then have to bring the tool to its place, which Newton's method finds.
+Axes 4 to 6 move linearly from their values at the start to those at the end, so a straight wrist is
+no problem [ORI-03]. Axes 1 to 3 then have to bring the tool to its position, which Newton's method
+solves.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ _MAIN = 3
 _STEP = 1e-5  # degrees
 _EXACT = 1e-9  # mm
 _CLOSE = 1e-6
-_LONGEST = 20.0  # degrees of one step of Newton's
+_LONGEST = 20.0  # degrees of one Newton step
 _ROUNDS = 30
 
 
 class WristCurve(PosePathCurve):
-    """The axes along the positions of a path, with the orientation that the wrist gives.
+    """The axes along the positions of a path, with the orientation that results from the wrist.
 
-    Raises `Fault` 2829 where the end cannot be reached in the configuration of the start.
+    Raises `Fault` 2829 if the end cannot be reached in the configuration of the start.
     """
 
     def __init__(
@@ -48,7 +49,7 @@ class WristCurve(PosePathCurve):
             raise Fault("configuration", text, number=2829, rules=("ORI-03",)) from error
         self._from, self._to = start, np.array(goal.axes)
         super().__init__(arm, placement, pose_path, start, others)
-        #: The orientation is not that of the path, so that only the axes can be blended.
+        #: ``None``: the orientation is not that of the path, so only the axes can be blended.
         self.pose_path = None
 
     def _along(self, u: Array, start: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A cell for MuJoCo: the arm with its loads, and the scene around it, as one model."""
+"""A robot cell for MuJoCo: the arm with its loads, and the scene around it, as one model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
 
 _LOADS: Final = {"$LOAD": 6, "$LOAD_A1": 1, "$LOAD_A2": 2, "$LOAD_A3": 3}
-"""The links that carry loads."""
+"""For each load, the number of the link that carries it."""
 _SHAPES: Final = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -32,15 +32,15 @@ _SHAPES: Final = {
 }
 _STANDING, _HELD = (0.45, 0.55, 0.65, 1.0), (0.35, 0.65, 0.4, 1.0)
 _HAND = "flange of the arm"
-#: What the names of geoms and meshes of a scene begin with, so that they are no others'.
+#: Prefixes of the names of geoms and meshes of a scene, which keep them distinct from others.
 OBJECT, MESH = "object ", "mesh of "
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """An arm, by its machine data or by a file of its own, in a scene.
+    """An arm, given by its machine data or by its own model file, in a scene.
 
-    Raises `SceneError` from `model` for objects that MuJoCo cannot take.
+    `model` raises `SceneError` for objects that MuJoCo rejects.
     """
 
     machine: MachineData
@@ -48,10 +48,10 @@ class Cell:
     robot: RobotFile | None = None
 
     def model(self) -> Any:
-        """The compiled model, an ``MjModel``.
+        """Return the compiled model, an ``MjModel``.
 
-        Its joints are those of the axes that move, each with an actuator that gives it the torque
-        it receives less spring and damper; loads weigh nothing until `put_loads`.
+        Its joints are the axes that move. Each has an actuator that applies the torque it receives,
+        minus spring and damper. The loads have no mass until `put_loads` sets it.
         """
         try:
             return self._spec().compile()
@@ -62,7 +62,7 @@ class Cell:
             raise SceneError(f"{where}: {said}") from None
 
     def xml(self) -> str:
-        """The model as MJCF."""
+        """Return the model as MJCF."""
         spec = self._spec()
         spec.compile()
         return str(spec.to_xml())
@@ -89,7 +89,7 @@ class Cell:
         return spec
 
     def columns(self, model: Any) -> tuple[npt.NDArray[np.int64], Array]:
-        """Which axis each joint of the model is, and how many radians or metres its unit is."""
+        """Return the axis of each joint of the model, and its unit in radians or metres."""
         names = [axis.name for axis in (*self.machine.axes, *self.machine.externals)]
         if self.robot is not None:
             names[: len(self.robot.joints)] = self.robot.joints
@@ -99,14 +99,14 @@ class Cell:
         return np.array(columns), np.where(is_linear, 1e-3, math.pi / 180.0)
 
     def _bodies(self) -> list[str]:
-        """The bodies that the robot axes move, in their order."""
+        """Return the bodies that the robot axes move, in their order."""
         if self.robot is None:
             return [f"link_{number}" for number in range(1, len(self.machine.axes) + 1)]
         spec = self.robot.spec
         return [spec.joint(name).parent.name for name in self.robot.joints]
 
     def _add_hand(self, spec: Any, last: str) -> None:
-        """A body whose frame is the flange, for what it holds."""
+        """Add a body at the flange, for what the arm holds."""
         anchor = np.zeros(3)
         if self.robot is not None:
             anchor = np.array(spec.joint(self.robot.joints[-1]).pos)
@@ -132,7 +132,7 @@ class Cell:
 
 
 def put_loads(model: Any, machine: MachineData, loads: Mapping[str, Load]) -> None:
-    """Have a model carry other loads than before."""
+    """Set the loads that a model carries."""
     frames = _load_frames(machine)
     for name in _LOADS:
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
@@ -148,7 +148,7 @@ def put_loads(model: Any, machine: MachineData, loads: Mapping[str, Load]) -> No
 
 
 def _load_frames(machine: MachineData) -> dict[str, Array]:
-    """Where the frames of loads are in the links that carry them, by their names."""
+    """Return the frames of the loads relative to the links that carry them, by name."""
     joints = machine.chain.joints
     frames = [matrix_of(joint.frame) for joint in joints]
     flange = matrix_of(machine.chain.end)
@@ -158,7 +158,7 @@ def _load_frames(machine: MachineData) -> dict[str, Array]:
     found["$LOAD_A1"] = np.linalg.inv(frames[0]).astype(np.float64)
     if len(joints) > 1:
         x, y, z = joints[1].axis
-        upright = np.eye(4)  # A2 at -90, by Rodrigues
+        upright = np.eye(4)  # A2 at -90, by Rodrigues' formula
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         upright[:3, :3] += -cross + cross @ cross
         inverse = np.linalg.inv(frames[0] @ frames[1] @ upright)
@@ -167,7 +167,7 @@ def _load_frames(machine: MachineData) -> dict[str, Array]:
 
 
 def _place(part: Any, frame: Pose, origin: Array | None = None) -> None:
-    """Put a body or geom where a frame is, in mm, from an origin in metres."""
+    """Place a body or geom at a frame in mm, relative to an origin in metres."""
     part.pos = np.array(frame.position) / 1000.0 + (0.0 if origin is None else origin)
     part.quat = _quaternion(matrix_of(frame))
 

@@ -1,9 +1,9 @@
 """Contacts of an arm on its planned path: with itself, the floor, and the objects of a scene.
 
-Shapes of machine data are assumed (`interp.robot.simulation.links`), so what they touch is a hint;
-between set-points the axes are taken to go straight, in steps in which nothing moves more than
-`_STEP`. Parts of a robot's own file that touch while all its joints are at zero overlap by design,
-and are no contact.
+The shapes of machine data are assumed (`interp.robot.simulation.links`), so their contacts are only
+hints. Between set-points the axes are interpolated linearly, in steps in which nothing moves more
+than `_STEP`. Parts of a robot's own model file that touch while all joints are at zero overlap by
+design, and are not reported.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _MOST_STEPS = 200
 class ContactCheck:
     """An `interp.robot.simulation.observations.Observer` of one cell.
 
-    Raises `interp.robot.simulation.scene.SceneError` for a scene that MuJoCo cannot take.
+    Raises `interp.robot.simulation.scene.SceneError` for a scene that MuJoCo rejects.
     """
 
     def __init__(self, cell: Cell) -> None:
@@ -45,7 +45,7 @@ class ContactCheck:
             self._usual = frozenset(pair for pair in self._pairs() if not names & set(pair))
 
     def observe(self, times: Times, axes: Array) -> None:
-        """Look at axes (n, axes)."""
+        """Check axes (n, axes) at times in µs."""
         for time, row in zip(times.tolist(), axes, strict=True):
             if self._before is None:
                 self._look(time, row)
@@ -70,7 +70,7 @@ class ContactCheck:
         self._note(time)
 
     def _pairs(self) -> frozenset[tuple[str, str]]:
-        """What touches now."""
+        """Return the pairs of parts that touch now."""
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
         touched = set()

@@ -1,8 +1,8 @@
-"""Robots by their names.
+"""The creation of robots by their names.
 
-All of them get the same set-points at the same times, so a program has the same trace on each:
-``none`` takes no set-points at all, ``kinematic`` is always at its set-point, and ``mujoco`` is an
-arm with masses that follows as well as it can.
+All robots receive the same set-points at the same times, so a program has the same trace on each.
+``none`` ignores set-points, ``kinematic`` is always at its set-point, and ``mujoco`` is an arm with
+masses that follows its set-points as well as it can.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ def make_robot(
     scene: Scene | None = None,
     file: RobotFile | None = None,
 ) -> Robot:
-    """A robot by its name; one with masses is that of ``file``, where there is one.
+    """Return a robot by its name; one with masses uses the model ``file``, if there is one.
 
-    Raises `ImportError` for ``mujoco`` where MuJoCo is not installed.
+    Raises `ImportError` for ``mujoco`` if MuJoCo is not installed.
     """
     if name == "mujoco":
         from interp.robot.simulation.cell import Cell

@@ -1,11 +1,12 @@
 """The bodies of an arm: links along its kinematic chain, with shapes and masses.
 
-What machine data does not say is assumed, and scaled by the arm's reach from an arm of the size of
-a KR 6 R900:
+Machine data has neither shapes nor masses. They are assumed, and scaled from an arm of the size of
+a KR 6 R900 by the reach:
 
-- masses: 52 kg in all for a reach of 901.5 mm, as published; by the cube of the reach for others.
-  How they are shared among the links is a guess, and so are the shapes, which are filled evenly.
-- rotors: they add inertia to an axis, and friction that grows with its speed.
+- masses: 52 kg in total for a reach of 901.5 mm, as published; proportional to the cube of the
+  reach for other arms. The distribution among the links is a guess, and so are the shapes, which
+  have uniform density.
+- rotors: they add inertia to an axis, and friction proportional to its speed.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from interp.robot.kinematics.chain import Point
 from interp.robot.kinematics.machine_data import AxisKind, MachineData
 from interp.values.poses import Pose
 
-_KNOWN_MASS: Final = 52.0  # kg, of an arm with this reach:
+_KNOWN_MASS: Final = 52.0  # kg, of an arm with the following reach
 _KNOWN_REACH: Final = 901.5  # mm
 ORANGE, DARK = "1 0.45 0.1 1", "0.25 0.26 0.28 1"
 _EXTERNAL_MASS = 20.0  # kg, for an arm of the known reach
@@ -28,7 +29,7 @@ _ORIGIN: Point = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Capsule:
-    """A rod with round ends from one point to another in the frame of its link; mm, kg."""
+    """A cylinder with hemispherical ends, relative to its link; lengths in mm, mass in kg."""
 
     start: Point
     end: Point
@@ -41,11 +42,12 @@ class Capsule:
 class Link:
     """A body that an axis moves.
 
-    ``parent`` is the index of the link that carries it, ``None`` for what stands in the world, and
-    ``frame`` where it stands there while its axis is at zero. ``joint`` is the index of its axis
-    among all axes, robot axes first; ``None`` where it does not move. The axis turns it about
-    ``axis`` of its own frame, or shifts it along where ``is_linear``. ``rotor`` is the inertia that
-    the drive adds, in kg m² (kg where it is linear). What ``touches`` nothing is only shown.
+    ``parent`` is the index of the link that carries it, ``None`` for the world. ``frame`` is its
+    frame relative to that link with its axis at zero. ``joint`` is the index of its axis among all
+    axes, robot axes first; ``None`` if it does not move. The axis turns the body about ``axis`` of
+    its own frame, or shifts it along ``axis`` if ``is_linear``. ``rotor`` is the inertia that the
+    drive adds, in kg m² (kg if linear). A link without ``touches`` is displayed, but has no
+    contacts.
     """
 
     name: str
@@ -60,11 +62,11 @@ class Link:
 
 
 def links_of(machine: MachineData) -> tuple[Link, ...]:
-    """The bodies of an arm and its external axes, each behind the one that carries it.
+    """Return the bodies of an arm and its external axes, each after the one that carries it.
 
-    What carries the robot comes first; then the foot, called so, and the links of the robot axes,
-    the last of which has the flange. Other external axes stand beside the arm: machine
-    data does not say what they carry.
+    The bodies that carry the robot come first, then ``foot``, then the links of the robot axes, the
+    last of which has the flange. Other external axes stand beside the arm, because machine data
+    does not say what they carry.
     """
     scale = reach_of(machine) / _KNOWN_REACH
     mass = _KNOWN_MASS * scale**3
@@ -94,12 +96,15 @@ def links_of(machine: MachineData) -> tuple[Link, ...]:
 
 
 def hand_of(links: Sequence[Link]) -> int:
-    """The index of the link that has the flange."""
+    """Return the index of the link that has the flange."""
     return max(place for place, link in enumerate(links) if link.name.startswith("link_"))
 
 
 def reach_of(machine: MachineData) -> float:
-    """From axis 1 to the wrist centre of the stretched arm, in mm; to the last joint of a chain."""
+    """Return the distance of axis 1 from the wrist centre of the stretched arm in mm.
+
+    For an arm described joint by joint, the distance is that of the last joint.
+    """
     if machine.own_chain is not None:
         lengths = [math.hypot(*joint.frame.position) for joint in machine.own_chain.joints[1:]]
         return max(sum(lengths), math.hypot(*machine.own_chain.end.position), 1.0)
@@ -108,7 +113,7 @@ def reach_of(machine: MachineData) -> float:
 
 
 _ROTORS = (0.012, 0.012, 0.008, 0.001, 0.001, 0.0006)
-"""Rotor inertia as a share of the arm's mass times the square of its reach."""
+"""Rotor inertia as a fraction of the arm's mass times the square of its reach."""
 
 
 def _foot(machine: MachineData, mass: float) -> tuple[Capsule, ...]:
@@ -120,7 +125,7 @@ def _foot(machine: MachineData, mass: float) -> tuple[Capsule, ...]:
 
 
 def _shapes(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:
-    """The shapes of the links; radii as shares of the reach, masses of that of the arm."""
+    """Return the shapes of the links; radii are fractions of the reach, masses of the arm's."""
     forward, aside, up = machine.tx3p3.position
     elbow = (0.0, aside, up)
     half = (forward / 2.0, aside, up)
@@ -149,7 +154,7 @@ def _shapes(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...
 
 
 def _rods(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:
-    """A rod from each joint to the next, thinner towards the flange."""
+    """Return a rod from each joint to the next, thinner towards the flange."""
     joints, reach = machine.chain.joints, reach_of(machine)
     ends = [*(joint.frame.position for joint in joints[1:]), machine.chain.end.position]
     share = mass / len(ends)
@@ -160,7 +165,7 @@ def _rods(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:
 
 
 def _carriage(machine: MachineData, scale: float) -> Iterable[Link]:
-    """What external axes carry the robot on, from the world upwards."""
+    """Yield the bodies of external axes that carry the robot, from the world upwards."""
     if machine.carrier is None:
         return
     carrier = machine.carrier

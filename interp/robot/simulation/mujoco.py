@@ -1,13 +1,13 @@
-"""A simulated arm with masses, which follows set-points by computed torque at steps of 1 ms.
+"""A simulated arm with masses that follows its set-points by computed-torque control, at 1 kHz.
 
-The torque of each step is what the model's inverse dynamics asks for to get from one set-point to
-the next, plus what a spring and a damper add for where the arm really is. Speed and acceleration
-are the differences of the set-points over a step, since that is how the integrator moves: those of
-the planned path, half a step away, would leave half a millimetre at 1 m/s to the spring. The
-controller knows the masses but not the friction, so that is what measured positions show.
+The torque of each step is that of inverse dynamics for the motion from one set-point to the next,
+plus a spring and a damper for the tracking error. Velocity and acceleration are differences of
+set-points over a step, because the integrator moves in this way. Those of the planned path, half a
+step away, would leave an error of half a millimetre at 1 m/s to the spring. The controller knows
+the masses but not the friction, so measured positions show the effect of friction.
 
-Steps run in MuJoCo itself, a chunk of set-points at a time: spring and damper are part of the
-actuators, and their input is the torque plus the set-point times their gains.
+Steps run inside MuJoCo, a chunk of set-points at a time: spring and damper are part of the
+actuators, whose input is the torque plus the set-point times their gains.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ Array = npt.NDArray[np.float64]
 
 _STEP = 1_000  # µs
 _CHUNK = 120_000  # µs
-_STIFFNESS = 250.0  # 1/s: how fast an error goes; a quarter of a step, far from what would swing
+_STIFFNESS = 250.0  # 1/s: decay rate of an error; 1/4 per step, far from instability
 _LOST = 2.0
-"""Degrees or mm off the set-point at which the arm no longer follows; nothing is known to reach it
-but a model that is too stiff for its steps."""
+"""Degrees or mm of tracking error at which the arm counts as lost; only a model that is too stiff
+for its steps is known to reach it."""
 
-_STILL = 1e-9  # rad or m, and a second: below this a joint rests, its error has gone
+_STILL = 1e-9  # rad or m, and per second: below this a joint is at rest without an error
 
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _NO_CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
@@ -45,9 +45,9 @@ _NO_FORCES = int(
 
 
 class MujocoRobot:
-    """The arm of a cell. What it touches does not stop it: `interp.robot.simulation.contacts`.
+    """The arm of a cell. Contacts do not stop it: see `interp.robot.simulation.contacts`.
 
-    It stands still from a fault on, until `stand` puts it somewhere else.
+    After a fault it stands still until `stand` places it somewhere else.
     """
 
     step = _STEP
@@ -70,13 +70,13 @@ class MujocoRobot:
 
     @property
     def axes(self) -> Array:
-        """Where it is: shape (axes,), degrees or mm."""
+        """The present axes, shape (axes,), in degrees or mm."""
         place = self._rest.copy()
         place[self._columns] = self._data.qpos / self._units
         return place
 
     def stand(self, axes: Sequence[float]) -> None:
-        """It stands at axes, with nothing of what was before."""
+        """Place the arm at rest at axes, and forget all earlier state."""
         mujoco.mj_resetData(self._model, self._data)
         self._rest = np.asarray(axes, dtype=np.float64)
         self._data.qpos[:] = self._rest[self._columns] * self._units
@@ -90,7 +90,7 @@ class MujocoRobot:
             put_loads(model, self._machine, loads)
 
     def follow(self, samples: Samples) -> Measured:
-        """Follow set-points 1 ms apart; torques are those that the set-points ask for.
+        """Follow set-points 1 ms apart; the torques are those that the set-points require.
 
         Raises `RobotFault`.
         """
@@ -116,7 +116,7 @@ class MujocoRobot:
         return Measured(places, every)
 
     def _rests(self, targets: Array) -> bool:
-        """Whether it and its set-point stand still: each step then equals the one before."""
+        """Return whether arm and set-point are at rest, so that each step equals the previous."""
         return (
             not self._speed.any()
             and bool((targets == self._set_point).all())
@@ -125,7 +125,7 @@ class MujocoRobot:
         )
 
     def _resting(self, count: int) -> Measured:
-        """As many steps at rest: the place stays, and torques hold what is carried."""
+        """Return so many steps at rest, with the torques that hold what is carried."""
         data = self._free_data
         data.qpos[:], data.qvel[:], data.qacc[:] = self._set_point, 0.0, 0.0
         mujoco.mj_inverse(self._free, data)
@@ -134,7 +134,7 @@ class MujocoRobot:
         return Measured(np.tile(self.axes, (count, 1)), np.tile(torques, (count, 1)))
 
     def _control(self, targets: Array) -> tuple[Array, Array]:
-        """Torques and the inputs of actuators, for steps that end at ``targets`` (n, joints)."""
+        """Return torques and actuator inputs for steps that end at ``targets`` (n, joints)."""
         data = self._free_data
         before = np.vstack((self._set_point, targets[:-1]))
         speeds = (targets - before) / (_STEP * 1e-6)
@@ -155,9 +155,10 @@ class MujocoRobot:
         return torques, control
 
     def _inertia(self) -> Array:
-        """Of each joint in kg m² or kg, at the last set-point and with all others free to go along.
+        """Return the inertia of each joint in kg m² or kg at the last set-point.
 
-        That is the least that a spring may find; with the others locked it would be more.
+        The other joints are free to move. This is the smallest inertia that a spring may act on;
+        with the other joints locked it would be larger.
         """
         free, data = self._free, self._free_data
         mujoco.mj_makeM(free, data)
@@ -183,7 +184,7 @@ class MujocoRobot:
 
 
 def _be_quiet() -> None:
-    """MuJoCo writes warnings to a file in the working directory; what matters is a fault here."""
+    """Suppress the warnings that MuJoCo writes to a file in the working directory."""
     mujoco.set_mju_user_warning(_forget)
 
 

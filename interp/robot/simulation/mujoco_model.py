@@ -1,16 +1,16 @@
-"""An arm's machine data as a model for MuJoCo (MJCF), of primitive shapes only.
+"""The conversion of an arm's machine data to a MuJoCo model (MJCF) of primitive shapes.
 
-The chain of bodies is that of `interp.robot.kinematics.machine_data`, number by number, so the
-flange of the model stands where the kinematics have it. Masses and shapes are
-those of `interp.robot.simulation.links`. What else machine data does not say is assumed:
+The chain of bodies is exactly that of `interp.robot.kinematics.machine_data`, so the flange of the
+model is where the kinematics says. Masses and shapes are those of `interp.robot.simulation.links`.
+The rest is assumed, because machine data does not contain it:
 
-- the floor lies one reach below the foot, out of the way, with a pedestal to look at that nothing
-  touches, since the data does not say what the arm stands on. Below an arm that hangs, or is on a
-  wall, it lies two reaches, and the pedestal is a short piece behind the foot.
+- The floor is one reach below the foot, out of the way. A pedestal is displayed that nothing
+  touches, because the data does not say what the arm stands on. If the arm hangs from a ceiling or
+  a wall, the floor is two reaches below, and the pedestal is a short piece behind the foot.
 
-Links touch one another and the floor, except for links next to one another or next but one, whose
-shapes overlap. External axes stand beside the arm and touch nothing: machine data does not say what
-they carry. MJCF counts in metres and radians, in $WORLD.
+Links may touch one another and the floor. Links that are neighbours or next neighbours are
+excluded, because their shapes overlap. External axes stand beside the arm and touch nothing:
+machine data does not say what they carry. MJCF is in metres and radians, relative to $WORLD.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.links import DARK, Capsule, Link, hand_of, links_of, reach_of
 from interp.values.poses import IDENTITY, Pose
 
-#: The site of the flange.
+#: The name of the site at the flange.
 FLANGE: Final = "flange"
-#: The geoms of the floor and of the pedestal that the arm stands on.
+#: The names of the geoms of the floor and of the pedestal.
 GROUND: Final = ("floor", "pedestal")
-#: An arm whose own Z axis has less of the world's than this hangs, or is on a wall.
+#: If the vertical component of the foot's Z axis is smaller, the arm hangs or is on a wall.
 UPRIGHT: Final = 0.7
 
-_FRICTION = 4.0  # 1/s: torque by speed, as a share of the rotor's inertia
+_FRICTION = 4.0  # 1/s: torque per speed, as a fraction of the rotor's inertia
 
 
 def mjcf_of(machine: MachineData) -> str:
-    """The text of the model; joints are called as the axes are, and so are their actuators.
+    """Return the model as text; joints and actuators have the names of their axes.
 
-    Joints stand in the order of the axes, external ones last. An actuator gives its joint the
-    torque at its input, less what a controller adds to its gains
+    Joints are in the order of the axes, external axes last. An actuator applies the torque at its
+    input to its joint, plus the bias that a controller configures
     (`interp.robot.simulation.mujoco`).
     """
     reach = reach_of(machine)
@@ -93,7 +93,7 @@ def mjcf_of(machine: MachineData) -> str:
 def _nested(
     links: Sequence[Link], parent: int | None, machine: MachineData, indent: str
 ) -> list[str]:
-    """The bodies that a link carries, with all on it; the flange is on the last."""
+    """Return the bodies that a link carries, recursively; the last one has the flange site."""
     lines: list[str] = []
     for place, link in enumerate(links):
         if link.parent == parent:
@@ -125,7 +125,7 @@ def _joint(link: Link, machine: MachineData, indent: str) -> list[str]:
 
 
 def _middle(machine: MachineData, reach: float) -> Point:
-    """What a camera looks at: in front of the foot, at the height of axis 2."""
+    """Return what a camera looks at: a point in front of the foot, at the height of axis 2."""
     return (machine.robroot @ machine.tiroro @ Pose.of(x=0.2 * reach)).position
 
 
@@ -148,7 +148,7 @@ def _is_upright(machine: MachineData) -> bool:
 
 
 def _floor(machine: MachineData) -> float:
-    """The height of the floor, in mm."""
+    """Return the height of the floor in mm."""
     return machine.robroot.position[2] - (1 if _is_upright(machine) else 2) * reach_of(machine)
 
 
@@ -164,7 +164,7 @@ def _pedestal(machine: MachineData) -> str:
 
 
 def _placed(pose: Pose) -> str:
-    """Position, and orientation as the X and the Y axis."""
+    """Return a pose as attributes: the position, and the X and Y axes of the orientation."""
     if pose == IDENTITY:
         return 'pos="0 0 0"'
     columns = [tuple(row[column] for row in pose.rows) for column in (0, 1)]
@@ -180,7 +180,7 @@ def _numbers(values: Iterable[float]) -> str:
 
 
 def _number(value: float, digits: int = 17) -> str:
-    """As short as it can be without loss; without digits of rounding where fewer are asked for."""
+    """Return a number as short as possible without loss, or rounded to ``digits``."""
     text = f"{round(value, digits) + 0.0:.{digits}g}" if digits < 17 else repr(value + 0.0)
     return text.removesuffix(".0")
 

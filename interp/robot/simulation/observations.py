@@ -1,6 +1,6 @@
-"""Observations of an arm besides its trace: contacts, and excessive torques.
+"""Observations of an arm in addition to its trace: contacts, and excessive torques.
 
-Observations change nothing: a program has the same trace with and without them.
+Observations have no effect: a program has the same trace with and without them.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ Times = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """Something that lasted from ``start`` to ``end``, in µs.
+    """A contact or an excessive torque that lasted from ``start`` to ``end``, in µs.
 
-    ``parts`` are the two that touch, in the order of the alphabet, or the axis. ``value`` is the
-    greatest torque and ``limit`` what the axis bears, in Nm (N for linear axes). ``at`` is the line
-    whose motion it began in, as ``file:line``; empty before the first. An estimate rests on masses
-    that are assumed.
+    ``parts`` are the two parts that touch, in alphabetical order, or the axis. ``value`` is the
+    largest torque, and ``limit`` what the axis can bear, in Nm (N for linear axes). ``at`` is the
+    line of the motion in which it began, as ``file:line``; empty before the first motion. An
+    estimate depends on assumed masses.
     """
 
     kind: Literal["collision", "torque"]
@@ -48,7 +48,7 @@ class Observation:
         return f"{self.parts[0]} needs {self.value:.0f} Nm and bears {self.limit:.0f}, {when}"
 
     def record(self) -> ObservationRecord:
-        """It as plain data."""
+        """Return the observation as plain data."""
         return {
             "t": self.start,
             "end": self.end,
@@ -62,7 +62,7 @@ class Observation:
 
 
 class ObservationRecord(TypedDict):
-    """An observation as JSON: times in µs, `Observation` names the rest."""
+    """An observation as JSON, with times in µs; see `Observation` for the fields."""
 
     t: int
     end: int
@@ -75,19 +75,19 @@ class ObservationRecord(TypedDict):
 
 
 class Observer(Protocol):
-    """Looks at set-points as they pass."""
+    """Observes the set-points of an arm."""
 
     def observe(self, times: Times, axes: Array) -> None:
-        """Look at axes (n, axes), one interpolation cycle apart."""
+        """Observe axes (n, axes) at times one interpolation cycle apart."""
         ...
 
     def observations(self) -> tuple[Observation, ...]:
-        """All so far, in the order in which they began."""
+        """Return all observations so far, in the order in which they began."""
         ...
 
 
 class Periods:
-    """Turns moments at which something holds into periods."""
+    """Merges consecutive moments at which something holds into periods."""
 
     def __init__(self, kind: Literal["collision", "torque"], is_estimate: bool = False) -> None:
         self._kind = kind
@@ -96,7 +96,7 @@ class Periods:
         self._closed: list[Observation] = []
 
     def at(self, time: int, found: Iterable[tuple[tuple[str, ...], float, float]]) -> None:
-        """What holds at a time that is not before the last one: parts, value and limit."""
+        """Add what holds at a time, as (parts, value, limit); times must not decrease."""
         now: dict[tuple[str, ...], Observation] = {}
         for parts, value, limit in found:
             before = self._open.pop(parts, None)
@@ -109,7 +109,7 @@ class Periods:
         self._open = now
 
     def observations(self) -> tuple[Observation, ...]:
-        """All periods, those that still last too."""
+        """Return all periods, including those that have not ended."""
         every = sorted(
             [*self._closed, *self._open.values()], key=lambda one: (one.start, one.parts)
         )
@@ -117,7 +117,7 @@ class Periods:
 
 
 class TorqueCheck:
-    """Compares torques with what the axes of a machine bear."""
+    """Compares torques with those that the axes of a machine can bear."""
 
     def __init__(self, machine: MachineData) -> None:
         self._names = [axis.name for axis in machine.axes]
@@ -125,7 +125,7 @@ class TorqueCheck:
         self._periods = Periods("torque", is_estimate=machine.own_chain is None)
 
     def check(self, times: Times, torques: Array) -> None:
-        """Look at torques (n, axes) in Nm."""
+        """Check torques (n, axes) in Nm."""
         robot = np.abs(torques[:, : len(self._names)])
         over = robot > self._limits
         for place in range(len(times)):

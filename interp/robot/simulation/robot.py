@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 class RobotFault(Fault):
-    """The robot cannot continue: it has touched something, or was sent where nothing can be.
+    """The robot cannot continue: it has lost its set-points, or one of them is NaN.
 
-    ``time`` is when, in µs. The arm has to stop; the robot itself stands from then on.
+    ``time`` is the time in µs. The arm has to stop; the robot itself stands still from then on.
     """
 
     def __init__(self, slug: str, text: str, time: int) -> None:
@@ -27,59 +27,60 @@ class RobotFault(Fault):
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """Where a robot was, in degrees or mm, and with which torques, in Nm or N: (n, axes)."""
+    """Measured axes in degrees or mm, and torques in Nm or N, both (n, axes)."""
 
     axes: npt.NDArray[np.float64]
     torques: npt.NDArray[np.float64]
 
 
 class Robot(Protocol):
-    """Follows set-points."""
+    """A robot that follows set-points."""
 
     @property
     def step(self) -> int:
-        """µs from one set-point to the next that it needs; 0 where it needs none."""
+        """The time in µs between set-points that the robot needs; 0 if it needs none."""
         ...
 
     @property
     def chunk(self) -> int:
-        """µs of set-points that it should be sent at once; a fault shows no earlier."""
+        """The time in µs of set-points to send at once; a fault is not detected earlier."""
         ...
 
     def stand(self, axes: Sequence[float]) -> None:
-        """It stands at axes, robot axes first, in degrees (mm for linear ones)."""
+        """Place the robot at axes, robot axes first, in degrees (mm if linear)."""
         ...
 
     def carry(self, loads: Mapping[str, Load]) -> None:
-        """From now on it carries these loads, by the names that `Settings.loads` has."""
+        """Set the loads that the robot carries from now on, by the names in `Settings.loads`."""
         ...
 
     def follow(self, samples: Samples) -> Measured | None:
-        """Follow set-points that are ``step`` apart and continue where the last ones ended.
+        """Follow set-points that are ``step`` apart and continue the previous ones.
 
-        ``None`` where nothing is measured and the set-points stand for it. Raises `RobotFault`.
+        Return ``None`` if nothing is measured; the set-points then count as measured. Raises
+        `RobotFault`.
         """
         ...
 
 
 class NoRobot:
-    """No robot: only the plan passes, for programs whose control flow is all that counts."""
+    """No robot: only the plan is computed, for programs whose control flow is all that matters."""
 
     step = 0
     chunk = 1_000_000
 
     def stand(self, axes: Sequence[float]) -> None:
-        """Nothing stands."""
+        """Do nothing."""
 
     def carry(self, loads: Mapping[str, Load]) -> None:
-        """Nothing is carried."""
+        """Do nothing."""
 
     def follow(self, samples: Samples) -> None:
-        """Nothing follows."""
+        """Do nothing."""
 
 
 class KinematicRobot:
-    """Is always at its set-point; ``cycle`` is the interpolation cycle in µs."""
+    """A robot that is always at its set-point; ``cycle`` is the interpolation cycle in µs."""
 
     chunk = 1_000_000
 
@@ -87,18 +88,18 @@ class KinematicRobot:
         self.step = cycle
 
     def stand(self, axes: Sequence[float]) -> None:
-        """It has no state of its own."""
+        """Do nothing: this robot has no state."""
 
     def carry(self, loads: Mapping[str, Load]) -> None:
-        """It has no masses."""
+        """Do nothing: this robot has no masses."""
 
     def follow(self, samples: Samples) -> None:
-        """Look at the set-points. Raises `RobotFault` where one is no number."""
+        """Check the set-points; raise `RobotFault` if one is infinite or NaN."""
         check_samples(samples)
 
 
 def check_samples(samples: Samples) -> None:
-    """Raise `RobotFault` at the first set-point that is no number."""
+    """Raise `RobotFault` at the first set-point that is infinite or NaN."""
     import numpy as np
 
     sound = np.isfinite(samples.axes).all(axis=1)

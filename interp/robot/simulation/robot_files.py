@@ -1,10 +1,10 @@
-"""Robots of the user's own: URDF and MJCF files, as machine data and as a model for MuJoCo.
+"""Robots from URDF and MJCF files, as machine data and as a model for MuJoCo.
 
-The arm is the row of joints from the base to where it branches, into the fingers of a gripper for
-instance. Its joints are A1 to A6 in their order, and count as the file has them: no sense is turned
-over. Joints that are not the arm's stay where they are. The flange is a site or body behind the
-last joint named ``flange``, ``tool0`` or ``attachment_site``, else the frame of the last body. What
-such files do not say, speeds of MJCF for instance, is as assumed for machine data.
+The arm is the series of joints from the base to the first branch, such as the fingers of a gripper.
+Its joints become A1 to A6 in their order, with the signs of the file. All other joints are fixed.
+The flange is a site or body after the last joint that is named ``flange``, ``tool0`` or
+``attachment_site``, else the frame of the last body. What such files do not contain, for example
+the speeds in MJCF, is assumed as for machine data.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ _FILTER_TIME = 0.1
 
 
 class RobotFileError(Exception):
-    """The file describes no arm; its text is one line for a person."""
+    """The file does not describe an arm; the text is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class RobotFile:
-    """An arm from a file: ``joints`` are the names of those of A1, A2 and so on.
+    """An arm from a file; ``joints`` are the names of its joints, beginning with that of A1.
 
-    ``spec`` is the model with all other joints taken out, to be copied and completed.
+    ``spec`` is the model without all other joints, to be copied and completed.
     """
 
     machine: MachineData
@@ -58,7 +58,7 @@ class RobotFile:
 
 
 def read_robot(path: Path) -> RobotFile:
-    """The arm of a URDF or MJCF file. Raises `RobotFileError` and `OSError`."""
+    """Return the arm of a URDF or MJCF file; raise `RobotFileError` and `OSError`."""
     data = read_bytes(path)
     try:
         tree = ET.fromstring(data)
@@ -85,7 +85,7 @@ def read_robot(path: Path) -> RobotFile:
 
 
 def _leave_out_missing_meshes(spec: Any, path: Path) -> None:
-    """Shapes whose files are not there, as with the packages of a URDF, are left out."""
+    """Remove shapes whose mesh files do not exist, as with the packages of a URDF."""
     folder = path.parent / (spec.meshdir or "")
     missing = {
         mesh.name for mesh in spec.meshes if mesh.file and not (folder / mesh.file).is_file()
@@ -99,7 +99,7 @@ def _leave_out_missing_meshes(spec: Any, path: Path) -> None:
 
 
 def _completed(spec: Any, joints: tuple[str, ...]) -> Any:
-    """The model with nothing in it that moves but the arm."""
+    """Return the model after removing everything that moves except the arm."""
     kept = set(joints)
     parts: Iterable[Any] = (
         *spec.actuators,
@@ -115,7 +115,7 @@ def _completed(spec: Any, joints: tuple[str, ...]) -> Any:
 
 
 def _arm_joints(model: Any, path: Path) -> list[int]:
-    """The joints of the arm from the base outwards."""
+    """Return the joints of the arm, from the base outwards."""
     moved = {body: _joints_of(model, body) for body in range(model.nbody)}
     beyond = [
         sum(len(moved[other]) for other in _below(model, body)) for body in range(model.nbody)
@@ -148,7 +148,7 @@ def _joints_of(model: Any, body: int) -> list[int]:
 
 
 def _below(model: Any, body: int) -> Iterable[int]:
-    """A body and all that it carries."""
+    """Yield a body and all bodies that it carries."""
     for other in range(model.nbody):
         above = other
         while above not in (body, 0):
@@ -158,7 +158,7 @@ def _below(model: Any, body: int) -> Iterable[int]:
 
 
 def _chain(model: Any, joints: list[int], hand: int) -> Chain:
-    """The chain of joints, each with its frame where it turns, in mm."""
+    """Return the chain of joints, with frames in mm at the joints' anchors."""
     made: list[Joint] = []
     before, anchor = 0, np.eye(4)
     for number, joint in enumerate(joints, start=1):
@@ -174,7 +174,7 @@ def _chain(model: Any, joints: list[int], hand: int) -> Chain:
 
 
 def _flange(model: Any, hand: int) -> Array:
-    """The flange in the frame of the last body."""
+    """Return the flange relative to the last body."""
     for name in _FLANGES:
         site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)
         body = int(model.site_bodyid[site]) if site >= 0 else -1
@@ -195,7 +195,7 @@ def _is_below(model: Any, body: int, above: int) -> bool:
 
 
 def _between(model: Any, above: int, body: int) -> Array:
-    """A body in the frame of one above it, while all joints are at zero."""
+    """Return a body relative to one that carries it, with all joints at zero."""
     pose = np.eye(4)
     while body != above:
         pose = _matrix(model.body_pos[body], model.body_quat[body]) @ pose
@@ -222,7 +222,7 @@ def _pose(matrix: Array) -> Pose:
 
 
 def _speeds(tree: ET.Element) -> dict[str, float]:
-    """The greatest speeds of joints, rad/s or m/s; MuJoCo does not read them."""
+    """Return the largest speeds of joints in rad/s or m/s; MuJoCo does not read them."""
     found: dict[str, float] = {}
     for joint in tree.iter("joint"):
         limit = joint.find("limit")
@@ -238,7 +238,7 @@ def _speeds(tree: ET.Element) -> dict[str, float]:
 def _machine(
     model: Any, joints: list[int], chain: Chain, speeds: dict[str, float], path: Path
 ) -> MachineData:
-    """Machine data of the arm; axes that it lacks stay at 0."""
+    """Return machine data of the arm; axes that the arm does not have stay at 0."""
     axes = []
     for number in range(1, ROBOT_AXES + 1):
         if number > len(joints):
@@ -288,7 +288,7 @@ def _machine(
 
 
 def _torque(model: Any, joint: int) -> float:
-    """The most that drives a joint, Nm or N: of the joint itself, or of its actuators."""
+    """Return the largest torque of a joint in Nm or N, its own limit or that of its actuators."""
     if model.jnt_actfrclimited[joint]:
         return float(np.abs(model.jnt_actfrcrange[joint]).max())
     drives = [

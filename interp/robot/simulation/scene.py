@@ -1,12 +1,12 @@
-"""Objects around an arm: a scene file in TOML.
+"""Scenes: objects around an arm, from a TOML file.
 
-One table ``[[object]]`` each, lengths in mm, angles in degrees, frames as KRL has them::
+Each object is a table ``[[object]]``. Lengths are in mm, angles in degrees, frames as in KRL::
 
     [[object]]
     name = "table"
     shape = "box"                       # box, cylinder, sphere or mesh
     size = [800, 600, 40]               # of a box, along its X, Y and Z
-    frame = {X = 700, Y = 0, Z = 200}   # its middle; A, B, C turn it
+    frame = {X = 700, Y = 0, Z = 200}   # its centre; A, B, C turn it
 
     [[object]]
     name = "gripper"
@@ -14,11 +14,11 @@ One table ``[[object]]`` each, lengths in mm, angles in degrees, frames as KRL h
     radius = 40
     height = 120
     frame = {Z = 60}
-    held = true                         # stands on the flange and goes along; else in $WORLD
-    mass = 3.5                          # kg, of what is held
+    held = true                         # fixed to the flange; else in $WORLD
+    mass = 3.5                          # kg, of a held object
 
-A sphere has a ``radius``; a mesh a ``file`` (STL or OBJ, beside the scene file) and a ``scale``, by
-default 1.0, for files in mm. A mesh counts as its convex hull.
+A sphere has a ``radius``. A mesh has a ``file`` (STL or OBJ, relative to the scene file) and a
+``scale``, by default 1.0 for files in mm; it is treated as its convex hull.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from interp.values.poses import IDENTITY, Pose
 from support.files.untrusted import DocumentError, read_text, toml_of
 from support.lazy_dataclass import dataclass
 
-#: The members that each shape needs.
+#: The entries that each shape needs.
 SHAPES: Final[Mapping[str, tuple[str, ...]]] = {
     "box": ("size",),
     "cylinder": ("radius", "height"),
@@ -47,16 +47,16 @@ _MOST = 1000  # objects
 
 
 class SceneError(Exception):
-    """The file is no scene; its text is one line with file and line."""
+    """The file is not a valid scene; the text is one line with file and line."""
 
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """An obstacle in $WORLD, or a workpiece on the flange where ``is_held``.
+    """An obstacle in $WORLD, or a workpiece on the flange if ``is_held``.
 
-    ``edges`` are those of a box; of a cylinder twice its radius and its height, of a sphere twice
-    its radius, in mm. A mesh has a ``file`` and a ``scale`` to mm. ``mass`` is in kg,
-    ``where`` its place as ``file:line``.
+    ``edges`` are those of the bounding box in mm: of a box its size, of a cylinder its diameter and
+    height, of a sphere its diameter. A mesh has a ``file`` and a ``scale`` to mm instead. ``mass``
+    is in kg; ``where`` is the place of the object in the file, as ``file:line``.
     """
 
     name: str
@@ -78,7 +78,7 @@ class Scene:
 
 
 def read_scene(path: Path) -> Scene:
-    """The scene of a file. Raises `SceneError` and `OSError`."""
+    """Return the scene of a file; raise `SceneError` and `OSError`."""
     try:
         text = read_text(path, "utf-8-sig")
     except UnicodeDecodeError:
@@ -111,7 +111,7 @@ def read_scene(path: Path) -> Scene:
 
 
 class _Reader:
-    """Takes the members of one object."""
+    """Reads the entries of one object."""
 
     def __init__(self, entry: Any, where: str) -> None:
         self._entry: dict[str, Any] = entry if isinstance(entry, dict) else {}

@@ -1,7 +1,7 @@
-"""Set-points on their way from the planned path to a robot, and the record of both.
+"""Tracking: sends set-points of the planned path to a robot, and records both.
 
-What is past does not change any more, so set-points are taken from the path behind the clock, in
-chunks. The record has a row each interpolation cycle, from the start on.
+The past of a path no longer changes. So set-points are sampled from the path behind the clock, in
+chunks. The record has a row for each interpolation cycle from the start.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PathRecord:
-    """``n`` rows, one each interpolation cycle.
+    """A recorded path of ``n`` rows, one for each interpolation cycle.
 
-    ``times`` (n,) in µs; ``axes`` (n, axes) in degrees or mm; ``points`` (n, 6) are X, Y, Z in mm
-    and A, B, C in degrees of the tool in the base, those that were in force at the time; ``tips``
-    (n, 3) are X, Y, Z of the tool in $WORLD, whatever the base. The measured
-    ones are ``None`` where the robot measures nothing. ``placements`` are the frames in force, each
-    with the time in µs from which on; ``motions`` are those that began, each with the time in µs
-    at which; ``torques`` (n, axes) in Nm, ``None`` without masses.
+    ``times`` (n,) are in µs, ``axes`` (n, axes) in degrees or mm. ``points`` (n, 6) are X, Y, Z in
+    mm and A, B, C in degrees of the tool relative to the base, with the frames in force at that
+    time. ``tips`` (n, 3) are X, Y, Z of the tool in $WORLD, whatever the base. The measured arrays
+    are ``None`` if the robot does not measure. ``placements`` are the frames, each with the time in
+    µs from which it is in force. ``motions`` are the motions that began, each with its time in µs.
+    ``torques`` (n, axes) are in Nm, ``None`` without masses.
     """
 
     times: npt.NDArray[np.int64]
@@ -48,7 +48,7 @@ class PathRecord:
     torques: Array | None = None
 
     def columns(self) -> dict[str, npt.NDArray[np.int64] | Array]:
-        """The columns of a path file: t, q1…q6, e1…, x…c, and measured ones with ``_meas``."""
+        """Return the columns of a path file: t, q1…q6, e1…, x…c, measured ones with ``_meas``."""
         columns: dict[str, npt.NDArray[np.int64] | Array] = {"t": self.times}
         columns |= _named(self.axes, self.points, "")
         if self.axes_measured is not None and self.points_measured is not None:
@@ -57,10 +57,10 @@ class PathRecord:
 
 
 class Tracking:
-    """Sends the set-points of a path to a robot as time goes on.
+    """Sends the set-points of a path to a robot as time advances.
 
-    ``start`` is where the arm stands at time 0, as `MachineData.standing` takes it; ``cycle`` the
-    interpolation cycle in µs, a multiple of the robot's step.
+    ``start`` are the axes at time 0, as for `MachineData.standing`. ``cycle`` is the interpolation
+    cycle in µs, a multiple of the robot's step.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class Tracking:
         self._observer = observer
         self._begun: list[tuple[int, Motion]] = []
         self._loads: Mapping[str, Load] = {}
-        #: Loads from times on that set-points were not sent for yet.
+        #: Changes of loads, for times up to which set-points have not been sent yet.
         self._changes: list[tuple[int, Mapping[str, Load]]] = []
         self._last: Array | None = None
         robot.stand(stands)
@@ -101,11 +101,11 @@ class Tracking:
 
     @property
     def chunk(self) -> int | None:
-        """µs from one `advance` to the next, at most; ``None`` where nothing is sent."""
+        """The longest time in µs between calls of `advance`; ``None`` if nothing is sent."""
         return self._robot.chunk if self._robot.step else None
 
     def begun(self, time: int, motion: Motion) -> None:
-        """A motion begins: its frames and loads are in force from now on."""
+        """Note that a motion begins: its frames and loads are in force from now on."""
         settings = motion.settings
         self.placed(time, settings.placement)
         self._begun.append((time, motion))
@@ -114,7 +114,7 @@ class Tracking:
             self._changes.append((time, settings.loads))
 
     def placed(self, time: int, placement: Placement) -> None:
-        """From a time on, not before the last one given, points count in these frames."""
+        """Use these frames for points from a time on, which must not be before the previous one."""
         if time == self._place_times[-1]:
             self._place_times.pop()
             self._placements.pop()
@@ -122,25 +122,25 @@ class Tracking:
         self._placements.append(placement)
 
     def advance(self, now: int) -> None:
-        """Time has come to ``now``: send what fills a chunk. Raises `RobotFault` once."""
+        """Send all complete chunks up to the time ``now``; raise `RobotFault` at most once."""
         while self._robot.step and now - self._sent >= self._robot.chunk:
             self._send(self._sent + self._robot.chunk)
 
     def settle(self, now: int) -> None:
-        """Send all set-points up to ``now``. Raises `RobotFault`."""
+        """Send all set-points up to ``now``; raise `RobotFault`."""
         self.advance(now)
         if self._robot.step and now - self._sent >= self._robot.step:
             self._send(now)
 
     def measured(self, now: int) -> tuple[float, ...]:
-        """Axes as measured at ``now``, or within a step before it; raises `RobotFault`."""
+        """Return the axes measured at ``now``, or up to a step before it; raise `RobotFault`."""
         self.settle(now)
         if self._last is None:
             return self._arm.position(now).axes
         return tuple(self._last.tolist())
 
     def record(self) -> PathRecord:
-        """All rows so far."""
+        """Return the record of the path so far."""
         times, axes = np.concatenate(self._times), np.concatenate(self._axes)
         points, tips = self._points(times, axes)
         frames = tuple(zip(self._place_times, self._placements, strict=True))
@@ -154,14 +154,14 @@ class Tracking:
         return PathRecord(times, axes, points, tips, measured, *found, frames, begun, torques)
 
     def observations(self) -> tuple[Observation, ...]:
-        """What was touched, and torques beyond their limits, in the order in which it began."""
+        """Return contacts and excessive torques, in the order in which they began."""
         seen = [*self._torque_check.observations()]
         seen += () if self._observer is None else self._observer.observations()
         placed = [replace(one, at=self._line_at(one.start)) for one in seen]
         return tuple(sorted(placed, key=lambda one: (one.start, one.kind, one.parts)))
 
     def _line_at(self, time: int) -> str:
-        """The line of the motion that ran at a time."""
+        """Return the line of the motion that ran at a time."""
         place = bisect_right(self._begun, time, key=lambda begun: begun[0])
         if not place:
             return ""
@@ -169,7 +169,7 @@ class Tracking:
         return f"{at.file}:{at.line}"
 
     def _send(self, until: int) -> None:
-        """Send set-points up to a time, with the loads that are carried at theirs."""
+        """Send set-points up to a time, each with the loads carried at that time."""
         step = self._robot.step
         while self._changes and self._changes[0][0] - self._sent < step:
             self._robot.carry(self._changes.pop(0)[1])
@@ -209,7 +209,7 @@ class Tracking:
             self._observer.observe(times[rows], axes[rows])
 
     def _points(self, times: npt.NDArray[np.int64], axes: Array) -> tuple[Array, Array]:
-        """Of the tool, X, Y, Z, A, B, C (n, 6) in the base in force, and X, Y, Z (n, 3)."""
+        """Return X to C of the tool in the base in force (n, 6), and X to Z in $WORLD (n, 3)."""
         flanges = self._kinematics.forward(axes[:, :ROBOT_AXES])
         points, tips = np.empty((len(times), 6)), np.empty((len(times), 3))
         for rows, placement in self._stretches(times):
@@ -222,7 +222,7 @@ class Tracking:
         return points, tips
 
     def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:
-        """Rows during which a placement was in force."""
+        """Yield the rows during which each placement was in force."""
         known = times.tolist()
         starts = [bisect_right(known, time - 1) for time in self._place_times]
         for first, last, placement in zip(
@@ -233,7 +233,7 @@ class Tracking:
 
 
 def _angles(poses: Array) -> Array:
-    """A, B, C (n, 3) in degrees of poses (n, 4, 4), as `interp.values.poses.Pose.angles`."""
+    """Return A, B, C (n, 3) in degrees of poses (n, 4, 4), as `interp.values.poses.Pose.angles`."""
     over = np.hypot(poses[:, 0, 0], poses[:, 1, 0])
     a = np.where(over > 1e-12, np.arctan2(poses[:, 1, 0], poses[:, 0, 0]), 0.0)
     sine, cosine = np.sin(a), np.cos(a)

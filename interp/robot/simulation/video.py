@@ -1,9 +1,9 @@
-"""A moving picture of the arm: the simulated arm's set-points or measured positions, rendered.
+"""Videos of the arm, rendered from its set-points or measured positions.
 
-Frames are drawn by MuJoCo without a window, in a process of its own: which renderer is used has to
-be settled before MuJoCo is loaded, and a driver that fails takes nothing else with it. On Linux EGL
-is tried, then OSMesa; `MUJOCO_GL` in the environment names another one. Pillow writes GIF and
-animated WebP, and ffmpeg, a program of its own that imageio-ffmpeg brings, MP4.
+MuJoCo renders the frames off-screen, in a separate process: the renderer must be chosen before
+MuJoCo is loaded, and a failing driver must not affect anything else. On Linux, EGL is tried first,
+then OSMesa; the environment variable `MUJOCO_GL` selects another renderer. Pillow writes GIF and
+animated WebP; ffmpeg, a program that the package imageio-ffmpeg contains, writes MP4.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ Frame = npt.NDArray[np.uint8]
 
 
 class VideoError(Exception):
-    """There can be no video; the text is one line for a person."""
+    """A video cannot be made; the text is one line."""
 
 
 def frame_times(times: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-    """When the frames of a video are (µs), whose rows are at ``times``."""
+    """Return the times in µs of the frames of a video whose rows are at ``times``."""
     count = 1 + math.floor(int(times[-1] - times[0]) * _FRAMES_PER_SECOND / 1_000_000)
     wanted: npt.NDArray[np.float64] = times[0] + np.arange(count) * (1e6 / _FRAMES_PER_SECOND)
     return wanted
@@ -56,12 +56,12 @@ def write_video(
     size: tuple[int, int] = (640, 480),
     on_frame: Callable[[], None] = lambda: None,
 ) -> None:
-    """Write a video that takes as long as the motion does.
+    """Write a video in real time.
 
     ``times`` (n,) in µs and ``axes`` (n, axes) in degrees or mm are rows of a path record. The
-    suffix of ``path`` gives the format: one of `SUFFIXES`. ``captions`` stand in the frames, one
-    each of `frame_times`. ``on_frame`` is called after each frame. Raises `VideoError` where there
-    is no renderer, no MuJoCo, nothing that writes the form, or another suffix.
+    suffix of ``path``, one of `SUFFIXES`, selects the format. ``captions`` has a text for each
+    frame, in the order of `frame_times`. ``on_frame`` is called after each frame. Raises
+    `VideoError` if there is no renderer, no MuJoCo, no encoder, or the suffix is unknown.
     """
     check(path)
     write = _write_mp4 if path.suffix.lower() == ".mp4" else _write_images
@@ -71,7 +71,7 @@ def write_video(
 def write_picture(
     path: Path, cell: Cell, times: npt.NDArray[np.int64], axes: npt.NDArray[np.float64]
 ) -> None:
-    """Write a PNG of the arm where it is at the end, with its path; as `write_video` otherwise."""
+    """Write a PNG of the arm at its last position, with its path; otherwise as `write_video`."""
     from PIL import Image
 
     size = (1600, 1200)
@@ -80,7 +80,7 @@ def write_picture(
 
 
 def check(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
-    """Raise `VideoError` where it is known without rendering that there can be no video."""
+    """Raise `VideoError` if it is clear without rendering that a video cannot be made."""
     if path.suffix.lower() not in suffixes:
         raise VideoError(f"{path}: should end in {' or '.join(suffixes)}")
     needed = {"mujoco": "MuJoCo", "PIL": "Pillow"}
@@ -101,7 +101,7 @@ def _drawn(
     *,
     is_last_only: bool = False,
 ) -> Iterator[Frame]:
-    """The frames, by the first renderer that works."""
+    """Yield the frames from the first renderer that works."""
     wanted = frame_times(times)
     found = np.stack([np.interp(wanted, times, column) for column in axes.T], axis=-1)
     columns, units = cell.columns(cell.model())
@@ -130,7 +130,7 @@ def _renderers() -> tuple[str, ...]:
 
 
 class _Frames:
-    """The frames that a process draws, one after the other."""
+    """The frames that a separate process renders, one after the other."""
 
     def __init__(
         self,
@@ -176,7 +176,10 @@ class _Frames:
         return self._process.stdout
 
     def next(self) -> Frame | None:
-        """The next frame, (height, width, 3); ``None`` behind the last, `reason` says why."""
+        """Return the next frame, (height, width, 3); ``None`` at the end or on an error.
+
+        After an error, ``reason`` says what failed.
+        """
         width, height = self._size
         data = self._output.read(width * height * 3)
         if len(data) == width * height * 3:

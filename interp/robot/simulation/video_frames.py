@@ -1,8 +1,9 @@
-"""The process that draws frames for `interp.robot.simulation.video`, and nothing else.
+"""The process that renders frames for `interp.robot.simulation.video`.
 
 ``python -m interp.robot.simulation.video_frames FOLDER WIDTH HEIGHT FIRST`` reads ``model.xml`` and
-``places.npy`` from the folder and writes the frames from number FIRST on to its standard output,
-three bytes a pixel. The flange leaves a trail, and the arm fills the frame in all its places.
+``places.npy`` from the folder, and writes the frames from number FIRST on to its standard output,
+three bytes per pixel. The path of the flange is drawn, and the camera shows all positions of the
+arm.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ Points = npt.NDArray[np.float64]
 def _draw(folder: Path, width: int, height: int, first: int) -> None:
     model = mujoco.MjModel.from_xml_path(str(folder / "model.xml"))
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
-    model.vis.quality.offsamples = 0  # a quarter of the time, with the flags below
+    model.vis.quality.offsamples = 0  # with the flags below, rendering is four times as fast
     data = mujoco.MjData(model)
     places = np.load(folder / "places.npy")
     flange, parts = _passed(model, data, places)
@@ -55,7 +56,7 @@ def _draw(folder: Path, width: int, height: int, first: int) -> None:
 
 
 def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
-    """Where the flange is in each place, (places, 3), and all points at which something moves."""
+    """Return the flange positions, (positions, 3), and all points that moving parts reach."""
     moving = model.geom_bodyid > 0
     is_capsule = (model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE)[moving]
     size = model.geom_size[moving]
@@ -73,17 +74,17 @@ def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
 
 
 def _foot(model: Any, data: Any, points: Points) -> Points:
-    """Corners of the pedestal, after the floor is drawn no lower than something reaches.
+    """Return the corners of the pedestal, after raising the floor to the lowest visible part.
 
-    The simulated floor is out of the arm's reach: with it in the frame the arm is small. The
-    pedestal of an arm that stands on the floor ends there.
+    The simulated floor is out of the arm's reach, and would make the arm small in the frame. The
+    pedestal of an upright arm ends at the raised floor.
     """
     floor, pedestal = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name) for name in GROUND)
     if min(floor, pedestal) < 0:
         return np.empty((0, 3))
     radius, half = model.geom_size[pedestal, :2]
     along = -data.geom_xmat[pedestal].reshape(3, 3)[:, 2]  # Z goes to the first end of `fromto`
-    middle = model.geom_pos[pedestal]  # the body that it is on is the world
+    middle = model.geom_pos[pedestal]  # relative to its body, which is the world
     bottom, top = middle - half * along, middle + half * along
     others = (model.geom_bodyid == 0) & ~np.isin(np.arange(model.ngeom), (floor, pedestal))
     bottoms = data.geom_xpos[others, 2] - model.geom_rbound[others]
@@ -98,7 +99,7 @@ def _foot(model: Any, data: Any, points: Points) -> Points:
 
 
 def _camera(model: Any, points: Points, aspect: float) -> Any:
-    """A camera from which all points are in the frame, and fill it."""
+    """Return a camera whose frame all points fit into as closely as possible."""
     azimuth, elevation = math.radians(_AZIMUTH), math.radians(_ELEVATION)
     ahead = np.array(
         (
@@ -111,7 +112,7 @@ def _camera(model: Any, points: Points, aspect: float) -> Any:
     across, up, deep = ((points @ axis) for axis in (right, np.cross(right, ahead), ahead))
     middle, tall = deep.mean(), math.tan(math.radians(model.vis.global_.fovy) / 2) / _MARGIN
     centre, distances = [], []
-    for values, slope in ((across, tall * aspect), (up, tall)):  # the planes that touch both sides
+    for values, slope in ((across, tall * aspect), (up, tall)):  # planes that touch both sides
         high, low = (values - slope * deep).max(), (values + slope * deep).min()
         centre.append((high + low) / 2)
         distances.append(middle + (high - low) / (2 * slope))
