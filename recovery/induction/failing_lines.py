@@ -81,15 +81,25 @@ class FailingLines:
         shown = tuple(islice(seen, PLACES_SHOWN))
         return Evidence(len(files), len(origins), self.weight(lines), shown)
 
-    def is_repeated(self, lines: Set[int], edits: Sequence[Edit], recognizer: Recognizer) -> bool:
-        """Whether lines of a single file show edits often enough to be no slip."""
+    def is_repeated(
+        self,
+        lines: Set[int],
+        edits: Sequence[Edit],
+        recognizer: Recognizer,
+        explained: Set[LinePattern],
+    ) -> bool:
+        """Whether lines of a single file show edits often enough to be no slip.
+
+        Forms that are known may grow to read lines that are ``explained``.
+        """
         some = [self.occurrences[n] for n in lines]
         # where nothing else is wrong in a file a form that is known may grow by a single line, but
         # not by a word where a name stands
         is_new = any(isinstance(edit, AddAlternative) for edit in edits)
-        is_new = is_new or self._are_misnamed(lines, recognizer)
-        if not is_new and any(self._of_file[p] <= lines for line in some for p in line.files):
-            return True
+        if not (is_new or self._are_misnamed(lines, recognizer)):
+            known = {n for n, pattern in enumerate(self.patterns) if pattern in explained}
+            if any(self._of_file[p] <= lines | known for line in some for p in line.files):
+                return True
         if any(isinstance(edit, AddToken) for edit in edits):
             return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
         return sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE

@@ -11,7 +11,7 @@ import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
-from itertools import pairwise, takewhile, zip_longest
+from itertools import combinations, pairwise, takewhile, zip_longest
 
 from grammar.notation.addresses import Address, element_at, sequences
 from grammar.notation.edits import (
@@ -36,7 +36,7 @@ from grammar.notation.model import (
     walk,
 )
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.forms import LONG_LIST, FormWriter, samples_of
+from recovery.induction.forms import LONG_LIST, FormWriter, is_loose, samples_of
 from recovery.induction.steps import Inferred
 from recovery.induction.symbols import (
     BRACKETS,
@@ -85,15 +85,22 @@ class Folding:
 
     def candidates(self) -> Iterator[Inferred]:
         """Folds, those of most alternatives first; each stands for itself."""
+        return (fold for fold in self._candidates() if fold.edits)
+
+    def _candidates(self) -> Iterator[Inferred]:
         unused = [n for n in self.rules.reaches if self.profile.is_free(n)]
         for name in unused:
             yield Inferred(f"nothing calls {name}", (RemoveRule(name),), ())
         yield from self._named_types()
+        yield from self._words_as_types()
         families = sorted(self._families(), key=lambda f: (-len(f[2]), f[:2]))
         for rule, word, numbers in families:
-            if len(numbers) > 1:
-                edits = self._folded(word, [(rule, n) for n in numbers])
-                yield Inferred(f"one form for {word} in {rule}", edits, ())
+            # alternatives of which only some have a form in common
+            groups = [numbers, *combinations(numbers, 2)] if len(numbers) > 2 else [numbers]
+            for group in groups if len(numbers) > 1 else ():
+                edits = self._folded(word, [(rule, n) for n in group])
+                which = "" if group is numbers else f" {' and '.join(map(str, group))}"
+                yield Inferred(f"one form for {word} in {rule}{which}", edits, ())
         for rule, word, numbers in families:
             for other, same, more in families:
                 if other != rule and same == word:
@@ -160,7 +167,10 @@ class Folding:
         return is_word and self._is_name(elements[1]) and not isinstance(elements[2], Literal)
 
     def _variables(self) -> Iterator[Inferred]:
-        """Variables where only values were seen, in lines or blocks that read variables too."""
+        """Variables where only values were seen, in lines or blocks that read variables too.
+
+        What one form of a statement reads its other forms read.
+        """
         matcher, variable, lexer = self.rules.matcher, self.writer.variable, self.lexer
         if variable is None:
             return
@@ -173,8 +183,11 @@ class Folding:
         for rule in self.grammar.rules:
             if rule.is_lexer or rule.name in self.rules.recursive or rule.name in values:
                 continue
+            heads = {self._head(alternative.elements) for alternative in rule.alternatives}
+            is_statement = len(heads) == 1 and not heads & {"", self._kind}
             for number, alternative in enumerate(rule.alternatives, 1):
-                called = {e.name for e in walk(alternative) if isinstance(e, Reference)}
+                forms = rule.alternatives if is_statement else [alternative]
+                called = {e.name for a in forms for e in walk(a) if isinstance(e, Reference)}
                 edits = tuple(
                     Widen(rule.name, (*address, place), variable)
                     for address, sequence in sequences(rule)
@@ -234,6 +247,29 @@ class Folding:
                 title = f"{word} is a name as types are"
                 yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
 
+    def _words_as_types(self) -> Iterator[Inferred]:
+        """Words that stand where a type does, and the name behind them goes on as behind a type."""
+        found: dict[str, set[tuple[str, ...]]] = defaultdict(set)
+        longer: set[str] = set()  # words with an operand behind the name too
+        for rule, _, elements in self._lines():
+            for shape in samples_of(self.rules, elements) if self._declares_some(elements) else ():
+                texts = [s.operand.rule if s.operand else s.text for s in shape]
+                for place, one in enumerate(texts[:-1]):
+                    if place and shape[place + 1].is_operand:
+                        found[one].add((rule.name, *texts[:place], *texts[place + 2 : place + 3]))
+                        longer.update(one for s in shape[place + 2 : place + 3] if s.is_operand)
+        for choice in self.rules.word_choices:
+            for word in sorted(self._reserved & found.keys() - longer):
+                if found[word] <= found[choice]:
+                    title = f"{word} is one of {choice}"
+                    edits = (AddAlternative(choice, word),)
+                    yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+    def _declares_some(self, elements: Sequence[Element]) -> bool:
+        """Whether elements begin with a reserved word of no kind, behind words that may miss."""
+        needed = [e for e in elements if not self._is_ending(e)]
+        return bool(needed and self._words(needed[0]) & self._reserved)
+
     def _tails(self) -> Iterator[Inferred]:
         """One form for what follows a declared name, where alternatives of a rule differ in it."""
         for rule in self.grammar.rules:
@@ -253,7 +289,7 @@ class Folding:
             if len(sources) < 2:
                 continue
             shapes = dict.fromkeys(s for _, _, tail in found for s in samples_of(self.rules, tail))
-            form = self.writer.form(list(shapes))
+            form = self._form(shapes)
             edits = [
                 Replace(rule.name, (number, place + 1), form, len(tail))
                 for number, place, tail in found
@@ -275,7 +311,7 @@ class Folding:
                         found[sign].append((number, start + 2, inside))
             for sign, contents in found.items():
                 shapes = [s for *_, inside in contents for s in samples_of(self.rules, inside)]
-                form = self.writer.form(list(dict.fromkeys(shapes)))
+                form = self._form(dict.fromkeys(shapes))
                 edits = tuple(
                     Replace(rule.name, (number, at), form or "", len(inside))
                     for number, at, inside in contents
@@ -414,7 +450,7 @@ class Folding:
                     shapes = samples_of(self.rules, elements)
                     items = [(s, (Symbol("','"), *s[_item(s) :])) for s in shapes if _item(s)]
                     more = [(*shape, *item * LONG_LIST) for shape, item in items]
-                    form = self.writer.form(dict.fromkeys([*shapes, *more]))
+                    form = self._form(dict.fromkeys([*shapes, *more]))
                     edits = (Replace(rule, (number, 1), form, len(elements)),) if form else ()
                     title = f"a list behind {word} in {rule}"
                     yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
@@ -542,7 +578,7 @@ class Folding:
         if word == self._kind:
             lines = [tuple(self._of_kind(symbol, words) for symbol in shape) for shape in lines]
         shapes = dict.fromkeys(lines)
-        form = self.writer.form(list(shapes))
+        form = self._form(shapes)
         if form is None:
             return ()
         (rule, first), *others = places
@@ -557,6 +593,12 @@ class Folding:
         edits.append(Replace(rule, (first, 1), form, len(self._line(rule, first))))
         edits += (RemoveAlternative(r, number) for r, number in reversed(others))
         return tuple(edits)
+
+    def _form(self, shapes: Iterable[tuple[Symbol, ...]]) -> str | None:
+        """The form of distinct shapes; ``None`` without any, and where none is as short as it."""
+        some = list(shapes)
+        form = self.writer.form(some)
+        return None if form and is_loose(form, some) else form
 
     def _of_kind(self, symbol: Symbol, words: set[str]) -> Symbol:
         operand = symbol.operand or Operand()

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
+from grammar.notation.g4 import read_rule
+from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, walk
 from recovery.induction.chain import Factor, chain_of
 from recovery.induction.symbols import BRACKETS, Operand, OperandRules, Symbol, SymbolReader
 from recovery.tuning import (
@@ -308,6 +309,35 @@ class FormWriter:
     def _name(self) -> str:
         """What is written for a name."""
         return self.rules.names or self.rules.lexer.name
+
+
+def is_loose(form: str, lines: Iterable[Sequence[Symbol]]) -> bool:
+    """Whether a form can be shorter than each of its lines, of lists only the first item counted.
+
+    Parts that exclude each other may then all be left out.
+    """
+    return _shortest(read_rule(f"form : {form} ;").alternatives) < min(map(_length, lines))
+
+
+def _length(line: Sequence[Symbol]) -> int:
+    """The symbols of a line up to its first comma, those in brackets too."""
+    first = split_at_commas(line)[0]
+    return sum(1 if symbol.inside is None else 2 + _length(symbol.inside) for symbol in first)
+
+
+def _shortest(alternatives: Iterable[Alternative]) -> int:
+    """How many symbols the shortest of alternatives has."""
+    return min(sum(map(_shortest_of, alternative.elements)) for alternative in alternatives)
+
+
+def _shortest_of(element: Element) -> int:
+    match element:
+        case Repeat(item=item, operator=operator):
+            return _shortest_of(item) if operator == "+" else 0
+        case Group(alternatives=alternatives):
+            return _shortest(alternatives)
+        case _:
+            return 1
 
 
 def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:

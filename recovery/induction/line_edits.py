@@ -102,10 +102,31 @@ class LineEdits:
                 head += " …"  # lines of this kind are known where it stands, and not elsewhere
             if self._block_words.isdisjoint(s.text for s in symbols[:2]):
                 groups[self.hosts.of(number), head].append(number)
-        families = list(_families(groups))
+        families = list(self._families(groups))
         for (hosts, head), members in families:
             yield from self._statement(hosts, head, members)
         yield from self._of_many_words(families)
+
+    def _families(
+        self, groups: dict[tuple[tuple[str, ...], str], list[int]]
+    ) -> Iterator[tuple[tuple[tuple[str, ...], str], list[int]]]:
+        """The groups, those of the same head and signs in one whose lines may be the same rules.
+
+        What has a sign in one place and not in another is a form of its own there.
+        """
+        done: list[tuple[set[str], str, list[int], set[str]]] = []
+        for (hosts, head), members in groups.items():
+            signs = {s.text for n in members for s in self.symbols[n] if s.text.startswith("'")}
+            alike = (d for d in done if d[1] == head and d[0] & set(hosts) and d[3] == signs)
+            same = next(alike, None)
+            if same is None:
+                done.append((set(hosts), head, list(members), signs))
+            else:
+                same[0].intersection_update(hosts)
+                same[2].extend(members)
+        order = {host: place for hosts, _ in groups for place, host in enumerate(hosts)}
+        for left, head, gathered, _ in done:
+            yield (tuple(sorted(left, key=lambda h: (order[h], h))), head), gathered
 
     def _of_many_words(
         self, families: Sequence[tuple[tuple[tuple[str, ...], str], list[int]]]
@@ -295,23 +316,6 @@ def go_on_alike(some: Set[tuple[str, ...]], others: Set[tuple[str, ...]]) -> boo
     return bool(some and others) and (
         len(some & others) >= ALIKE_SHARE * min(len(some), len(others))
     )
-
-
-def _families(
-    groups: dict[tuple[tuple[str, ...], str], list[int]],
-) -> Iterator[tuple[tuple[tuple[str, ...], str], list[int]]]:
-    """The groups, those of the same head in one whose lines may be the same rules."""
-    done: list[tuple[set[str], str, list[int]]] = []
-    for (hosts, head), members in groups.items():
-        same = next((d for d in done if d[1] == head and d[0] & set(hosts)), None)
-        if same is None:
-            done.append((set(hosts), head, list(members)))
-        else:
-            same[0].intersection_update(hosts)
-            same[2].extend(members)
-    order = {host: place for hosts, _ in groups for place, host in enumerate(hosts)}
-    for left, head, gathered in done:
-        yield (tuple(sorted(left, key=lambda h: (order[h], h))), head), gathered
 
 
 def _of(heads: Sequence[tuple[str, list[int], set[tuple[str, ...]]]]) -> list[str]:

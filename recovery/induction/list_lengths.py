@@ -6,6 +6,7 @@ to read what a part was for. Both are decided at the end, over all files that ar
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 
@@ -23,7 +24,6 @@ from recovery.tuning import (
     ITEMS_BEHIND_THE_FIRST,
     NEVER_THERE_EXAMPLES,
     NEVER_THERE_ORIGINS,
-    PAIR_EXAMPLES,
     SHORT_LIST_EXAMPLES,
 )
 
@@ -42,7 +42,7 @@ def bounded_lists(
         if isinstance(tree, Tree):
             coverage.add(tree)
     # what an operand may have somewhere it may have everywhere
-    operands = OperandRules(recognizer).recursive
+    rules = OperandRules(recognizer)
     for rule in grammar.rules:
         lengths = _lengths(rule, coverage)
         known = start.by_name[rule.name].text if rule.name in start.by_name else ""
@@ -53,9 +53,9 @@ def bounded_lists(
                 rounds = lengths[source]
                 if (
                     origins >= NEVER_THERE_ORIGINS
-                    and rule.name not in operands
+                    and rule.name not in rules.recursive
                     and _is_form(element, recognizer.lexer)
-                    and source not in known
+                    and _part(source, rules) not in known
                     and rounds[0] == rounds.total() >= NEVER_THERE_EXAMPLES
                 ):
                     edit = RemoveElement(rule.name, (*address, place))
@@ -67,15 +67,19 @@ def bounded_lists(
                     or max(rounds, default=0) > ITEMS_BEHIND_THE_FIRST
                 ):
                     continue
-                is_pair = max(rounds, default=0) < ITEMS_BEHIND_THE_FIRST
-                if rounds.total() - rounds[0] >= (
-                    PAIR_EXAMPLES if is_pair else SHORT_LIST_EXAMPLES
-                ):
+                if rounds.total() - rounds[0] >= SHORT_LIST_EXAMPLES:
                     text = ""
                     for _ in range(ITEMS_BEHIND_THE_FIRST):
                         text = f"({source[1:-2]}{text and f' {text}'})?"
                     title = f"at most {1 + ITEMS_BEHIND_THE_FIRST} items in {rule.name}"
                     yield Inferred(title, (Replace(rule.name, (*address, place), text),), ())
+
+
+def _part(source: str, rules: OperandRules) -> str:
+    """What an element with a suffix repeats, as it was written before names had a rule."""
+    bare = re.sub(r"[?*+]$", "", source)
+    bare = bare[1:-1] if bare.startswith("(") else bare
+    return re.sub(rf"\b{rules.names}\b", rules.lexer.name, bare) if rules.names else bare
 
 
 def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:

@@ -19,26 +19,25 @@ _Class = tuple[str, str]
 
 
 def split_literals(
-    lines: Iterable[tuple[str, frozenset[str]]], lexer: Lexer
-) -> tuple[AddAlternative, frozenset[str], tuple[str, ...]] | None:
-    """The alternative that reads the split literals of lines, their origins, and some of them.
+    lines: Iterable[tuple[str, int]], lexer: Lexer
+) -> tuple[AddAlternative, frozenset[int], tuple[str, ...]] | None:
+    """The alternative that reads the split literals of lines, the files with any, the literals.
 
-    ``lines`` come with the origins that have them. ``None`` where none is split.
+    ``lines`` come with the number of the file that has them. ``None`` where none is split.
     """
-    found: dict[str, set[str]] = defaultdict(set)
+    files: set[int] = set()
     owners: Mapping[str, list[str]] = defaultdict(list)
-    for line, origins in lines:
+    for line, file in lines:
         for text, owner in _touching(line, lexer):
-            found[text] |= origins
+            files.add(file)
             owners[owner].append(text)
-    if not found:
+    if not files:
         return None
     # the token with the longest beginning of its own: of 1.5E-3 that of 1.5, not that of 1
     owner = max(owners, key=lambda o: (len(set(owners[o])), o))
-    factors = chain_of([_classes(text) for text in dict.fromkeys(owners[owner])])
-    everyone = frozenset[str]().union(*found.values())
-    text = " ".join(map(_written, factors))
-    return AddAlternative(owner, text), everyone, tuple(dict.fromkeys(owners[owner]))[:10]
+    texts = tuple(dict.fromkeys(owners[owner]))
+    text = " ".join(map(_written, chain_of(map(_classes, texts))))
+    return AddAlternative(owner, text), frozenset(files), texts
 
 
 def _touching(line: str, lexer: Lexer) -> Iterable[tuple[str, str]]:

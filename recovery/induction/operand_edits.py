@@ -29,6 +29,7 @@ class OperandEdits:
         """All of them; what is between the brackets of a rule is sought behind these."""
         yield from self._between_operands()
         yield from self._words_as_names()
+        yield from self._words_as_types()
         yield from self._operand_forms()
 
     def _between_operands(self) -> Iterator[Inferred]:
@@ -135,7 +136,8 @@ class OperandEdits:
             if not is_led and not self.at.ends_operand(tokens, index):
                 found[lexer.names[kind]].append(number)
             for place in () if is_led or not self.at.rules.names else self._name_places(number):
-                placed[place][lexer.names[kind]].append(number)
+                if place[0] not in self.at.rules.word_choices:
+                    placed[place][lexer.names[kind]].append(number)
         for word, members in found.items():
             if self.at.rules.names:
                 named = (AddAlternative(self.at.rules.names, word),)
@@ -148,11 +150,28 @@ class OperandEdits:
                 edits = tuple(Widen(rule, at, word) for word in sorted(words))
                 yield Inferred(title, edits, every)
 
+    def _words_as_types(self) -> Iterator[Inferred]:
+        """Reserved words ahead of a name, where a rule gives a choice of words and names."""
+        found: dict[tuple[str, str], list[int]] = defaultdict(list)
+        lexer, choices = self.at.lexer, self.at.rules.word_choices
+        for number, line in enumerate(self.at.lines):
+            tokens, index = self.at.tokens[number], line.form.index
+            if not index or line.is_enormous or index + 1 >= len(tokens):
+                continue
+            kind = line.form.kinds[index]
+            is_ahead = tokens[index + 1] == (lexer.name_kind, None)
+            if kind > 0 and lexer.is_keyword(kind) and is_ahead:
+                for rule in {rule for rule, _ in self._name_places(number)} & choices.keys():
+                    found[rule, lexer.names[kind]].append(number)
+        for (rule, word), members in sorted(found.items()):
+            edits = (AddAlternative(rule, word),)
+            yield Inferred(f"{word} as {rule}", edits, tuple(members), is_strict=True)
+
     def _name_places(self, number: int) -> Iterator[tuple[str, Address]]:
-        """The places of names in lines, none in operands or types, where a line fails."""
+        """The places of names, none in operands, where a line fails."""
         recognizer, rules = self.at.recognizer, self.at.rules
         names = {rules.names, self.at.lexer.name}
-        others = {*names, *rules.recursive, *rules.word_choices}
+        others = {*names, *rules.recursive}
         for site in configurations_of(recognizer, self.at.state(number)):
             rule = self.at.grammar.by_name[recognizer.network.rule[site[0]]]
             for place in places_of(recognizer, site) if rule.name not in others else ():

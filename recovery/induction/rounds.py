@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence, Set
 from dataclasses import replace
 from typing import Literal, get_args
 
@@ -42,6 +42,7 @@ from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
 from recovery.induction.would_be_keywords import WouldBeKeywords, names_read
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
+from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import source_lines
 from recovery.tuning import (
     ADVANCED_WORTH,
@@ -50,6 +51,7 @@ from recovery.tuning import (
     FRESH_SHARE,
     LEAST_FILES_ALONE,
     OPERAND_FILES,
+    PLACES_SHOWN,
     SYMBOL_FACTOR,
     UNBOUNDED_SYMBOLS,
 )
@@ -98,6 +100,7 @@ class Induction:
         self._lossy: set[tuple[Edit, ...]] = set()  # folds that lose lines of some file
         self._review: EditReview | None = None
         self._held_read = Reading(0, 0, 0)
+        self._explained: set[LinePattern] = set()  # lines that known forms may grow to read
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
         """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
@@ -147,7 +150,7 @@ class Induction:
         recognizer = review.recognizer
         keywords = self._words(recognizer, failures, least)
         if inner:
-            whole = self._with_literals(failures, recognizer)
+            whole = self._with_literals(failures, recognizer, least[0])
             if whole is not None:
                 return [whole], []
         table = FailingLines(self.shown.files, failures, keywords)
@@ -183,7 +186,11 @@ class Induction:
                 breadth += sum(map(inference.profile.width, rules))
                 scored.append((gain * SYMBOL_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
-        taken, refused = self._chosen(scored, table, review, least)
+        grown = [lines for _, found, lines in scored if not _adds_form(found.edits)]
+        explained = {table.patterns[n] for lines in grown for n in lines}
+        explained |= self._explained  # of the round before, under the same grammar
+        self._explained = explained if inner else set()
+        taken, refused = self._chosen(scored, table, review, least, explained)
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         if taken and not self.shown.gains(self.grammar, taken):  # two forms may undo each other
             lost += [Refused(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken]
@@ -235,6 +242,7 @@ class Induction:
         table: FailingLines,
         review: EditReview,
         least: tuple[int, int],
+        explained: Set[LinePattern],
     ) -> tuple[list[Taken], list[Refused]]:
         """The edits that fit together and each deserve it."""
         grammar = self.grammar
@@ -257,7 +265,7 @@ class Induction:
             ):
                 reason = "only one origin shows it"
             elif evidence.files < LEAST_FILES_ALONE and not table.is_repeated(
-                lines, edits, review.recognizer
+                lines, edits, review.recognizer, explained
             ):
                 reason = "too few lines of one file show it"
             elif fixed & changed:
@@ -332,21 +340,23 @@ class Induction:
 
     # ------------------------------------------------------------------------------------- literals
 
-    def _with_literals(self, failures: Failures, recognizer: Recognizer) -> Taken | None:
+    def _with_literals(
+        self, failures: Failures, recognizer: Recognizer, least: int
+    ) -> Taken | None:
         """A step that gives literals a form that the lexer cuts apart; ``None`` without any."""
-        lines: list[tuple[str, frozenset[str]]] = []
-        places: set[int] = set()
+        lines: list[tuple[str, int]] = []
         for place, (file, of_file) in enumerate(zip(self.shown.files, failures, strict=True)):
             source = source_lines(file.text) if of_file else []
-            for failure in of_file:
-                if failure.line <= len(source):
-                    lines.append((source[failure.line - 1], file.origins))
-                    places.add(place)
+            failing = (f.line for f in of_file if f.line <= len(source))
+            lines += ((source[line - 1], place) for line in failing)
         found = split_literals(lines, recognizer.lexer)
-        if found is None or found[0] in self._tried or len(found[1]) < self.least_origins:
+        if found is None or found[0] in self._tried:
             return None
-        edit, origins, seen = found
-        evidence = Evidence(len(places), len(origins), len(lines), seen)
+        edit, places, seen = found
+        origins = frozenset[str]().union(*(self.shown.files[place].origins for place in places))
+        if len(origins) < least:
+            return None
+        evidence = Evidence(len(places), len(origins), len(seen), seen[:PLACES_SHOWN])
         step = Taken(f"{seen[0]} is one literal", (edit,), evidence)
         kept = self.shown.kept(self.grammar, [step], self._names)[0]
         if kept and not self.shown.gains(self.grammar, kept):
@@ -362,6 +372,11 @@ def _size(edit: Edit) -> int:
     """How many symbols an edit writes; what may come any number of times counts thrice more."""
     text = getattr(edit, "text", "")
     return len(text.split()) + UNBOUNDED_SYMBOLS * len(re.findall(r"[)\w][*+]", text))
+
+
+def _adds_form(edits: Sequence[Edit]) -> bool:
+    """Whether edits add a form rather than let one read more."""
+    return any(isinstance(edit, AddAlternative) for edit in edits)
 
 
 def _led_by(word: str, failures: Sequence[Failure]) -> int:

@@ -147,9 +147,11 @@ class WouldBeKeywords:
                     meant[word] += files[surroundings, word]
                     heads[word] += files[surroundings, word] * is_head
                     places[word] |= words[word]
+        typing = self._of_types() if least == 1 else frozenset()
         self.words = frozenset(
             word
             for word, count in meant.items()
+            if word not in typing
             if (len(places[word]) >= WOULD_BE_ORIGINS and count >= WOULD_BE_FILES)
             or count >= alone
             or (least_files == 1 and operators[word] == uses[word])
@@ -182,6 +184,30 @@ class WouldBeKeywords:
                 )
             )
         )
+
+    def _of_types(self) -> frozenset[str]:
+        """Names of types: between a word and a last operand, where others have a type.
+
+        None begins a line or is ahead of a type. And the names behind them: what is declared.
+        """
+        typed: set[tuple[str, str]] = set()
+        found: dict[tuple[str, str], set[str]] = defaultdict(set)
+        others: set[str] = set()
+        for line in self.corpus.lines:
+            kinds = [self.lexer.kinds[lexeme] for lexeme in line]
+            is_value = [kind in self._values for kind in kinds]
+            others.update(line[:1] if is_value[1:2] == [True] else ())
+            for place in range(1, len(line) - 1):
+                if is_value[place + 1] and line[place] in self._types:
+                    typed.add((line[0], line[place - 1]))
+                elif kinds[place] == self._name:
+                    if line[place + 1] in self._types or self._is_beside(line, place + 1):
+                        others.add(line[place])
+                    elif is_value[place + 1]:
+                        found[line[0], line[place - 1]].add(line[place])
+        names = frozenset[str]().union(*(found[around] for around in typed)) - others
+        declared = {b for line in self.corpus.lines for a, b in pairwise(line) if a in names}
+        return names | (declared - others)
 
     def prefixes(self) -> frozenset[str]:
         """Words that may be missing at the head of a line: most lines go on as others begin.

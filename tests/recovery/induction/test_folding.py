@@ -90,8 +90,6 @@ def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
         "one form for kindWord in line",
         "one form for DIM in line",
         "one form for DIM in later",
-        "line reads what DIM begins in later",
-        "later reads what DIM begins in line",
         "line reads what GO begins in later",
         "later reads what GO begins in line",
         "a list behind DIM in line",
@@ -154,7 +152,13 @@ line
     | MOVE target (FAST | SLOW)*
     | MOVE_REL name
     | STEP expression (BY NUMBER)?
+    | waiting
+    | declared
     ;
+
+declared : DECL GLOBAL (FRAME | type) name ;
+
+waiting : WAIT FAST NUMBER | WAIT SLOW variable ;
 
 type : INT | REAL | name ;
 
@@ -182,6 +186,7 @@ MOVE : 'MOVE' ;
 MOVE_REL : 'MOVE_REL' ;
 STEP : 'STEP' ;
 BY : 'BY' ;
+WAIT : 'WAIT' ;
 FAST : 'FAST' ;
 SLOW : 'SLOW' ;
 PLUS : '+' ;
@@ -204,10 +209,12 @@ SPACE : ' '+ -> skip ;
         ("GLOBAL ahead of other lines in line", "GLOBAL SIGNAL A [1]\n"),
         ("variables beside values in line 8", "STEP 1 BY A[2]\n"),
         ("MOVE_REL goes on as MOVE does", "MOVE_REL A[1] FAST SLOW\n"),
+        ("variables beside values in waiting 1", "WAIT FAST A\n"),
+        ("FRAME is one of type", "DECL FRAME A[1]\n"),
     ],
 )
 def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
-    """Types are names, a word ahead of two lines is ahead of others, values may be variables."""
+    """Types are types everywhere, a word ahead of two lines is ahead of others, values vary."""
     grammar = read(_LIKE)
     folds = {fold.title: fold for fold in Folding(Recognizer(grammar), ()).candidates()}
     folded = apply(grammar, folds[title].edits)

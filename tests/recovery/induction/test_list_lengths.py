@@ -34,12 +34,11 @@ def test_short_lists(start: str, lists: list[str], found: list[str]) -> None:
     assert found == [getattr(edit, "text", "") for bounded in edits for edit in bounded.edits]
 
 
-@pytest.mark.parametrize(("items", "count"), [("A,B", 1), ("A,B,C", 0)])
-def test_pairs(items: str, count: int) -> None:
-    """Where none has three items fewer lists show that none is long."""
-    edits = bounded_lists(
-        Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), [f"F({items})\n"] * 15, 4
-    )
+@pytest.mark.parametrize(("lists", "count"), [(12, 1), (11, 0)])
+def test_enough_lists(lists: int, count: int) -> None:
+    """A dozen lists without a fourth item show that none is long."""
+    texts = ["F(A,B,C)\n"] * lists
+    edits = bounded_lists(Recognizer(read(_GROWN + _TOKENS)), read(_START + _TOKENS), texts, 4)
     assert count == len(list(edits))
 
 
@@ -71,6 +70,7 @@ _LIST = "NAME (',' NAME)?"
         (_LIST, "NAME", ["A", "A,B"] * 60, 4, 0),
         (_LIST, "NAME", ["A"] * 60, 3, 0),
         (_LIST, _LIST, ["A"] * 60, 4, 0),
+        (_LIST, "NAME ',' NAME", ["A"] * 60, 4, 0),
         ("NAME (OF NAME)?", "NAME", ["A"] * 60, 4, 0),
         ("NAME ('[' call ']')?", "NAME", ["A"] * 60, 4, 0),
     ],

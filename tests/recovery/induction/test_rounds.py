@@ -164,10 +164,13 @@ def test_a_word_for_a_name(toy: Grammar, inside: str, accepted: bool) -> None:
     assert accepted == found
 
 
-def _with(toy: Grammar, old: str, new: str) -> Grammar:
-    """The start with another text in place of one that it has once."""
-    assert 1 == toy.text.count(old)
-    return read(toy.text.replace(old, new))
+def _with(toy: Grammar, *changes: str) -> Grammar:
+    """The start with other texts, each behind the one that it replaces and that is there once."""
+    text = toy.text
+    for old, new in zip(changes[::2], changes[1::2], strict=True):
+        assert 1 == text.count(old)
+        text = text.replace(old, new)
+    return read(text)
 
 
 def test_words_beside_names(toy: Grammar) -> None:
@@ -222,6 +225,72 @@ def test_a_lone_operator(toy: Grammar) -> None:
     grown = Recognizer(_grown(start, files).grammar)
     texts_after = ("Y := 1 + (C MOD D)\n", "X := (A B)\n")
     assert [True, False] == [grown.accepts(text) for text in texts_after]
+
+
+def test_lone_words_of_one_file(toy: Grammar) -> None:
+    """Known forms that grow by one line each, so that nothing is left wrong in their file."""
+    start = _with(
+        toy,
+        "HALT : 'HALT' ;",
+        "HALT : 'HALT' ;\nAND : 'AND' ;\nMOVE : 'MOVE' ;\nEQUALS : '=' ;",
+        "factor\n    : primary\n",
+        "factor\n    : primary (AND primary)*\n",
+        "    | halt\n",
+        "    | halt\n    | MOVE NAME '=' expression\n",
+    )
+    texts = {"one": "X := (A MOD B)\nMOVE A = 1 UPTO 3\n", "two": "HALT\n"}
+    files = tuple(CorpusFile(f"{o}/a.toy", t, frozenset({o})) for o, t in texts.items())
+    grown = Recognizer(_grown(start, files).grammar)
+    texts_after = ("Y := 1 + (C MOD D)\n", "MOVE C = A + 1 UPTO 5\n", "MOVE A = 1 3\n")
+    assert [True, True, False] == [grown.accepts(text) for text in texts_after]
+
+
+def test_a_literal_of_one_origin(toy: Grammar) -> None:
+    """What touches a number is part of it wherever it is found."""
+    texts = {"one": "X := 15E3\n", "two": "HALT\n"}
+    files = tuple(CorpusFile(f"{o}/a.toy", t, frozenset({o})) for o, t in texts.items())
+    assert Recognizer(_grown(toy, files).grammar).accepts("Y := 2E7\n")
+
+
+def test_a_reserved_word_is_a_type(toy: Grammar) -> None:
+    """Where one is expected, ahead of a name: not only in the form that shows it."""
+    start = _with(
+        toy,
+        "HALT : 'HALT' ;",
+        "".join(f"{w} : '{w}' ;\n" for w in ("HALT", "DIM", "GIVE", "INT", "FIX")),
+        "    | halt\n",
+        "    | halt\n    | FIX NAME\n    | DIM kind NAME\n    | GIVE kind NAME ':=' NAME\n",
+        "halt\n    : HALT\n",
+        "kind\n    : INT\n    | NAME\n    ;\n\nhalt\n    : HALT\n",
+    )
+    files = tuple(CorpusFile(o, f"DIM FIX {o}\n", frozenset({o})) for o in "AB")
+    assert Recognizer(_grown(start, files).grammar).accepts("GIVE FIX A := B\n")
+
+
+def test_a_form_has_what_its_place_shows(toy: Grammar) -> None:
+    """A sign that lines have in one place is not read where they lack it."""
+    rules = (
+        "entry\n    : NAME ':=' NUMBER eol\n    | kind\n    ;\n\n"
+        "kind\n    : DIM NAME eol\n    | FIX NAME eol\n    ;\n"
+    )
+    start = _with(
+        toy,
+        "NEWLINE* statement* EOF",
+        "NEWLINE* entry* HALT eol statement* EOF",
+        "    : simpleStatement eol\n",
+        "    : simpleStatement eol\n    | kind\n",
+        "    | halt\n",
+        "",
+        "halt\n    : HALT\n    ;\n",
+        rules,
+        "HALT : 'HALT' ;",
+        "HALT : 'HALT' ;\nDIM : 'DIM' ;\nFIX : 'FIX' ;",
+    )
+    text = "KIND A{0} := 1\nKIND B{0} := {0}\nHALT\nKIND C{0}\nKIND D{0}\n"
+    files = tuple(CorpusFile(o, text.format(o), frozenset({o})) for o in "ABC")
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = ("KIND E := 2\nHALT\nKIND F\n", "HALT\nKIND F := 2\n")
+    assert [True, False] == [recognizer.accepts(text) for text in texts]
 
 
 def test_a_choice_of_words_stays_one(toy: Grammar) -> None:

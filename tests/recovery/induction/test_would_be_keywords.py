@@ -72,3 +72,18 @@ def test_one_line_does_not_outvote_others(toy: Grammar, uses: int, soft: bool) -
     shown = [CorpusFile(o, text, frozenset({"a"})) for o, text in files.items()]
     keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, (), 1)
     assert ("MOVE" in keywords.words, soft) == (True, "MOVE" in keywords.soft)
+
+
+@pytest.mark.parametrize(
+    ("types", "more", "found"),
+    [((), "", True), (("HALT",), "", False), (("HALT",), "KIND D\n", True)],
+)
+def test_names_of_types_in_one_origin(
+    toy: Grammar, types: tuple[str, ...], more: str, found: bool
+) -> None:
+    """What stands where a type does is the name of one, unless it begins lines."""
+    lexer = Recognizer(toy).lexer
+    text = f"MOVE HALT A\nMOVE KIND B\n{more}"
+    shown = [CorpusFile(f"a/{n}", f"{text}X := {n}\n", frozenset({"a"})) for n in range(2)]
+    keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, types, 1)
+    assert ("MOVE" in keywords.words, found) == (True, "KIND" in keywords.words)
