@@ -1,1 +1,1 @@
-"""The language: from text to a checked program. Knows nothing of running it."""
+"""The front end: from KRL text to a checked program. Nothing here runs a program."""

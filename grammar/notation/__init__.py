@@ -1,1 +1,1 @@
-"""Grammars as data: reading `.g4` files, editing rules, generating the ANTLR parser."""
+"""Grammars as data: reading ``.g4`` files, editing rules, generating the ANTLR parser."""

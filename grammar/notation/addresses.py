@@ -1,9 +1,9 @@
-"""Addresses: places in the text of a rule, as numbers that survive in a file.
+"""Addresses of alternatives and elements in a rule, stable enough to be stored in a file.
 
-An address counts from 1, alternately an alternative and an element in it. ``(2, 3)`` is the third
-element of the second alternative; where that element is a group, or a group with a suffix,
-``(2, 3, 1, 4)`` is the fourth element of the group's first alternative. An element number one past
-the last means the end of the sequence.
+An address is a tuple of numbers from 1. They name in turn an alternative and an element of it.
+``(2, 3)`` is the third element of the second alternative. If that element is a group, with or
+without a suffix, ``(2, 3, 1, 4)`` is the fourth element of the group's first alternative. The
+number of the last element plus one stands for the end of the sequence.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Address = tuple[int, ...]
 
 
 def spelled(at: Address) -> str:
-    """An address as people write it: ``1.2``."""
+    """Return an address as people write it: ``1.2`` for ``(1, 2)``."""
     return ".".join(map(str, at))
 
 
@@ -27,7 +27,10 @@ def _group_of(element: Element) -> Group | None:
 
 
 def sequence_at(rule: Rule, address: Address) -> Alternative:
-    """The alternative at an address of odd length."""
+    """Return the alternative at an address, whose length is odd.
+
+    Raises `GrammarError` if the rule has no such alternative.
+    """
     alternatives: tuple[Alternative, ...] = rule.alternatives
     for place, number in enumerate(address):
         if place % 2 == 0:
@@ -47,7 +50,7 @@ def sequence_at(rule: Rule, address: Address) -> Alternative:
 
 
 def element_at(rule: Rule, address: Address) -> Element:
-    """The element at an address; raises `GrammarError` where there is none."""
+    """Return the element at an address; raises `GrammarError` if there is none."""
     elements = sequence_at(rule, address[:-1]).elements
     if not 1 <= address[-1] <= len(elements):
         raise GrammarError(f"rule {rule.name} has no place {spelled(address)}")
@@ -55,7 +58,7 @@ def element_at(rule: Rule, address: Address) -> Element:
 
 
 def sequences(rule: Rule) -> Iterator[tuple[Address, Alternative]]:
-    """Every alternative of a rule and of the groups in it, with its address."""
+    """Yield every alternative of a rule and of the groups in it, with its address."""
 
     def within(
         alternatives: tuple[Alternative, ...], address: Address

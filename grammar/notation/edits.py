@@ -1,6 +1,8 @@
-"""Typed edits of a grammar: each changes the text of few rules and leaves all else as it was.
+"""Typed edits of a grammar, such as "insert this text before that element".
 
-Places in a rule are addresses (`grammar.notation.addresses`).
+An edit names a rule and, for most kinds, an address in it (`grammar.notation.addresses`). It
+changes the text of that rule only: comments and layout of all others stay as they are. Edits are
+written to the ledger (`to_data`) and read back (`from_data`).
 """
 
 from __future__ import annotations
@@ -38,7 +40,7 @@ class Insert:
 
 @dataclass(frozen=True, slots=True)
 class Widen:
-    """Let ``text`` stand in place of the element at ``at`` too."""
+    """Accept ``text`` as an alternative to the element at ``at``."""
 
     rule: str
     at: Address
@@ -47,7 +49,7 @@ class Widen:
 
 @dataclass(frozen=True, slots=True)
 class MakeOptional:
-    """Let the ``count`` elements from ``at`` on be left out, all or none."""
+    """Make the ``count`` elements from ``at`` on optional, as one group."""
 
     rule: str
     at: Address
@@ -108,7 +110,7 @@ class AddToken:
 
 @dataclass(frozen=True, slots=True)
 class RemoveAlternative:
-    """Take an alternative (from 1) away; the rule keeps at least one."""
+    """Remove an alternative, counted from 1; the rule keeps at least one."""
 
     rule: str
     alternative: int
@@ -116,7 +118,7 @@ class RemoveAlternative:
 
 @dataclass(frozen=True, slots=True)
 class RemoveElement:
-    """Take the element at ``at`` away; what is left may be empty."""
+    """Remove the element at ``at``; the alternative may become empty."""
 
     rule: str
     at: Address
@@ -124,7 +126,7 @@ class RemoveElement:
 
 @dataclass(frozen=True, slots=True)
 class RemoveRule:
-    """Take away a rule that nothing refers to any more."""
+    """Remove a rule; nothing may refer to it any more."""
 
     rule: str
 
@@ -137,10 +139,11 @@ Edit = EditOfRule | AddRule | AddToken | SetComment | Preamble | RemoveRule
 
 
 def apply(grammar: Grammar, edits: Sequence[Edit]) -> Grammar:
-    """The grammar after the edits, in order; raises `GrammarError` where one does not fit.
+    """Return the grammar after the edits, applied in order.
 
-    Only the changed rules are read again. References are not checked: read the text of the result
-    (`grammar.notation.g4.read`) before it is kept.
+    Raises `GrammarError` if an edit does not fit. Only the changed rules are parsed again, and
+    references between rules are not checked: parse the text of the result
+    (`grammar.notation.g4.read`) before you keep it.
     """
     for edit in edits:
         grammar = _apply(grammar, edit)
@@ -210,14 +213,17 @@ _KINDS: dict[str, type[Edit]] = {
 
 
 def to_data(edit: Edit) -> dict[str, str | int | list[int]]:
-    """The edit as JSON or TOML holds it; see `from_data`."""
+    """Return the edit as a table for JSON or TOML; `from_data` is the inverse."""
     kind = next(name for name, cls in _KINDS.items() if type(edit) is cls)
     values = {f.name: getattr(edit, f.name) for f in fields(edit)}
     return {"edit": kind, **{k: list(v) if isinstance(v, tuple) else v for k, v in values.items()}}
 
 
 def from_data(data: Mapping[str, object]) -> Edit:
-    """The edit that `to_data` wrote; raises `GrammarError` where the data is of no edit."""
+    """Return the edit that `to_data` wrote.
+
+    Raises `GrammarError` if the kind or a field is unknown, missing or of the wrong type.
+    """
     cls = _KINDS.get(str(data.get("edit")))
     if cls is None:
         raise GrammarError(f"there is no edit {data.get('edit')!r}; know {', '.join(_KINDS)}")
@@ -241,7 +247,7 @@ def from_data(data: Mapping[str, object]) -> Edit:
 
 
 def describe(grammar: Grammar, edit: Edit) -> str:
-    """One line for a person: what the edit does, with the words around its place."""
+    """Return one line for a person: what the edit changes, with the elements around its place."""
     match edit:
         case AddToken(name=name):
             return f"reserve {name}"

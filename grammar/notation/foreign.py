@@ -1,8 +1,9 @@
-"""Grammars in another style of ANTLR 4 than ours, written anew in ours.
+"""Grammars written in another style of ANTLR 4, rewritten in the style of this project.
 
-What comes out reads the same texts: actions and labels change nothing of what is read, tokens that
-parser rules only quote get a rule, and left recursion becomes a level of operators each. Words that
-are spelt by fragments of letters become keywords of a grammar that ignores case.
+The result accepts the same texts. Actions and labels are dropped because they do not change what is
+accepted. Literals that only parser rules quote get a lexer rule. A left-recursive rule becomes one
+rule for each level of precedence. Keywords spelt with a fragment for each letter (``I F``) become
+literals of a grammar that ignores case.
 """
 
 from __future__ import annotations
@@ -28,15 +29,16 @@ from grammar.notation.model import (
 )
 from grammar.notation.unsupported import without_decoration
 
-#: What is spliced into a text: from where, up to where, and what.
+#: A replacement in the text of a rule: start, end, new text.
 _Splice = tuple[int, int, str]
 
 
 def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
-    """Read a grammar in any style that can be written anew in ours.
+    """Return the grammar in ``text``, rewritten if it is in another style.
 
-    One that is in ours stays as it is. Raises `grammar.notation.model.GrammarError` with what is
-    not understood; lines are those of the text, but for a rule that was written anew.
+    A grammar that is in the style already stays as it is. Raises
+    `grammar.notation.model.GrammarError` for what is not supported. Line numbers are those of
+    ``text``, except for a rule that was rewritten.
     """
     text = without_decoration(text)
     for rewritten in (_with_keywords, _without_ends, _with_tokens, _with_levels):
@@ -45,7 +47,7 @@ def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
 
 
 def _with_keywords(grammar: Grammar) -> str:
-    """Words spelt by fragments that read a letter in either case as quoted words."""
+    """Return the text with words spelt by one-letter fragments replaced by literals."""
     letters = {r.name: letter for r in grammar.rules if r.is_fragment and (letter := _letter(r))}
     changed: dict[str, list[_Splice]] = {}
     for rule in grammar.rules:
@@ -68,7 +70,7 @@ def _with_keywords(grammar: Grammar) -> str:
 
 
 def _letter(rule: Rule) -> str:
-    """The letter that a fragment reads in either case; empty where it reads anything else."""
+    """Return the letter that a fragment reads in either case; empty if it reads anything else."""
     alternatives = rule.alternatives
     found = [characters_of(e) for a in alternatives for e in a.elements if len(a.elements) == 1]
     codes = {code for ranges in found for low, high in ranges or () for code in (low, high)}
@@ -78,7 +80,7 @@ def _letter(rule: Rule) -> str:
 
 
 def _spelt(alternative: Alternative, letters: Mapping[str, str]) -> str:
-    """The word of an alternative of letters and other characters; empty where it is none."""
+    """Return the word that an alternative of letter fragments spells, or an empty text."""
     parts = [
         letters.get(e.name, "") if isinstance(e, Reference) else getattr(e, "text", "")
         for e in alternative.elements
@@ -89,7 +91,10 @@ def _spelt(alternative: Alternative, letters: Mapping[str, str]) -> str:
 
 
 def _without_ends(grammar: Grammar) -> str:
-    """Tokens that may end with the file may end anywhere: the longest match continues as before."""
+    """Return the text without EOF in lexer rules.
+
+    The lexer takes the longest match, so such a token still ends with the file.
+    """
     return _spliced(
         grammar,
         {
@@ -107,18 +112,18 @@ def _without_ends(grammar: Grammar) -> str:
 
 
 def _is_end(element: Element) -> bool:
-    """Whether an element is the end of the file, as often as may be."""
+    """Return whether an element is EOF, with or without a suffix."""
     item = element.item if isinstance(element, Repeat) else element
     return isinstance(item, Reference) and item.name == "EOF"
 
 
 def _repeated(alternative: Alternative) -> set[Span]:
-    """Where elements stand that are left out with their repetition."""
+    """Return the spans of items inside repetitions, which are removed together with these."""
     return {e.item.span for e in walk(alternative) if isinstance(e, Repeat)}
 
 
 def _with_tokens(grammar: Grammar) -> str:
-    """Words and signs that parser rules quote and no token is defined as get a token each."""
+    """Return the text with a lexer rule for each literal that only parser rules have."""
     known = {grammar.fold(text): name for text, name in grammar.literal_tokens.items()}
     taken = set(grammar.by_name)
     rules = []
@@ -143,7 +148,7 @@ def _elements(grammar: Grammar) -> Iterator[Element]:
 
 
 def _names(text: str) -> Iterator[str]:
-    """Names for the token of a text, the one to be preferred first."""
+    """Yield names for the token of a literal, the preferred one first."""
     signs = (
         c if c.isascii() and (c.isalnum() or c == "_") else f"_{unicodedata.name(c, 'SIGN')}_"
         for c in text
@@ -154,7 +159,7 @@ def _names(text: str) -> Iterator[str]:
 
 
 def _with_levels(grammar: Grammar) -> str:
-    """Rules that begin with themselves as levels of operators, the tightest at the bottom."""
+    """Return the text with left-recursive rules replaced by levels of operators."""
     changed: dict[str, list[_Splice]] = {}
     for rule in grammar.rules:
         is_led = any(_is(rule, a.elements[:1]) for a in rule.alternatives if len(a.elements) > 1)
@@ -168,7 +173,10 @@ def _is(rule: Rule, elements: tuple[Element, ...]) -> bool:
 
 
 def _levels(grammar: Grammar, rule: Rule) -> str:
-    """The text of the rules; ANTLR lets the first of several alternatives bind tightest."""
+    """Return the rules that replace a left-recursive one; operators bind tighter further down.
+
+    As in ANTLR, the first of several alternatives binds tightest.
+    """
     binary: list[str] = []
     prefixes: list[str] = []
     suffixes: list[str] = []
@@ -180,7 +188,7 @@ def _levels(grammar: Grammar, rule: Rule) -> str:
         some = elements[first : len(elements) - last]
         text = rule.text[some[0].span[0] : some[-1].span[1]] if some else ""
         kinds.get((first, last), others).append(text)
-    if not others:  # nothing that it ends with: reported as any other left recursion
+    if not others:  # no alternative ends the recursion: reported like any other left recursion
         return rule.text
     fresh = (n for k in count(2) if (n := f"{rule.name}{k}") not in grammar.by_name)
     name, texts = rule.name, []
@@ -204,7 +212,7 @@ def _choice(name: str, alternatives: list[str]) -> str:
 
 
 def _spliced(grammar: Grammar, changed: Mapping[str, list[_Splice]]) -> str:
-    """The text of a grammar with parts of rules replaced."""
+    """Return the text of a grammar with parts of rules replaced."""
     pieces = [grammar.gaps[0]]
     for rule, gap in zip(grammar.rules, grammar.gaps[1:], strict=True):
         text = rule.text

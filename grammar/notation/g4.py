@@ -1,6 +1,7 @@
-"""Reading a ``.g4`` file into data (`grammar.notation.model`), with Lark.
+"""Parser of ``.g4`` files: text to `grammar.notation.model`, with Lark.
 
 The dialect is that of ``grammar/KRL.g4``: no actions, predicates, modes, imports or left recursion.
+`grammar.notation.foreign` reads other styles.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from grammar.notation.unsupported import unsupported
 from grammar.notation.wellformed import problem
 from support.files.untrusted import read_bytes
 
-#: How deep elements may lie within one another. Whoever walks a rule may rely on it and recurse.
+#: How deep elements may be nested. Code that walks a rule relies on this limit and recurses.
 _MAX_DEPTH = 100
 
 
@@ -47,16 +48,19 @@ def _reader(start: str) -> Lark:
 
 @lru_cache(maxsize=16)
 def read(text: str, *, source: str = "grammar") -> Grammar:
-    """Read the text of a ``.g4`` file; the last few are kept, by text and ``source``.
+    """Return the grammar in the text of a ``.g4`` file; the last sixteen are cached.
 
-    Raises `GrammarError` with ``source`` and the line when the text is not of our style, or when a
-    rule is defined twice, refers to what does not exist, or is left-recursive.
+    Raises `GrammarError` with ``source`` and the line if the text is not in the dialect, or if a
+    rule is defined twice, refers to an unknown rule, or is left-recursive.
     """
     return checked(unchecked(text, source), source)
 
 
 def unchecked(text: str, source: str) -> Grammar:
-    """Read a text whose rules may refer to what does not exist; raises `GrammarError`."""
+    """Return the grammar in a text without checking what its rules refer to.
+
+    Raises `GrammarError` if the text is not in the dialect.
+    """
     tree = _parse(text, "start", source)
     header, *rest = tree.children
     options: tuple[tuple[str, str], ...] = ()
@@ -79,7 +83,7 @@ def unchecked(text: str, source: str) -> Grammar:
 
 
 def checked(grammar: Grammar, source: str) -> Grammar:
-    """The grammar itself; raises `GrammarError` where it is not well formed."""
+    """Return the grammar itself; raises `GrammarError` if it is not well-formed."""
     wrong = problem(grammar)
     if wrong:
         raise GrammarError(f"{source}:{wrong}")
@@ -87,7 +91,7 @@ def checked(grammar: Grammar, source: str) -> Grammar:
 
 
 def read_file(path: Path, reader: Callable[..., Grammar] = read) -> Grammar:
-    """Read a ``.g4`` file; raises `GrammarError` when it cannot be read."""
+    """Return the grammar in a file, parsed by ``reader``; raises `GrammarError` if that fails."""
     try:
         text = read_bytes(path).decode("utf-8")
     except OSError as error:
@@ -99,7 +103,7 @@ def read_file(path: Path, reader: Callable[..., Grammar] = read) -> Grammar:
 
 @lru_cache(maxsize=1 << 12)
 def read_rule(text: str) -> Rule:
-    """Read one rule, without the checks that need the whole grammar; raises `GrammarError`."""
+    """Return one rule, without the checks that need the whole grammar; raises `GrammarError`."""
     return _rule(_parse(text, "rule", "rule"), text, 0, "rule")
 
 
@@ -194,7 +198,7 @@ _ESCAPES = {"n": "\n", "r": "\r", "t": "\t", "b": "\b", "f": "\f"}
 
 
 def _characters(body: str) -> Iterator[tuple[str, bool]]:
-    """Characters of a quoted text or set, each with whether it was escaped."""
+    """Yield the characters of a literal or set, each with whether it was escaped."""
     i = 0
     while i < len(body):
         if body[i] != "\\":

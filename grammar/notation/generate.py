@@ -28,13 +28,13 @@ MARK = '"""Generated from grammar/KRL.g4 by ANTLR; do not edit (make grammar).""
 
 
 class GenerationError(Exception):
-    """ANTLR could not be run, or refused the grammar."""
+    """ANTLR could not be run, or it rejected the grammar."""
 
 
 def generate(grammar: Path, folder: Path) -> None:
     """Write lexer, parser, ``__init__`` and manifest for ``grammar`` into ``folder``.
 
-    Raises `GenerationError` where Java or ANTLR is missing or the grammar has errors.
+    Raises `GenerationError` if Java or ANTLR is missing or the grammar has errors.
     """
     with tempfile.TemporaryDirectory() as scratch:
         # ANTLR writes the path it was given into what it generates; a bare name keeps that stable
@@ -51,7 +51,7 @@ def generate(grammar: Path, folder: Path) -> None:
 
 
 def run_antlr(arguments: Sequence[str], folder: Path) -> None:
-    """Let ANTLR make Python in a folder. Raises `GenerationError`."""
+    """Let ANTLR generate Python code in a folder. Raises `GenerationError`."""
     tool = shutil.which(
         "antlr4",
         path=os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", ""))),
@@ -78,7 +78,7 @@ def run_antlr(arguments: Sequence[str], folder: Path) -> None:
 
 
 def check(grammar: Path = GRAMMAR, folder: Path = GENERATED) -> str | None:
-    """Why the generated parser is stale, or ``None`` where it is not. Needs no Java."""
+    """Return why the generated parser is stale, or ``None`` if it is up to date. Needs no Java."""
     try:
         manifest = (folder / MANIFEST).read_text(encoding="utf-8")
         pairs = (line.split("  ", 1) for line in manifest.splitlines())
@@ -94,7 +94,7 @@ def check(grammar: Path = GRAMMAR, folder: Path = GENERATED) -> str | None:
 
 
 def _data(grammar: Path) -> str:
-    """A module that makes what the grammar is read as."""
+    """Return the source of a module that builds the grammar without parsing it."""
     from grammar.notation.g4 import read  # brings Lark
 
     source = grammar.read_bytes().replace(b"\r\n", b"\n")

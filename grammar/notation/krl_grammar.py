@@ -10,10 +10,12 @@ from grammar.notation.model import Grammar
 
 
 def krl_grammar() -> Grammar:
-    """What KRL.g4 holds: as it was generated, or read anew where the file has changed since.
+    """Return the grammar in ``KRL.g4``.
 
-    Every command needs it when it starts, and to make a reader takes longer than to read. Raises
-    `grammar.notation.model.GrammarError` where the file is no grammar.
+    It comes from the generated module ``_generated/krl_grammar.py`` if that was made from the file
+    as it is now, because every command needs the grammar at its start and Lark takes long to build
+    a parser. Otherwise the file is parsed. Raises `grammar.notation.model.GrammarError` if the file
+    is no grammar.
     """
     source = GRAMMAR.read_bytes().replace(b"\r\n", b"\n")
     if hashlib.sha256(source).hexdigest() == generated.SHA256:

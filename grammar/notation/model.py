@@ -1,8 +1,8 @@
-"""The grammar as data: rules, alternatives and elements, each with the text it was written in.
+"""The grammar as data: rules, alternatives and elements, each with the text it was parsed from.
 
-Every rule keeps the exact text it was read from, and the text between rules is kept beside it, so
-printing is concatenation: comments and layout survive, and an edit (`grammar.notation.edits`)
-changes the text of one rule only. Spans are offsets into the rule's own text for the same reason.
+Every rule keeps its exact text, and a grammar keeps the text between its rules. Printing is
+therefore concatenation, comments and layout survive, and an edit (`grammar.notation.edits`) changes
+the text of one rule only. For the same reason spans are offsets into the text of the rule.
 """
 
 from __future__ import annotations
@@ -43,25 +43,25 @@ MAX_CODE_POINT = 0x10FFFF
 
 
 class GrammarError(Exception):
-    """The text is no grammar of our style; the message names the line."""
+    """The text is not a grammar of the supported dialect; the message names the line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A rule or token by its name; tokens begin with a capital letter."""
+    """A reference to a rule or token by its name; token names begin with a capital letter."""
 
     name: str
     span: Span = field(compare=False)
 
     @property
     def is_token(self) -> bool:
-        """Whether it names a token."""
+        """Whether the name is that of a token."""
         return self.name[0].isupper()
 
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """Quoted text, unescaped."""
+    """A quoted text, without its quotes and with escapes resolved."""
 
     text: str
     span: Span = field(compare=False)
@@ -69,7 +69,7 @@ class Literal:
 
 @dataclass(frozen=True, slots=True)
 class CharSet:
-    """One character out of sorted, disjoint ranges: ``[a-z]``, ``~["]``, ``'a'..'z'``, ``.``."""
+    """One character from sorted, disjoint ranges: ``[a-z]``, ``~["]``, ``'a'..'z'``, ``.``."""
 
     ranges: tuple[CharRange, ...]
     span: Span = field(compare=False)
@@ -97,7 +97,7 @@ Element = Reference | Literal | CharSet | Group | Repeat
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """A sequence of elements, possibly empty, with the label after ``#`` where there is one."""
+    """A sequence of elements, possibly empty, with its label (after ``#``) if it has one."""
 
     elements: tuple[Element, ...]
     label: str | None
@@ -106,7 +106,7 @@ class Alternative:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One parser or lexer rule with the exact text it was read from (name to ``;``)."""
+    """One parser or lexer rule with its exact text, from the name to ``;``."""
 
     name: str
     alternatives: tuple[Alternative, ...]
@@ -116,16 +116,16 @@ class Rule:
 
     @property
     def is_lexer(self) -> bool:
-        """Whether it is a rule of the lexer."""
+        """Whether this is a lexer rule."""
         return self.name[0].isupper()
 
     @property
     def is_skipped(self) -> bool:
-        """Whether the parser never sees this token."""
+        """Whether the parser never sees the token, because of ``skip`` or a channel."""
         return any(c == "skip" or c.startswith("channel(") for c in self.commands)
 
     def source_of(self, node: Element | Alternative) -> str:
-        """The text of a part of this rule, as written."""
+        """Return the text of a part of this rule, as written."""
         return self.text[node.span[0] : node.span[1]]
 
 
@@ -148,7 +148,7 @@ class Grammar:
 
     @property
     def start(self) -> str:
-        """Name of the first parser rule, where every program begins."""
+        """Name of the start rule, which is the first parser rule."""
         return next(rule.name for rule in self.rules if not rule.is_lexer)
 
     @property
@@ -158,7 +158,7 @@ class Grammar:
 
     @cached_property
     def text(self) -> str:
-        """The file, byte for byte where nothing was edited."""
+        """The text of the file, byte for byte if nothing was edited."""
         pieces = [self.gaps[0]]
         for rule, gap in zip(self.rules, self.gaps[1:], strict=True):
             pieces += (rule.text, gap)
@@ -166,12 +166,15 @@ class Grammar:
 
     @cached_property
     def sha256(self) -> str:
-        """Digest of the text, the key under which results are kept."""
+        """SHA-256 of the text, the key of cached results."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     @cached_property
     def literal_tokens(self) -> dict[str, str]:
-        """Token names by the literal that is their whole rule; upper case where case is ignored."""
+        """Token names by their literal, for tokens that are one literal.
+
+        The literal is in upper case if the grammar ignores case.
+        """
         found: dict[str, str] = {}
         for rule in self.rules:
             if rule.is_lexer and not rule.is_fragment and len(rule.alternatives) == 1:
@@ -181,17 +184,17 @@ class Grammar:
         return found
 
     def fold(self, text: str) -> str:
-        """``text`` as the lexer compares it."""
+        """Return ``text`` as the lexer compares it: in upper case if the grammar ignores case."""
         return text.upper() if self.case_insensitive else text
 
     def token_of(self, element: Reference | Literal) -> str:
-        """Name of the token that a reference or quoted text in a parser rule stands for."""
+        """Return the name of the token that a reference or literal in a parser rule stands for."""
         if isinstance(element, Reference):
             return element.name
         return self.literal_tokens[self.fold(element.text)]
 
     def with_rule(self, rule: Rule) -> Grammar:
-        """The same grammar with the rule of that name replaced."""
+        """Return the same grammar with the rule of that name replaced."""
         index = next(i for i, old in enumerate(self.rules) if old.name == rule.name)
         changed = replace(self, rules=(*self.rules[:index], rule, *self.rules[index + 1 :]))
         if not rule.is_lexer:  # the tokens are the same: no need to gather them again
@@ -200,7 +203,7 @@ class Grammar:
 
 
 def walk(node: Element | Alternative) -> Iterator[Element]:
-    """Every element below ``node``, outermost first, itself included."""
+    """Yield ``node`` and every element inside it, the outermost first."""
     match node:
         case Alternative(elements=elements):
             for element in elements:
@@ -217,7 +220,7 @@ def walk(node: Element | Alternative) -> Iterator[Element]:
 
 
 def reached(calls: Mapping[str, Collection[str]], name: str) -> set[str]:
-    """All names that ``name`` leads to by one call or more."""
+    """Return all names that can be reached from ``name`` by one call or more."""
     seen: set[str] = set()
     todo = [name]
     while todo:
@@ -228,7 +231,7 @@ def reached(calls: Mapping[str, Collection[str]], name: str) -> set[str]:
 
 
 def characters_of(element: Element) -> tuple[CharRange, ...] | None:
-    """The characters one of which an element reads; ``None`` where it reads something else."""
+    """Return the characters of which an element accepts one; ``None`` if it is no such element."""
     match element:
         case Literal(text=text) if len(text) == 1:
             return ((ord(text), ord(text)),)
@@ -242,7 +245,7 @@ def characters_of(element: Element) -> tuple[CharRange, ...] | None:
 
 
 def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
-    """The same characters as sorted, disjoint, non-touching ranges."""
+    """Return the same characters as sorted, disjoint, non-touching ranges."""
     merged: list[CharRange] = []
     for low, high in sorted(ranges):
         if merged and low <= merged[-1][1] + 1:
@@ -253,7 +256,7 @@ def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
 
 
 def complement(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
-    """All other characters, for ranges as `normalised` gives them."""
+    """Return the ranges of all other characters; ``ranges`` are as `normalised` returns them."""
     found: list[CharRange] = []
     start = 0
     for low, high in ranges:

@@ -1,7 +1,7 @@
-"""The text of rules and grammars changed in one place, for `grammar.notation.edits`.
+"""Changes of the text of a rule or grammar in one place, for `grammar.notation.edits`.
 
-Functions of a rule return its new text, those of a grammar the new grammar. Each raises
-`GrammarError` where the place is not there or the change does not fit.
+Functions that take a rule return its new text; functions that take a grammar return the new
+grammar. All raise `GrammarError` if the place does not exist or the change does not fit.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from grammar.notation.model import Grammar, GrammarError, Group, Repeat, Rule
 
 
 def with_optional(rule: Rule, at: Address, count: int) -> str:
-    """So many elements from an address on may be left out."""
+    """Return the text with the ``count`` elements from an address on made optional."""
     first = element_at(rule, at)
     last = element_at(rule, (*at[:-1], at[-1] + count - 1))
     old = rule.text[first.span[0] : last.span[1]]
@@ -29,7 +29,10 @@ def with_optional(rule: Rule, at: Address, count: int) -> str:
 
 
 def widened(rule: Rule, at: Address, text: str) -> str:
-    """Another alternative for an element, inside its brackets and its repetition."""
+    """Return the text with one more alternative for an element.
+
+    It goes inside the element's parentheses and suffix.
+    """
     element = element_at(rule, at)
     item, suffix = (
         (element.item, element.operator) if isinstance(element, Repeat) else (element, "")
@@ -40,13 +43,13 @@ def widened(rule: Rule, at: Address, text: str) -> str:
 
 
 def replaced(rule: Rule, at: Address, count: int, text: str) -> str:
-    """Other elements for so many from an address on."""
+    """Return the text with the ``count`` elements from an address on replaced."""
     last = element_at(rule, (*at[:-1], at[-1] + count - 1))
     return _spliced(rule, (element_at(rule, at).span[0], last.span[1]), text)
 
 
 def without_element(rule: Rule, at: Address) -> str:
-    """An element goes, with a blank beside it."""
+    """Return the text without an element and one blank beside it."""
     start, end = element_at(rule, at).span
     while start and rule.text[start - 1] == " " and rule.text[end : end + 1] in " \r\n)":
         start -= 1
@@ -56,7 +59,7 @@ def without_element(rule: Rule, at: Address) -> str:
 
 
 def with_insertion(rule: Rule, at: Address, text: str) -> str:
-    """Text in front of an element, or behind the last one."""
+    """Return the text with ``text`` inserted before an element, or after the last one."""
     sequence = sequence_at(rule, at[:-1])
     elements, number = sequence.elements, at[-1]
     if not 1 <= number <= len(elements) + 1:
@@ -71,7 +74,7 @@ def with_insertion(rule: Rule, at: Address, text: str) -> str:
 
 
 def with_alternative(rule: Rule, text: str) -> str:
-    """One alternative more, laid out as those that are there."""
+    """Return the text with one more alternative, laid out like the others."""
     body, semicolon = rule.text[:-1].rstrip(), rule.text[-1]
     gap = rule.text[len(body) : -1]
     indent = "\n    " if "\n" in rule.text else " "
@@ -79,7 +82,7 @@ def with_alternative(rule: Rule, text: str) -> str:
 
 
 def without_alternative(rule: Rule, number: int) -> str:
-    """One alternative, numbered from 1, goes."""
+    """Return the text without one alternative, numbered from 1."""
     if not 1 <= number <= len(rule.alternatives) or len(rule.alternatives) == 1:
         raise GrammarError(f"rule {rule.name} cannot lose alternative {number}")
     start, end = rule.alternatives[number - 1].span
@@ -100,7 +103,7 @@ def _spliced(rule: Rule, span: tuple[int, int], text: str) -> str:
 
 
 def with_rule(grammar: Grammar, after: Rule, text: str) -> Grammar:
-    """A rule more, behind another one."""
+    """Return the grammar with one more rule, placed after the rule ``after``."""
     rule = read_rule(text)
     if rule.name in grammar.by_name:
         raise GrammarError(f"rule {rule.name} exists already")
@@ -111,9 +114,11 @@ def with_rule(grammar: Grammar, after: Rule, text: str) -> Grammar:
 
 
 def with_token(grammar: Grammar, name: str) -> Grammar:
-    """A keyword more, in the alphabetical order of those that are called as they are written.
+    """Return the grammar with a token for one more keyword.
 
-    Without any it comes first of all tokens, since of equals the first one wins.
+    Its rule goes to its alphabetical place among the rules whose names are their own text. If there
+    are none, it comes before all other tokens, since the first of two rules that match the same
+    text wins.
     """
     if name in grammar.by_name:
         raise GrammarError(f"token {name} exists already")
@@ -133,12 +138,15 @@ def with_token(grammar: Grammar, name: str) -> Grammar:
 
 
 def _in_order(name: str) -> str:
-    """Words before longer words: C_PTP stands before CHAR."""
+    """Return a sort key that puts a word before longer ones: C_PTP before CHAR."""
     return name.replace("_", " ")
 
 
 def commented(grammar: Grammar, rule: Rule, text: str) -> Grammar:
-    """Another comment of a rule: what stands between it and the blank line above it."""
+    """Return the grammar with another comment of a rule.
+
+    The comment is what stands between the rule and the blank line above it.
+    """
     index = grammar.rules.index(rule)
     above, blank, _ = grammar.gaps[index].rpartition("\n\n")
     if not blank:
@@ -149,7 +157,7 @@ def commented(grammar: Grammar, rule: Rule, text: str) -> Grammar:
 
 
 def with_preamble(grammar: Grammar, text: str) -> Grammar:
-    """Another comment at the head of the grammar."""
+    """Return the grammar with another comment at its head."""
     found = re.match(r"\s*/\*.*?\*/\s*", grammar.gaps[0], re.DOTALL)
     rest = grammar.gaps[0][found.end() :] if found else grammar.gaps[0]
     if "*/" in text:
@@ -159,7 +167,7 @@ def with_preamble(grammar: Grammar, text: str) -> Grammar:
 
 
 def without_rule(grammar: Grammar, rule: Rule) -> Grammar:
-    """A rule goes, with the comment above it."""
+    """Return the grammar without a rule and the comment above it."""
     index = grammar.rules.index(rule)
     joined = grammar.gaps[index].rstrip("\n ") + grammar.gaps[index + 1]
     return replace(

@@ -1,11 +1,11 @@
-"""Features of ANTLR 4 that are not supported, each by its name in ANTLR."""
+"""Features of ANTLR 4 that the reader of grammars does not support, by their names in ANTLR."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 
-# What has other rules inside comes first; an action may have braces in braces, twice over.
+# Patterns that may contain others come first; an action may nest braces two levels deep.
 _ACTION = r"\{(?>[^{}]++|\{(?>[^{}]++|\{[^{}]*+\})*+\})*+\}"
 _PARTS = re.compile(
     rf"""(?P<comment>//[^\r\n]*|/\*(?>[^*]++|\*(?!/))*+(?:\*/|\Z))
@@ -43,7 +43,7 @@ _WHAT = {
 
 
 def unsupported(text: str) -> Iterator[tuple[int, str]]:
-    """Lines, from 1, and what on them is not understood; each kind once, where it comes first."""
+    """Yield the line, from 1, and the name of each unsupported feature, at its first occurrence."""
     found: dict[str, int] = {}
     for part in _PARTS.finditer(text):
         what = _WHAT.get(str(part.lastgroup))
@@ -55,9 +55,10 @@ def unsupported(text: str) -> Iterator[tuple[int, str]]:
 
 
 def without_decoration(text: str) -> str:
-    """A grammar with blanks for what changes nothing of what is read: actions, labels, options.
+    """Return a grammar with actions, labels and element options replaced by blanks.
 
-    A loop that ends as soon as it can, up to one character, is one over all others.
+    They do not change what is accepted. A non-greedy loop that ends at one character (``.*? 'x'``)
+    becomes a greedy one over all other characters.
     """
 
     def blank(part: re.Match[str]) -> str:

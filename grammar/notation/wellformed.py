@@ -1,4 +1,4 @@
-"""Well-formedness of a grammar: defined, productive rules without left recursion."""
+"""Well-formedness of a grammar: rules are defined, productive and not left-recursive."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from grammar.notation.model import (
     walk,
 )
 
-# Reserved words of ANTLR, which no rule may have as its name.
+# Reserved words of ANTLR; no rule may have one as its name.
 _RESERVED = frozenset(
     "catch channels finally fragment grammar import lexer locals mode options parser "
     "private protected public returns throws tokens".split()
 )
 
-#: Patterns of Python are compiled by recursion, some frames for each level.
+#: ``re`` compiles patterns recursively and needs a few frames for each level of nesting.
 _MOST_NESTED = 100
 
 
 def problem(grammar: Grammar) -> str | None:
-    """What is wrong with a grammar, as its line and one line of text, or ``None``."""
+    """Return the first error of a grammar as ``LINE: text``, or ``None`` if it is well-formed."""
     names = [rule.name for rule in grammar.rules]
     for index, name in enumerate(names):
         if name in names[:index]:
@@ -61,7 +61,7 @@ def problem(grammar: Grammar) -> str | None:
 
 
 def _too_deep(grammar: Grammar) -> str | None:
-    """A lexer rule whose fragments and brackets are nested too deeply, or ``None``."""
+    """Return the name of a lexer rule that is nested too deeply, or ``None``."""
     left = {rule.name: rule for rule in grammar.rules if rule.is_lexer}
     refers = {n: {r for a in rule.alternatives for r in _referred(a)} for n, rule in left.items()}
     depths: dict[str, int] = {}
@@ -75,7 +75,7 @@ def _too_deep(grammar: Grammar) -> str | None:
 
 
 def _brackets(alternative: Alternative) -> int:
-    """How deep brackets and repetitions lie within one another."""
+    """Return how deeply parentheses and repetitions are nested."""
     inner = (
         max(map(_brackets, element.alternatives))
         if isinstance(element, Group)
@@ -87,7 +87,7 @@ def _brackets(alternative: Alternative) -> int:
 
 
 def _line(grammar: Grammar, index: int, offset: int = 0) -> int:
-    """The line on which a rule, or what stands at ``offset`` in its text, begins."""
+    """Return the line on which a rule begins, or on which ``offset`` in its text lies."""
     pairs = zip(grammar.gaps[: index + 1], grammar.rules[: index + 1], strict=True)
     ahead = sum(gap.count("\n") + rule.text.count("\n") for gap, rule in pairs)
     return 1 + ahead - grammar.rules[index].text.count("\n", offset)
@@ -114,7 +114,7 @@ def _problem(grammar: Grammar, rule: Rule, element: Element) -> str | None:
 
 
 def _left_recursion(grammar: Grammar) -> list[str] | None:
-    """Names of rules on a left-recursive cycle, the first one repeated at the end, or ``None``.
+    """Return the rules on a left-recursive cycle, the first repeated at the end, or ``None``.
 
     Lexer rules may not be recursive at all.
     """
@@ -145,7 +145,7 @@ def _left_recursion(grammar: Grammar) -> list[str] | None:
 
 
 def _cycle(edges: Mapping[str, set[str]]) -> list[str] | None:
-    """A way through ``edges`` that comes back to where it began, or ``None``."""
+    """Return a cycle in the graph ``edges``, the first name repeated at its end, or ``None``."""
     done: set[str] = set()
     for root, first in edges.items():
         path = [root]
@@ -168,12 +168,18 @@ def _referred(alternative: Alternative) -> Iterator[str]:
 
 
 def shortest_lengths(grammar: Grammar) -> Mapping[str, float]:
-    """Tokens in the shortest sentence of each parser rule; infinite where there is none."""
+    """Return the length in tokens of the shortest sentence of each parser rule.
+
+    It is infinite if the rule has no finite sentence.
+    """
     return _lengths(rule for rule in grammar.rules if not rule.is_lexer)
 
 
 def _lengths(rules: Iterable[Rule]) -> Mapping[str, float]:
-    """By rule its shortest length, in tokens or characters; other rules count as one token."""
+    """Return the shortest length of each rule, in tokens or characters.
+
+    Rules that are not among ``rules`` count as one token.
+    """
     rules = tuple(rules)
     lengths: dict[str, float] = dict.fromkeys((rule.name for rule in rules), math.inf)
     changed = True
@@ -190,7 +196,7 @@ def _lengths(rules: Iterable[Rule]) -> Mapping[str, float]:
 
 
 def shortest_length(element: Element, lengths: Mapping[str, float]) -> float:
-    """Tokens in the shortest text of an element, given those of the rules."""
+    """Return the number of tokens in the shortest text of an element, given those of the rules."""
     match element:
         case Reference(name=name):
             return lengths[name] if name in lengths else float(name != "EOF")

@@ -1,1 +1,1 @@
-"""Reading text under any grammar: lexer, recogniser, parse trees, failures, ambiguity."""
+"""Parsing under any grammar: lexer, recogniser, parse trees, all failures of a file, ambiguity."""

@@ -1,8 +1,9 @@
-"""Ambiguity: does a text have two readings?
+"""Ambiguity: does a text have two parse trees?
 
-The recogniser follows all readings at once and forgets how it came to a configuration. Here the
-ways are kept: where one configuration is reached in two ways, the text between has two readings.
-Alternatives of one rule with the same tokens are one reading: the rule's automaton has them once.
+The recogniser follows all readings at once and keeps no record of how it reached a configuration.
+Here the predecessors are kept, as in a graph-structured stack. If a configuration that leads to the
+end has two of them, the text before it has two readings. Alternatives of one rule with the same
+tokens count as one reading, because the rule's deterministic automaton merges them.
 """
 
 from __future__ import annotations
@@ -15,17 +16,17 @@ from grammar.parser.recognizer import Recognizer, State
 
 _MOST_NODES = 200_000
 
-_Node = tuple[int, Configuration, bool]  # tokens read, where we are, whether a token was just read
+_Node = tuple[int, Configuration, bool]  # tokens read, configuration, whether a token was just read
 
 
 def is_ambiguous(recognizer: Recognizer, state: State, kinds: Sequence[int]) -> bool:
-    """Whether the tokens, read from ``state``, have two readings that end alike.
+    """Return whether the tokens, read from ``state``, have two readings with the same end.
 
-    Tokens that cannot be read have none.
+    Returns ``False`` if the tokens cannot be read.
     """
     network = recognizer.network
     before: dict[_Node, set[_Node]] = defaultdict(set)
-    # the tail goes below each stack as it is: written out, deep nesting would cost its depth a line
+    # the tail is shared below each stack: copying it would cost the nesting depth for each line
     layer: set[_Node] = {
         (0, (position, state.tail.pushed(reversed(stack.positions()))), True)
         for position, stack in state.core.kernel
@@ -54,7 +55,7 @@ def is_ambiguous(recognizer: Recognizer, state: State, kinds: Sequence[int]) -> 
                 reached.add(shifted)
         layer = reached
         if len(before) > _MOST_NODES:
-            return True  # nothing with one reading needs so many ways
+            return True  # no text with one reading needs so many nodes
     alive = set(layer)
     todo = list(layer)
     while todo:

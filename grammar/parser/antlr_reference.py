@@ -1,7 +1,7 @@
-"""The reference: ANTLR's generated parser, asked only whether it accepts.
+"""The reference parser: ANTLR's generated one, asked only whether it accepts a text.
 
-Slow (0.1 MB/s) and therefore not what the survey runs on; a disagreement between it and
-`grammar.parser.recognizer` is a defect of one of the two.
+It reads 0.1 MB/s, so the survey uses `grammar.parser.recognizer` instead. A text that only one of
+the two accepts shows a defect in one of them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Refusal:
 
 
 class _FirstError(ErrorListener):
-    """Keeps the first error; the lexer reports here what it cannot match."""
+    """An error listener that keeps the first error of lexer and parser."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -41,7 +41,7 @@ class _FirstError(ErrorListener):
 
 
 def refusal(text: str) -> Refusal | None:
-    """Why ANTLR refuses the text as a KRL module, or ``None`` where it accepts."""
+    """Return why ANTLR rejects the text as a KRL module, or ``None`` if it accepts."""
     # deferred: building ANTLR's tables costs a tenth of a second that few commands need
     from grammar._generated.KRLLexer import KRLLexer
     from grammar._generated.KRLParser import KRLParser
@@ -55,7 +55,7 @@ def refusal_by(
     rule: str,
     text: str,
 ) -> Refusal | None:
-    """Why a parser that ANTLR made refuses a text by one of its rules, or ``None``."""
+    """Return why a generated parser rejects a text as ``rule``, or ``None`` if it accepts."""
     errors = _FirstError()
     lexer = lexer_of(InputStream(text))
     lexer.removeErrorListeners()
@@ -74,5 +74,5 @@ def refusal_by(
 
 
 def accepts(text: str) -> bool:
-    """Whether ANTLR accepts the text as a KRL module."""
+    """Return whether ANTLR accepts the text as a KRL module."""
     return refusal(text) is None

@@ -1,18 +1,18 @@
-"""Coverage of a grammar by trees: rules, alternatives and branches.
+"""Coverage of a grammar by parse trees: rules, alternatives and branches.
 
-*Context-dependent branch coverage* (Ralf Lämmel, "Grammar Testing", FASE 2001) asks more than that
-every alternative of every rule occurs somewhere: every alternative has to occur at every place
-where its rule is referred to. Groups and parts with a suffix count as rules without a name: each
-alternative of a group is a branch, so are the absence and presence of an optional part, and no
-round, one round and more rounds of a loop.
+*Context-dependent branch coverage* (Ralf Lämmel, "Grammar Testing", FASE 2001) demands more than
+that every alternative of every rule occurs somewhere: every alternative has to occur at every
+reference to its rule. Groups and parts with a suffix count as rules without a name. Each
+alternative of a group is a branch. So are the absence and presence of an optional part, and no
+round, one round and several rounds of a loop.
 
-Rules that only choose between words (a name, which may be spelled like some keywords) would drown
-all else: at every place where a name stands, each of these words is a branch. Such rules can be
-named as *words*; their alternatives are then branches once, wherever they occur.
+Rules that only choose between words would dominate the count. A name, for example, may be spelled
+like some keywords, and each of these words would be a branch at every place of a name. Such rules
+can be passed as *words*; each of their alternatives is then one branch, wherever it occurs.
 
-A tree shows which rules and tokens each of its rules consists of. From these the way through the
-text of the rule is found (`grammar.parser.ordered_network`), the one that ANTLR takes where there
-are several.
+A tree shows the children of each rule. From these the path through the text of the rule is
+reconstructed (`grammar.parser.ordered_network`). If there are several, it is the one that ANTLR
+prefers.
 """
 
 from __future__ import annotations
@@ -46,12 +46,13 @@ _MOST_REMEMBERED = 100_000
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """One way to go at a place of a rule.
+    """One choice at a place of a rule.
 
-    ``taken`` is the number of an alternative, of the rule ``referred`` to there or, where that is
-    ``None``, of the group there; or it says how often a part with a suffix comes: ``absent`` or
-    ``present``, ``none``, ``one`` or ``more``. Of a rule of words it is 1 at every place; its
-    alternatives are branches of the rule itself, ``at`` no address.
+    ``taken`` is the number of an alternative: of the rule ``referred`` to at this place or, if that
+    is ``None``, of the group there. For a part with a suffix, ``taken`` says how often it occurs:
+    ``absent`` or ``present``, ``none``, ``one`` or ``more``. At a reference to a rule of words
+    ``taken`` is always 1; the alternatives of that rule are branches of the rule itself with an
+    empty address ``at``.
     """
 
     rule: str
@@ -62,20 +63,20 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How many there are, and how many of them were exercised."""
+    """The number of items, and how many of them were covered."""
 
     covered: int
     total: int
 
     @property
     def percent(self) -> float:
-        """From 0 to 100; of nothing, all is covered."""
+        """From 0 to 100; 100 if there are no items."""
         return 100 * self.covered / self.total if self.total else 100.0
 
 
 @dataclass(frozen=True, slots=True)
 class _Match:
-    """A rule matched with its children: the alternative, the branches within, and their places."""
+    """A rule matched with its children: alternative, branches taken, and address of each child."""
 
     alternative: int
     branches: frozenset[Branch]
@@ -84,7 +85,7 @@ class _Match:
 
 
 class GrammarCoverage:
-    """What the trees added so far exercise of one grammar; ``words`` as above."""
+    """The coverage of a grammar by the trees added so far; ``words`` as in the module docstring."""
 
     def __init__(self, grammar: Grammar, words: Collection[str] = ()) -> None:
         self.grammar = grammar
@@ -96,11 +97,11 @@ class GrammarCoverage:
         self._matches: dict[tuple[str, tuple[str, ...]], _Match] = {}
         self._alternatives: set[tuple[str, int]] = set()
         self._branches: set[Branch] = set()
-        #: How often parts with a suffix came, each outline of a tree counted once.
+        #: How many rounds each part with a suffix had; equal outlines in a tree count once.
         self.rounds: dict[tuple[str, Address], Counter[int]] = defaultdict(Counter)
 
     def add(self, tree: Tree) -> None:
-        """Count a tree of this grammar."""
+        """Count the branches of a tree, which must be one of this grammar."""
         names = tree.lexer.names
         known: dict[Outline, _Match] = {}
 
@@ -132,18 +133,18 @@ class GrammarCoverage:
 
     @property
     def rules(self) -> Share:
-        """Rules that occur."""
+        """Share of the rules that occur."""
         return Share(len({name for name, _ in self._alternatives}), len(self._rules))
 
     @property
     def alternatives(self) -> Share:
-        """Alternatives of rules that occur anywhere."""
+        """Share of the alternatives that occur anywhere."""
         total = sum(len(rule.alternatives) for rule in self._rules.values())
         return Share(len(self._alternatives), total)
 
     @property
     def branches(self) -> Share:
-        """Context-dependent branches."""
+        """Share of the context-dependent branches that are taken."""
         return Share(len(self._branches), len(self._all))
 
     @property
@@ -168,7 +169,7 @@ class GrammarCoverage:
         return [branch for branch in self._all if branch not in self._branches]
 
     def describe(self, branch: Branch) -> str:
-        """What is missing where a branch is not covered, in one line for a person."""
+        """Return what is missing if a branch is not covered, in one line for a person."""
         rule = self._rules[branch.rule]
         if not branch.at:
             return f"{rule.name} is never {_alternative(rule, branch.taken)}"
@@ -188,7 +189,7 @@ class GrammarCoverage:
 
     @cached_property
     def _all(self) -> Mapping[Branch, None]:
-        """In the order of the grammar."""
+        """All branches, in the order of the grammar."""
         return dict.fromkeys(branches(self.grammar, self._words))
 
     # --------------------------------------------------------------------------- matching
@@ -237,12 +238,15 @@ def _how_often(operator: str, rounds: int) -> str:
     return words[min(rounds - (operator == "+"), len(words) - 1)]
 
 
-# Steps up to a state, the last one first.
+# The steps to a state as a linked list, the last one first.
 _Steps = tuple["_Steps", Step] | None
 
 
 def _way(automaton: OrderedAutomaton, symbols: Sequence[str]) -> list[Step]:
-    """The steps from the first state to the last that read the symbols, the best of all."""
+    """Return the steps from the first to the last state that read the symbols.
+
+    If there are several paths, it is the one that ANTLR prefers.
+    """
     threads: list[tuple[int, _Steps]] = [(FIRST, None)]
     for symbol in symbols:
         threads = [
@@ -262,7 +266,7 @@ def _way(automaton: OrderedAutomaton, symbols: Sequence[str]) -> list[Step]:
 def _reached(
     automaton: OrderedAutomaton, threads: Sequence[tuple[int, _Steps]]
 ) -> Iterator[tuple[int, _Steps]]:
-    """Every state that is reached without reading, each once, the best way first."""
+    """Yield each state that is reached without reading once, by its preferred path."""
     seen = set()
     todo = list(reversed(threads))
     while todo:
@@ -278,7 +282,7 @@ def _reached(
 
 
 def branches(grammar: Grammar, words: Collection[str] = ()) -> Iterator[Branch]:
-    """Every context-dependent branch of a grammar; ``words`` as in `GrammarCoverage`."""
+    """Yield every context-dependent branch of a grammar; ``words`` as in `GrammarCoverage`."""
     for rule in grammar.rules:
         if rule.is_lexer:
             continue
@@ -294,7 +298,7 @@ def branches(grammar: Grammar, words: Collection[str] = ()) -> Iterator[Branch]:
 def _choices(
     grammar: Grammar, element: Element, words: Collection[str]
 ) -> Iterator[tuple[str | None, int | str]]:
-    """What can be taken at an element: see `Branch`."""
+    """Yield the pairs ``(referred, taken)`` of an element: see `Branch`."""
     match element:
         case Repeat(item=item, operator=operator):
             yield from ((None, word) for word in _HOW_OFTEN[operator])

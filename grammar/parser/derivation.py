@@ -1,18 +1,19 @@
 """Derivation of a text: which rules begin and end before each of its tokens.
 
-The automaton of `grammar.parser.lazy_automaton` again, with two differences to the recogniser. Its
-positions are those of the rules as they are written (`grammar.parser.ordered_network`), and a core
-keeps its configurations in the order in which ANTLR prefers the ways to them. Where two ways lead
-to one configuration, the better one is kept. So the first configuration after the last token has
-been reached by the way that ANTLR takes: the first one in the order of decisions, from left to
-right, of all that read the text.
+This uses the automaton of `grammar.parser.lazy_automaton`, with two differences to the recogniser.
+Its positions are those of the rules as they are written (`grammar.parser.ordered_network`), and a
+core keeps its configurations in the order in which ANTLR prefers the paths to them. If two paths
+lead to one configuration, the preferred one is kept. So the first configuration after the last
+token is reached by the derivation that ANTLR chooses: at each decision from left to right, the
+first alternative with which the text can be read.
 
-For each core and kind of token it is worked out once from which configuration each of the next core
-comes. A file is then read forward, remembering a core a token, and walked through backward from
-its last configuration: a few look-ups a token, whatever the depth of nesting.
+For each core and kind of token, back pointers are computed once: from which configuration each one
+of the next core comes. A file is read forward, remembering the core at each token, and then traced
+backward from its last configuration, as in the Viterbi algorithm. This costs a few look-ups for
+each token, whatever the depth of nesting.
 
-Where a rule is called as the last thing in its caller, both end as one. Such a call is marked and
-leaves nothing on the stack, so right recursion ends in one step, as deep as it may be.
+A rule that is called as the last element of its caller ends together with it. Such a tail call is
+marked and pushes nothing, so right recursion of any depth ends in one step.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ from grammar.parser.lexer import Lexer
 from grammar.parser.ordered_network import ordered_automaton
 from support.lazy_dataclass import dataclass
 
-_END = -1  # what comes after a rule, as a position
+_END = -1  # the position after the end of a rule
 
 
 class Begin(NamedTuple):
-    """A rule begins; where it ``is_last`` in the rule around it, that ends when this one does."""
+    """The begin of a rule; if it ``is_last``, the rule around it ends together with it."""
 
     rule: str
     is_last: bool
@@ -50,10 +51,10 @@ class Action(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Derivation:
-    """The reading of a text: the number of an action for each token, end of file included.
+    """The derivation of a text: an action number for each token, the end of file included.
 
-    ``is_unique`` means that no second way to read it was met. Two ways may still give one tree,
-    where a rule says the same twice.
+    ``is_unique`` means that no second derivation was met. Two derivations can still give the same
+    tree, if a rule has two equal alternatives.
     """
 
     actions: Sequence[int]
@@ -61,10 +62,10 @@ class Derivation:
 
 
 class _Way(NamedTuple):
-    """A way on from a position: to read a token, or to leave the rule (``kind`` is ``None``).
+    """A step from a position: read a token, or leave the rule (``kind`` is ``None``).
 
-    Reading leads to the position ``target`` with ``returns`` pushed on the stack, outermost first.
-    ``is_sole`` says whether no other way does the same.
+    After reading, the position is ``target`` and ``returns`` have been pushed, the outermost first.
+    ``is_sole`` means that no other step has the same effect.
     """
 
     kind: int | None
@@ -78,7 +79,7 @@ _Move = tuple[str, int] | None  # a symbol and the position after it, or the end
 
 
 class _Rules:
-    """The rules of a grammar as written, positions numbered across rules."""
+    """The rules of a grammar as they are written; positions are numbered across rules."""
 
     def __init__(self, grammar: Grammar, lexer: Lexer) -> None:
         self._kind_of = lexer.kind_of
@@ -99,11 +100,11 @@ class _Rules:
         self._on: dict[tuple[int, int], list[_Way]] = {}
 
     def ends(self, position: int) -> bool:
-        """Whether the rule may end at a position."""
+        """Return whether the rule may end at a position."""
         return any(way.kind is None for way in self.ways(position))
 
     def on(self, position: int, kind: int) -> list[_Way]:
-        """The ways on from a position that read this kind of token or leave the rule."""
+        """Return the steps from a position that read this kind of token or leave the rule."""
         found = self._on.get((position, kind))
         if found is None:
             found = [way for way in self.ways(position) if way.kind in (kind, None)]
@@ -111,7 +112,7 @@ class _Rules:
         return found
 
     def ways(self, position: int) -> list[_Way]:
-        """All ways on from a position, calls followed, best first."""
+        """Return all steps from a position with calls followed, the preferred ones first."""
         found = self._ways.get(position)
         if found is None:
             met: Counter[int] = Counter()
@@ -124,9 +125,9 @@ class _Rules:
     def _follow(
         self, position: int, steps: Steps, is_sole: bool, met: Counter[int]
     ) -> Iterator[_Way]:
-        """Ways on from one position of a rule; ``met`` counts how often each was come to."""
+        """Yield the steps from a position of a rule; ``met`` counts visits to each position."""
         met[position] += 1
-        if met[position] > 1:  # by rules that read nothing; what they lead to is known already
+        if met[position] > 1:  # reached again by rules that read nothing; already followed
             return
         for move in self._moves[position]:
             if move is None:
@@ -152,7 +153,7 @@ class _Rules:
 
 
 def _merged(moves: Sequence[tuple[str, list[_Move]]]) -> list[int]:
-    """For each position the first one that can continue in the same ways, in the same order."""
+    """Return for each position the first one with the same continuations in the same order."""
     same = list(range(len(moves)))
     while True:
         known: dict[object, int] = {}
@@ -166,7 +167,7 @@ def _merged(moves: Sequence[tuple[str, list[_Move]]]) -> list[int]:
 
 
 class Deriver(Automaton):
-    """Derives the programs of one grammar; remembers what it has worked out."""
+    """Derives the programs of one grammar; caches the automaton and its back pointers."""
 
     _kernel = tuple
 
@@ -175,13 +176,13 @@ class Deriver(Automaton):
         self._rules = _Rules(grammar, lexer)
         self.actions: list[Action] = []  # by their numbers
         self._numbers: dict[Action, int] = {}
-        # for each core and kind, and each configuration after it: the place of the configuration
-        # before it, the number of the action between, and whether that is the only way
+        # back pointers: for each core, token kind and configuration of the next core, the index of
+        # the configuration it comes from, the number of the action, and whether it is the only one
         self._back: dict[Core, dict[int, tuple[tuple[int, int, bool], ...]]] = {}
         self._start = self._core(((self._rules.start, self._bottom),))
 
     def derive(self, kinds: Sequence[int]) -> Derivation | None:
-        """The reading of a text, given by its token kinds; ``None`` where it is no program."""
+        """Return the derivation of a text, given by its token kinds; ``None`` if it is invalid."""
         core, tail = self._start, self._no_tail
         trail: list[Core] = []
         for kind in kinds:
@@ -222,7 +223,7 @@ class Deriver(Automaton):
                 core.floor = min(core.floor, stack.depth)
 
     def _targets(self, core: Core, kind: int) -> list[Configuration]:
-        """The configurations after one more token, each once, best first."""
+        """Return the configurations after one more token, the preferred ones first."""
         found: dict[Configuration, tuple[int, int, bool]] = {}
         on = self._rules.on
         for place, (position, stack) in enumerate(core.kernel):

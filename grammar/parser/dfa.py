@@ -1,9 +1,9 @@
-"""Deterministic automata over characters: from lexer rules to one longest-match pattern.
+"""Deterministic finite automata over characters: lexer rules become one longest-match pattern.
 
-ANTLR's lexer takes the longest match. Python's ``re`` takes the first alternative that works. The
-union of all lexer rules is therefore made deterministic first; from a deterministic automaton a
-pattern can be written whose greedy choice is the longest match, because at every point the next
-character decides the way.
+ANTLR's lexer takes the longest match; Python's ``re`` takes the first alternative that matches. The
+union of all lexer rules is therefore made deterministic (subset construction) and minimal. From the
+result a pattern is written whose greedy match is the longest one, because in a deterministic
+automaton the next character always decides which branch to take.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ from grammar.notation.model import (
 )
 from support.lazy_dataclass import dataclass
 
-#: Character ranges that differ by case in ASCII; ANTLR's caseInsensitive adds the other case.
+#: Distance of the two cases of an ASCII letter; ANTLR's ``caseInsensitive`` adds the other case.
 _CASE_OFFSET = ord("a") - ord("A")
 
 
 @dataclass(frozen=True, slots=True)
 class CharAutomaton:
-    """A minimal deterministic automaton; state 0 is the start.
+    """A minimal deterministic finite automaton; state 0 is the start.
 
-    ``edges[state]`` maps the following state to the characters that lead there.
+    ``edges[state]`` maps each next state to the characters that lead to it.
     """
 
     edges: tuple[Mapping[int, tuple[CharRange, ...]], ...]
     accepting: frozenset[int]
 
     def longest(self, text: str, start: int) -> int:
-        """Where the longest match from ``start`` ends; ``start`` itself where nothing matches."""
+        """Return where the longest match from ``start`` ends; ``start`` if nothing matches."""
         state, end = 0, start
         for position in range(start, len(text)):
             code = ord(text[position])
@@ -63,7 +63,7 @@ class CharAutomaton:
 
 
 def both_cases(ranges: Iterable[CharRange]) -> tuple[CharRange, ...]:
-    """The ranges with the other case of every ASCII letter added."""
+    """Return the ranges with the other case of every ASCII letter added."""
     out = list(ranges)
     for low, high in list(out):
         for first, last, offset in (("A", "Z", _CASE_OFFSET), ("a", "z", -_CASE_OFFSET)):
@@ -74,7 +74,7 @@ def both_cases(ranges: Iterable[CharRange]) -> tuple[CharRange, ...]:
 
 
 class _Nfa:
-    """Thompson's construction; edges carry ranges, ``None`` is an empty step."""
+    """Thompson's construction; an edge carries character ranges, or ``None`` for an empty step."""
 
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar
@@ -133,7 +133,7 @@ class _Nfa:
         return end
 
     def closure(self, state: int) -> frozenset[int]:
-        """The states reached without reading; only for when all edges are there."""
+        """Return the epsilon closure of a state; call it only when all edges have been added."""
         found = self._closures.get(state)
         if found is None:
             seen = {state}
@@ -148,7 +148,7 @@ class _Nfa:
 
 
 def automaton_of(grammar: Grammar, rules: Sequence[Rule]) -> CharAutomaton:
-    """The minimal automaton that accepts what any of the lexer rules accepts."""
+    """Return the minimal automaton for the union of the lexer rules."""
     nfa = _Nfa(grammar)
     ends = frozenset([nfa.choice(((Reference(r.name, (0, 0)),) for r in rules), 0)])
     cuts = sorted(
@@ -206,24 +206,25 @@ def _minimal(table: list[list[int]], accepting: list[bool], cuts: list[int]) -> 
 
 
 def first_characters(automaton: CharAutomaton) -> tuple[CharRange, ...]:
-    """Characters with which some accepted text begins."""
+    """Return the characters with which some accepted text begins."""
     return normalised([r for ranges in automaton.edges[0].values() for r in ranges])
 
 
 def overlap(left: Sequence[CharRange], right: Sequence[CharRange]) -> bool:
-    """Whether two sets of characters share one."""
+    """Return whether two sets of characters intersect."""
     return any(a <= d and c <= b for a, b in left for c, d in right)
 
 
-#: States in a row; each is a group in the one before, and Python compiles groups by recursion.
+#: Longest path of states. Each state is a group inside the one before, and ``re`` compiles groups
+#: recursively.
 _LONGEST_WAY = 150
 
 
 def pattern_of(automaton: CharAutomaton) -> str | None:
-    """A pattern for ``re`` that matches the longest accepted text, never the empty one.
+    """Return a pattern for ``re`` that matches the longest accepted text, never the empty one.
 
-    ``None`` where the automaton has a cycle through more than one state: its longest match has no
-    such plain pattern; and where a way through it is longer than ``re`` can nest groups.
+    Returns ``None`` if the automaton has a cycle through several states, because no such pattern
+    exists for it, or if a path is longer than ``re`` can nest groups.
     """
     on_path: set[int] = set()
 
@@ -255,7 +256,7 @@ def _size(ranges: Sequence[CharRange]) -> int:
 
 
 def class_of(ranges: Sequence[CharRange]) -> str:
-    """The set of characters as ``re`` writes it."""
+    """Return a set of characters as a class of ``re``."""
 
     def one(code: int) -> str:
         return re.escape(chr(code)) if code < 128 else f"\\U{code:08x}"

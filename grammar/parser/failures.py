@@ -1,16 +1,18 @@
-"""All failures of a file, not only the first.
+"""Error recovery by lines: all failures of a file, not only the first.
 
-KRL is a language of lines, so reading continues with the next line after a failure. The question is
-in which state. Three guesses, the first that lets the next line be read wins:
+KRL is a language of lines, so after a failure reading continues with the next line. The state in
+which it continues is a guess. There are three, and the first in which the next line can be read is
+taken:
 
-1. the line was meant as the grammar has it, but for some tokens: the state after the line without
-   the shortest run of tokens at the failure (``FOR I=1 TO 9 STEP 2`` still opens its loop);
-2. the line is dropped: the state before it;
-3. the place is another than it seems, because something before it was not understood: a state in
-   which some line of some program begins (`LineStates`).
+1. The line was meant as the grammar has it, except for some tokens: the state after the line
+   without the shortest run of tokens at the failure. ``FOR I=1 TO 9 STEP 2`` still opens its loop
+   under a grammar without ``STEP``.
+2. The line is dropped: the state before it.
+3. The context is another one, because an earlier line was not understood: any state in which a line
+   of some program can begin (`LineStates`).
 
-Lines that can only be read because of guess 3, and the closers of openers that were dropped,
-*follow* from an earlier failure and are marked so.
+A line that can only be read because of guess 3, and a line that closes a block whose opening line
+was dropped, *follow* from an earlier failure and are marked so.
 """
 
 from __future__ import annotations
@@ -29,9 +31,9 @@ from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.sentences import Sentences
 from support.lazy_dataclass import dataclass
 
-# A failing line is tried again without 1, 2, 3 … tokens; on enormous lines only so far.
+# A failing line is tried again without 1, 2, 3 … tokens, up to this number.
 _LONGEST_GAP = 64
-# How many lines that say something decide where reading continues.
+# How many of the next lines, blank ones left out, decide where reading continues.
 _LINES_AHEAD = 4
 _MOST_REMEMBERED = 50_000
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -39,9 +41,9 @@ _LINE_END = re.compile(r"\r\n|\r|\n")
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """What failures of the same form share: the state a line begins in and its token kinds.
+    """What similar failures share: the state in which the line begins, and its token kinds.
 
-    ``index`` is the place of the offending token in ``kinds``.
+    ``index`` is the index of the offending token in ``kinds``.
     """
 
     before: Frames
@@ -51,10 +53,10 @@ class Form:
 
 @dataclass(frozen=True, slots=True)
 class FailureContext:
-    """What the grammar was doing at a failure.
+    """The rules that were being read at a failure.
 
-    ``rule`` is the innermost rule that cannot end there, ``rules`` the way to it from the start
-    rule, ``expected`` what could have come, as people read it, sorted.
+    ``rule`` is the innermost rule that cannot end there, ``rules`` the call chain to it from the
+    start rule, and ``expected`` the expected tokens as people read them, sorted.
     """
 
     rule: str
@@ -67,8 +69,9 @@ class Failure:
     """One line that cannot be read.
 
     ``line`` and ``column`` count from 1 (columns in characters), ``offset`` from 0. ``lexemes`` are
-    the texts of the line's tokens, ``form.index`` the offending one among them, ``state`` the state
-    before it. ``follows`` marks what only fails because an earlier line was not understood.
+    the texts of the line's tokens, ``form.index`` is the index of the offending one, and ``state``
+    is the state before it. ``follows`` means that the line only fails because an earlier one was
+    not understood.
     """
 
     line: int
@@ -88,7 +91,7 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class _Broken:
-    """How a line with these tokens fails in a given state, whatever file it is in."""
+    """How a line with these tokens fails in a given state, in any file."""
 
     form: Form
     state: State
@@ -96,7 +99,7 @@ class _Broken:
 
 
 class LineStates:
-    """States in which a line can begin, from the shortest programs through every rule."""
+    """The states in which a line can begin, found by the shortest programs through every rule."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         sentences = Sentences(recognizer.grammar)
@@ -107,7 +110,7 @@ class LineStates:
                 state = recognizer.start
                 for name in sentence:
                     following = recognizer.step(state, kind_of[name])
-                    if following is None:  # a rule that only fits with more around it
+                    if following is None:  # the shortest context does not fit this alternative
                         break
                     state = following
                     if kind_of[name] == recognizer.line_kind:
@@ -116,7 +119,7 @@ class LineStates:
 
 
 class FailureFinder:
-    """Finds the failures of files under one grammar; remembers lines it has seen."""
+    """Finds the failures of files under one grammar; caches the lines it has seen."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -136,7 +139,7 @@ class FailureFinder:
         return LineStates(self.recognizer)
 
     def find(self, text: str) -> list[Failure]:
-        """Failures in the order of the file; empty where the text is a program."""
+        """Return the failures of a text in order; empty if the text is a program."""
         lexer = self.recognizer.lexer
         lexemes = lexer.lexemes(text)
         kinds = self.recognizer.kinds_of(lexemes)
@@ -149,7 +152,7 @@ class FailureFinder:
         return list(self._failures(text, lexemes, kinds))
 
     def context(self, state: State) -> FailureContext:
-        """Rule, rule stack and expected set in the state before an offending token."""
+        """Return the rules being read, and the expected tokens, in the state before a failure."""
         key = (state.core, state.tail)
         found = self._contexts.get(key)
         if found is None:
@@ -165,8 +168,8 @@ class FailureFinder:
         ends = kinds.count(self.recognizer.line_kind)
         place = _Places(text, self.recognizer.lexer, starts, ends)
         spot = reader.spot(self.recognizer.start)
-        opened: list[Block] = []  # the blocks whose first lines were dropped
-        lost = False  # whether some dropped line may have changed the place we are at
+        opened: list[Block] = []  # the blocks whose opening lines were dropped
+        lost = False  # whether a dropped line may have opened a block
         for number, line in enumerate(lines):
             after = reader.after(spot, line)
             if after is not None:
@@ -201,7 +204,7 @@ class FailureFinder:
             state, index = self.recognizer.run(spot.state, kinds)
             assert index is not None
             mended = None
-            # something of the line has to stay: an empty line can be read nearly anywhere
+            # some tokens have to remain: an empty line can be read nearly anywhere
             widest = len(kinds) - index if index else len(kinds) - 2
             for gap in range(1, min(widest, _LONGEST_GAP + 1)):
                 after, failed = self.recognizer.run(state, kinds[index + gap :])
@@ -215,7 +218,7 @@ class FailureFinder:
         return found
 
     def _anchor(self, line: int) -> Spot | None:
-        """Where else this very line could be read."""
+        """Return the spot after this line in the first `LineStates` state that can read it."""
         try:
             return self._elsewhere[line]
         except KeyError:
@@ -226,7 +229,7 @@ class FailureFinder:
             return found
 
     def _resume(self, guesses: Sequence[Spot | None], ahead: list[int], *, lost: bool) -> Spot:
-        """The guess under which most of the next lines can be read, the first of equals."""
+        """Return the guess that lets most of the next lines be read; the first one on a tie."""
         key = (lost, *guesses, *ahead)
         found = self._resumed.get(key)
         if found is None:
@@ -244,7 +247,7 @@ class FailureFinder:
         return max(known, key=lambda spot: self._readable(spot, lines))
 
     def _readable(self, spot: Spot, lines: list[int]) -> int:
-        """How many of the lines can be read from ``spot``, those that cannot left out."""
+        """Return how many of the lines can be read in order from ``spot``, skipping the others."""
         count = 0
         for line in lines:
             after = self._reader.after(spot, line)
@@ -274,7 +277,7 @@ class FailureFinder:
 
 
 def _lead(lexemes: Sequence[str]) -> str:
-    """The word that says what a line is, in upper case."""
+    """Return the word that tells the kind of a line, in upper case."""
     words = [w.upper() for w in lexemes[:2]]
     if len(words) > 1 and words[0] in PREFIXES:
         return words[1]
@@ -282,11 +285,11 @@ def _lead(lexemes: Sequence[str]) -> str:
 
 
 class _Places:
-    """Line, column and offset of a token, given by the number of its line and its index in it.
+    """Line, column and offset of a token, given by its line number and its index in the line.
 
-    ``starts`` are the indices of the first token of each line and of what follows the last, and
-    ``ends`` is how many tokens are line ends. Only failing tokens are asked for: their offsets are
-    worked out from where their line begins in the text.
+    ``starts`` are the indices of the first token of each line and of the token after the last line;
+    ``ends`` is the number of tokens that are line ends. Only the positions of failing tokens are
+    needed, so they are computed on demand from where their line begins in the text.
     """
 
     def __init__(self, text: str, lexer: Lexer, starts: Sequence[int], ends: int) -> None:
@@ -294,7 +297,7 @@ class _Places:
         self._lexer = lexer
         self._starts = starts
         self._lines = [0, *(found.end() for found in _LINE_END.finditer(text))]
-        # where tokens hold line ends, or line ends are no tokens, all offsets have to be known
+        # if tokens contain line ends, or line ends are no tokens, offsets are computed for all
         self._offsets: list[int] | None = None
         if ends != len(self._lines) - 1 or not lexer.leaves_out_skipped:
             self._offsets = lexer.offsets_of_tokens(text)

@@ -1,20 +1,21 @@
-"""Cores and tails: the states of an automaton that is built as it is needed.
+"""A lazily built automaton: the states that recogniser and deriver share.
 
-A *configuration* is a position and the stack of positions to return to. The configurations after a
-token are interned as a `Core`, and the step from one core to the next is remembered, so that a file
-costs one dictionary look-up a token once its constructs have been met.
+A *configuration* is a position and the stack of positions to return to. The set of configurations
+after a token is interned as a `Core`, as the states of a lazy DFA are, and the transition from core
+to core is cached. So a file costs one dictionary look-up for each token, once its constructs have
+been met.
 
-What keeps the number of cores small: a core holds only the upper part of its stacks. The frames
-below, shared by all its configurations, stay apart in the *tail*, so the inside of an IF is one and
-the same core however deep the IF is nested. A core that can leave its own stacks is *open*; it
-takes frames back from the tail before it reads on.
+To keep the number of cores small, a core holds only the upper part of its stacks. The frames below,
+which all its configurations share, are kept apart in the *tail*. So the inside of an IF is the same
+core however deeply the IF is nested. A core from which a return can go below its own stacks is
+*open*; it takes frames back from the tail before the next token is read.
 
-Right recursion (``factor : NOT factor | primary``) leaves behind frames that can only pass a return
-on, one for each level and all of them reached by the first return. However many there are, they do
-what one of them does: a stack holds a few in a row, and no more.
+Right recursion (``factor : NOT factor | primary``) leaves frames that can only return, one for each
+level, and all of them are popped together. Any number of them behaves like one, so a stack keeps
+only a few in a row.
 
-What a position can read is not known here: see `grammar.parser.recognizer`, which asks whether a
-text is a program, and `grammar.parser.derivation`, which remembers how it is one.
+What can be read at a position is not known here. `grammar.parser.recognizer` asks whether a text is
+a program, and `grammar.parser.derivation` records how it is derived.
 """
 
 from __future__ import annotations
@@ -25,23 +26,23 @@ from collections.abc import Callable, Collection, Iterable
 from functools import cached_property
 from itertools import islice
 
-# Deep stacks within one line (nested parentheses) are cut as well, so that each level does not
-# become a core of its own.
+# Deep stacks within one line (nested parentheses) are cut as well, so that not every level of
+# nesting becomes a core of its own.
 _DEEP = 96
-# So many frames in a row that only pass a return on are kept. One would do; these are so many that
-# for anything that a person writes the stack has every rule at work.
+# How many frames in a row that only return are kept. One would do; with eight, the stack of any
+# text that a person writes still shows every rule being read.
 _LONGEST_RUN = 8
-# Deeper stacks are not interned, so that they go when the text does that nested so deep. No program
-# comes near; a hostile file would leave hundreds of megabytes behind for good.
+# Deeper stacks are not interned, so that they are freed with the text that needed them. No real
+# program comes near; a hostile file would otherwise occupy hundreds of megabytes for good.
 _DEEPEST_INTERNED = 10_000
 
 
 class Stack:
-    """An interned list of positions to return to; two stacks are equal when identical.
+    """An interned linked list of positions to return to; two stacks are equal if identical.
 
-    Those deeper than `_DEEPEST_INTERNED` are not interned: equal ones may differ there.
-    From the positions ``passing`` there is no way on but to return once more. ``run`` counts those
-    on top of the stack.
+    Stacks deeper than `_DEEPEST_INTERNED` are not interned, so equal ones may be distinct objects.
+    At the positions ``passing`` the only possible step is another return; ``run`` counts such
+    positions at the top of the stack.
     """
 
     __slots__ = ("above", "depth", "passing", "position", "rest", "run")
@@ -57,7 +58,7 @@ class Stack:
         self.above: dict[int, Stack] = {}
 
     def push(self, position: int) -> Stack:
-        """The stack with one more position on top, or one that returns to the same."""
+        """Return the stack with one more position on top, or an equivalent one."""
         found = self.above.get(position)
         if found is None:
             known = self._already(position) if self.run >= _LONGEST_RUN else None
@@ -67,7 +68,7 @@ class Stack:
         return found
 
     def _already(self, position: int) -> Stack | None:
-        """The stack down to where the run on top has this position, if it has."""
+        """Return the part of the stack that has this position on top, within the run at the top."""
         stack: Stack | None = self
         while stack is not None and stack.run:
             if stack.position == position:
@@ -76,14 +77,14 @@ class Stack:
         return None
 
     def pushed(self, positions: Iterable[int]) -> Stack:
-        """The stack with more positions on top, the last one the topmost."""
+        """Return the stack with more positions on top, the last one the topmost."""
         stack = self
         for position in positions:
             stack = stack.push(position)
         return stack
 
     def positions(self) -> list[int]:
-        """Positions from the top down."""
+        """Return the positions from the top down."""
         out = []
         stack = self
         while stack.rest is not None:
@@ -98,10 +99,10 @@ Tail = Stack
 
 
 class Core(dict[int, "Core"]):
-    """Some configurations. As a dictionary: token kind to the next core, where the tail stays.
+    """A set of configurations. As a dictionary, it maps a token kind to the next core.
 
-    Only steps that leave the tail alone are entries, so the plain look-up is always right.
-    ``floor`` is how deep returns reach into the stacks.
+    Only transitions that leave the tail unchanged are entries, so a look-up is always right.
+    ``floor`` is the lowest depth of the stacks that a return reaches.
     """
 
     __slots__ = ("absorbed", "floor", "is_open", "kernel", "pushes")
@@ -117,21 +118,22 @@ class Core(dict[int, "Core"]):
 
 
 class Automaton(ABC):
-    """Builds cores; what their configurations can read is for the classes that derive from it.
+    """Base class that builds cores; derived classes say what a configuration can read.
 
-    ``line_kind`` is the kind of token after which stacks are cut.
+    ``line_kind`` is the kind of token after which stacks are cut; ``passing`` are the positions at
+    which the only possible step is to return.
     """
 
     #: How a core keeps its configurations: as a set, or as a tuple where their order has a meaning.
     _kernel: Callable[[Iterable[Configuration]], Collection[Configuration]] = frozenset
-    #: How many ways to read a token are followed. More than that is a grammar with so many readings
-    #: that it is of no use; a token that would need them is not read. No limit by default.
+    #: How many configurations may follow a token. A grammar that needs more is too ambiguous to be
+    #: of use, and the token counts as unreadable. There is no limit by default.
     most_ways = sys.maxsize - 1
 
     def __init__(self, line_kind: int) -> None:
         self.line_kind = line_kind
         self._cores: dict[Collection[Configuration], Core] = {}
-        #: How many configurations its cores have: what it takes of memory goes with it.
+        #: Number of configurations in all cores; the memory used is proportional to it.
         self.configurations = 0
 
     @cached_property
@@ -144,13 +146,13 @@ class Automaton(ABC):
 
     @property
     def size(self) -> int:
-        """How many cores have been built so far."""
+        """Number of cores built so far."""
         return len(self._cores)
 
     def release(self) -> None:
-        """Break every circle in it, so that its memory is free as soon as nothing refers to it.
+        """Break all reference cycles, so that the memory is freed with the last reference.
 
-        Whoever reads on with it works the steps out once more.
+        The automaton can still be used; it computes its transitions again.
         """
         for core in self._cores.values():
             core.clear()
@@ -163,16 +165,16 @@ class Automaton(ABC):
             stack.above.clear()
 
     def _passing(self) -> Collection[int]:
-        """The positions from which there is no way on but to return."""
+        """Return the positions from which there is no way on but to return."""
         return frozenset()
 
     @abstractmethod
     def _close(self, core: Core) -> None:
-        """Work out whether the core is open, and its floor."""
+        """Compute whether the core is open, and its floor."""
 
     @abstractmethod
     def _targets(self, core: Core, kind: int) -> Iterable[Configuration]:
-        """The configurations after one more token."""
+        """Return the configurations after one more token."""
 
     def _step(self, core: Core, tail: Tail, kind: int) -> tuple[Core, Tail] | None:
         core, tail = self._settled(core, tail)
@@ -197,7 +199,7 @@ class Automaton(ABC):
         return following, tail.pushed(frames)
 
     def _settled(self, core: Core, tail: Tail) -> tuple[Core, Tail]:
-        """The same state with as many frames taken back as reading on needs."""
+        """Return the state with as many frames taken back from the tail as the next token needs."""
         while core.is_open and tail.rest is not None:
             frame, tail = tail.position, tail.rest
             absorbed = core.absorbed.get(frame)
@@ -225,9 +227,9 @@ class Automaton(ABC):
         return core
 
     def _cut(self, core: Core) -> tuple[Core, tuple[int, ...]]:
-        """The core without the frames that all its stacks share and no return has reached.
+        """Return the core without the frames that all its stacks share below its floor.
 
-        Returns it with those frames, the lowest first.
+        These frames are returned beside it, the lowest first.
         """
         stacks = [stack.positions()[::-1] for _, stack in core.kernel]
         shared = 0

@@ -1,8 +1,8 @@
-"""The lexer, derived from the lexer rules of the grammar as ANTLR reads them.
+"""The lexer, built from the lexer rules of a grammar with the semantics of ANTLR.
 
-Longest match first, then the order of the rules; what no rule matches is an ``ERROR`` token of one
-character. Two steps keep plain Python fast: one compiled pattern cuts the text into lexemes at C
-speed, and each distinct lexeme is classified once and remembered.
+The longest match wins, then the first rule; a character that no rule matches is an ``ERROR`` token.
+To be fast in plain Python, one compiled pattern cuts the text into lexemes, and each distinct
+lexeme is classified once and cached.
 """
 
 from __future__ import annotations
@@ -36,25 +36,25 @@ from grammar.parser.dfa import (
 #: Kinds below zero are not tokens of the grammar.
 SKIPPED = -1
 ERROR = -2
-#: What a lexer has instead of the kind of a token that it lacks; no lexeme is of it.
+#: Stands for a token that a lexer does not have; no lexeme is of this kind.
 ABSENT = -99
 #: The end of the file, in every lexer.
 EOF = 0
 
-# Memory stays flat on corpora of any size: long lexemes (strings) are not remembered, and the
-# memory starts afresh when point tables have filled it with numbers.
+# The cache stays bounded on corpora of any size: long lexemes (strings) are not cached, and the
+# cache is emptied when tables of points have filled it with numbers.
 _LONGEST_REMEMBERED = 48
 _MOST_REMEMBERED = 400_000
-# Python needs some 100 bytes for each comment of a row, to be able to go back: a row is cut here.
+# ``re`` keeps some 100 bytes for each skipped lexeme of a row, to backtrack; a row is cut here.
 _LONGEST_ROW = 50_000
 
 
-#: Place among the rules and kind: of two rules that match the same text the first one wins.
+#: Index of the rule, and kind: if two rules match the same text, the first one wins.
 _Ranked = tuple[int, int]
 
 
 class _Kinds(dict[str, int]):
-    """Kind by lexeme, filled as lexemes are met."""
+    """Token kind by lexeme, filled on demand."""
 
     __slots__ = ("fold", "literals", "others", "other_ranks")
 
@@ -79,7 +79,7 @@ class _Kinds(dict[str, int]):
         return kind
 
     def unreserved(self, lexeme: str) -> list[_Ranked]:
-        """What a lexeme is as no literal: one way, or none."""
+        """Return the kind of a lexeme if literals are left aside, as a list of at most one."""
         found = self.others.fullmatch(lexeme)
         return [self.other_ranks[found.lastindex - 1]] if found and found.lastindex else []
 
@@ -97,8 +97,8 @@ class _Kinds(dict[str, int]):
 class Lexer:
     """Cuts text into tokens.
 
-    ``names[kind]`` is the name of a token; kind 0 is ``EOF``. ``display[kind]`` is what a person
-    reads in an expected set: the quoted text of punctuation and keywords, else the name.
+    ``names[kind]`` is the name of a token; kind 0 is ``EOF``. ``display[kind]`` is the token as
+    people read it in an expected set: its text for punctuation and keywords, otherwise its name.
     """
 
     def __init__(self, grammar: Grammar) -> None:
@@ -122,8 +122,8 @@ class Lexer:
         fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
         self.kinds = _Kinds(literals, classify, ranks, fold)
 
-        # A literal that another token matches whole (a keyword that could be a name) adds nothing
-        # to where tokens end, and leaving it out keeps the automaton small.
+        # A keyword that also matches as a name does not change where tokens end; without it the
+        # automaton stays small.
         def is_other(rule: Rule) -> bool:
             found = classify.fullmatch(_only_literal(rule))
             return found is not None and ranks[(found.lastindex or 0) - 1][1] != SKIPPED
@@ -139,9 +139,9 @@ class Lexer:
         return kind, SKIPPED if rule.is_skipped else kind
 
     def _pattern_for(self, grammar: Grammar, rules: list[Rule]) -> re.Pattern[str] | CharAutomaton:
-        """The pattern that cuts lexemes, leaving out what is skipped where that is safe to do.
+        """Return the pattern that cuts lexemes; it also skips what the parser never sees if it can.
 
-        The automaton itself where no pattern says the same.
+        Returns the automaton itself if no pattern is equivalent to it (`pattern_of`).
         """
         skipped = [r for r in rules if r.is_skipped]
         tokens = [r for r in rules if not r.is_skipped]
@@ -151,8 +151,8 @@ class Lexer:
                 skip_pattern, token_pattern = pattern_of(skip), pattern_of(token)
                 if skip_pattern and token_pattern:
                     self._leaves_out_skipped = True
-                    # what follows matches anywhere, so nothing is tried again; possessive, a group
-                    # that fails half-way loses its place in Python 3.11.2
+                    # The rest matches anywhere, so there is no backtracking. The group is not
+                    # possessive, because Python 3.11.2 loses the position of one that fails.
                     return re.compile(
                         f"(?:{skip_pattern}){{0,{_LONGEST_ROW}}}"
                         f"({token_pattern}|(?={skip_pattern})|[\\s\\S]|\\Z)"
@@ -162,9 +162,9 @@ class Lexer:
         return re.compile(f"({everything}|[\\s\\S])") if everything else automaton
 
     def with_keyword(self, word: str) -> Lexer:
-        """The lexer of the same rules plus a keyword; kinds keep their numbers.
+        """Return the lexer with one more keyword; the kinds of all tokens keep their numbers.
 
-        ``word`` has to be a name to this lexer, so that reserving it moves no token's end.
+        ``word`` has to be a name to this lexer, so that reserving it changes no token boundary.
         """
         known = self._wider.get(word)
         if known is not None:
@@ -183,57 +183,57 @@ class Lexer:
         return wider
 
     def is_keyword(self, kind: int) -> bool:
-        """Whether the token is one word that the grammar reserves."""
+        """Return whether the kind is a reserved word."""
         return kind in self._keywords
 
     @cached_property
     def line_kind(self) -> int:
-        """The kind of a line end; `ABSENT` where line ends are skipped or are no token."""
+        """The kind of line ends; `ABSENT` if they are skipped or no token."""
         kind = self.kinds["\n"]
         return kind if kind > 0 else ABSENT
 
     @cached_property
     def name_kind(self) -> int:
-        """The kind of names: what most reserved words would be, were they not; or `ABSENT`."""
+        """The kind of names, or `ABSENT`: what most keywords would be if they were not reserved."""
         words = [*(self.display[kind] for kind in sorted(self._keywords)), "A", "a"]
         kinds = Counter(kind for word in words for _, kind in self.kinds.unreserved(word))
         return max((kind for kind in kinds if kind > 0), key=kinds.__getitem__, default=ABSENT)
 
     @cached_property
     def line_end(self) -> str:
-        """The token of line ends; empty without any."""
+        """The name of the line-end token; empty if there is none."""
         return "" if self.line_kind == ABSENT else self.names[self.line_kind]
 
     @cached_property
     def name(self) -> str:
-        """The token of names; empty without any."""
+        """The name of the token of names; empty if there is none."""
         return "" if self.name_kind == ABSENT else self.names[self.name_kind]
 
     @property
     def leaves_out_skipped(self) -> bool:
-        """Whether `lexemes` has tokens only."""
+        """Whether `lexemes` returns tokens only."""
         return self._leaves_out_skipped
 
     def lexemes(self, text: str) -> list[str]:
-        """The texts of the tokens in order; skipped ones may be among them."""
+        """Return the texts of the tokens in order, and skipped ones unless `leaves_out_skipped`."""
         if isinstance(self._pattern, CharAutomaton):
             return [text[start:end] for start, end in _spans(self._pattern, text)]
         found: list[str] = self._pattern.findall(text)
-        while found and not found[-1]:  # what is skipped at the end leads to no token
+        while found and not found[-1]:  # skipped text at the end of the file
             found.pop()
         if len(text) > _LONGEST_ROW and "" in found:  # a row that was cut
             return list(filter(None, found))
         return found
 
     def offsets(self, text: str, start: int = 0) -> Iterator[int]:
-        """Where each of the `lexemes` from ``start`` on begins in ``text``."""
+        """Yield the offset in ``text`` of each of the `lexemes` from ``start`` on."""
         if isinstance(self._pattern, CharAutomaton):
             return (begin for begin, _ in _spans(self._pattern, text, start))
         matches = self._pattern.finditer(text, start)
         return (found.start(1) for found in matches if found[1])
 
     def offsets_of_tokens(self, text: str) -> list[int]:
-        """Where each token begins in ``text``."""
+        """Return the offset of each token in ``text``."""
         if self._leaves_out_skipped:
             return list(self.offsets(text))
         pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
@@ -241,7 +241,7 @@ class Lexer:
 
 
 def _spans(automaton: CharAutomaton, text: str, start: int = 0) -> Iterator[tuple[int, int]]:
-    """Lexemes by the automaton itself, where no pattern says the same (`pattern_of`)."""
+    """Yield the spans of lexemes by running the automaton, for lexers without a pattern."""
     while start < len(text):
         end = max(automaton.longest(text, start), start + 1)
         yield start, end
@@ -255,7 +255,7 @@ def _only_literal(rule: Rule) -> str:
 
 
 def regex_of(grammar: Grammar, rule: Rule) -> str:
-    """A pattern for ``re`` with the language of a lexer rule; of whole lexemes."""
+    """Return a pattern for ``re`` that accepts the language of a lexer rule, for `fullmatch`."""
 
     def sequence(elements: tuple[Element, ...]) -> str:
         return "".join(map(element, elements))
@@ -284,7 +284,7 @@ _lexers: dict[tuple[str, ...], Lexer] = {}
 
 
 def lexer_of(grammar: Grammar) -> Lexer:
-    """The lexer of a grammar; grammars with the same lexer rules share one."""
+    """Return the lexer of a grammar; grammars with the same lexer rules share one."""
     key = (str(grammar.case_insensitive), *(r.text for r in grammar.rules if r.is_lexer))
     lexer = _lexers.get(key)
     if lexer is None:

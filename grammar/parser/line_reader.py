@@ -1,8 +1,8 @@
-"""Reading line by line: what a line does in a state is worked out once.
+"""Reading line by line, with the transition over a whole line cached.
 
-Real source repeats few kinds of line. Each is given a number, and the step from one state over a
-whole line to the next is remembered, so that reading a line known there costs one look-up, also
-where several readings of the same lines are weighed against each other (`grammar.parser.failures`).
+Real source repeats few kinds of line. Each kind gets a number, and the step from one state over a
+whole line to the next is cached. A line that was read in the same state before costs one look-up,
+also when several readings of the same lines are compared (`grammar.parser.failures`).
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ from grammar.parser.recognizer import Recognizer, State
 
 
 class Spot(dict[int, "Spot | None"]):
-    """A state between two lines; the same state is the same object.
+    """A state between two lines; equal states are the same object.
 
-    As a dictionary: number of a line to the spot after it, ``None`` where it cannot be read.
+    As a dictionary it maps the number of a line to the spot after it, or to ``None`` if the line
+    cannot be read there.
     """
 
     __slots__ = ("state",)
@@ -29,7 +30,7 @@ class Spot(dict[int, "Spot | None"]):
 
 
 class LineReader:
-    """Reads lines under one grammar. Numbers and spots hold until `forget`."""
+    """Reads lines under one grammar. Line numbers and spots are valid until `forget`."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -38,17 +39,20 @@ class LineReader:
         self._spots: dict[tuple[Core, Tail], Spot] = {}
 
     def __len__(self) -> int:
-        """How many lines and spots are remembered."""
+        """Return how many lines and spots are cached."""
         return len(self.kinds) + len(self._spots)
 
     def forget(self) -> None:
-        """Start afresh."""
+        """Empty the caches."""
         self.kinds.clear()
         self._numbers.clear()
         self._spots.clear()
 
     def numbers(self, kinds: Sequence[int]) -> list[int]:
-        """The lines of a file, given by its token kinds; the end of file is a line of its own."""
+        """Return the line numbers of a file given by its token kinds.
+
+        The end of file is a line of its own.
+        """
         known, kind = self._numbers, self.recognizer.line_kind
         found: list[int] = []
         start, last = 0, len(kinds) - 1
@@ -67,7 +71,7 @@ class LineReader:
         return found
 
     def spot(self, state: State) -> Spot:
-        """The spot of a state."""
+        """Return the spot of a state."""
         key = (state.core, state.tail)
         found = self._spots.get(key)
         if found is None:
@@ -75,7 +79,7 @@ class LineReader:
         return found
 
     def after(self, spot: Spot, line: int) -> Spot | None:
-        """The spot after a line, or ``None`` where the line cannot be read."""
+        """Return the spot after a line, or ``None`` if the line cannot be read."""
         try:
             return spot[line]
         except KeyError:

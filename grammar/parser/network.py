@@ -1,9 +1,9 @@
-"""Parser rules as a transition network: one deterministic automaton a rule.
+"""Parser rules as a recursive transition network: one deterministic automaton for each rule.
 
-A *position* is a state of one rule's automaton. From it the network reads a token, calls a rule and
-returns to another position of the same rule, or leaves the rule. Positions are small integers; the
-automaton of a rule is built once for its text and shared by every grammar that has that rule, so
-that a candidate edit costs one rule.
+A *position* is a state of the automaton of one rule. At a position the network reads a token, calls
+a rule and later returns to another position of the same rule, or leaves the rule. Positions are
+small integers. The automaton of a rule is built once for its text and shared by every grammar with
+that rule, so trying a candidate edit costs one automaton.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ Symbol = str  # the name of a token or a rule
 
 @dataclass(frozen=True, slots=True)
 class RuleAutomaton:
-    """States of one rule; 0 is its start. ``edges[state]`` maps a symbol to the next state.
+    """The minimal automaton of one rule; state 0 is its start.
 
-    ``places[state]`` are the addresses (`grammar.notation.edits`) of the elements before which the
-    rule may stand in that state; one past the last element stands for the end of a sequence.
+    ``edges[state]`` maps a symbol to the next state. ``places[state]`` are the addresses
+    (`grammar.notation.addresses`) of the elements that can come next in that state; the number of
+    the last element plus one stands for the end of a sequence.
     """
 
     edges: tuple[Mapping[Symbol, int], ...]
@@ -36,12 +37,12 @@ _Way = tuple[int, tuple[int, ...]]
 
 
 class Reach(dict[int, Sequence[_Way]]):
-    """What can be done from a position before its rule ends, calls followed.
+    """What can be done at a position before its rule ends, with calls followed.
 
-    As a dictionary: token kind to the ways it can be read, as the position after it and the
-    positions to return to; worked out when a kind is first asked for, for most never are. ``ends``
-    says whether the rule may end without reading, and ``rules`` names the rules that have a part in
-    all this.
+    As a dictionary it maps a token kind to the ways to read it: each is the position after the
+    token and the positions to return to. An entry is computed on its first use, because most kinds
+    are never asked for. ``ends`` says whether the rule may end without reading, and ``rules`` names
+    the rules involved.
     """
 
     __slots__ = ("_first", "_network", "_sites", "_steps", "ends", "rules")
@@ -49,7 +50,7 @@ class Reach(dict[int, Sequence[_Way]]):
     def __init__(
         self, network: Network, steps: Sequence[int], rules: frozenset[str], *, ends: bool
     ) -> None:
-        """``steps`` are the positions of the same rule reached without reading."""
+        """Create it; ``steps`` are the positions of the rule that are reached by empty steps."""
         super().__init__()
         self._network = network
         self._steps = steps
@@ -73,7 +74,7 @@ class Reach(dict[int, Sequence[_Way]]):
 
     @property
     def first(self) -> frozenset[int]:
-        """The token kinds that may come."""
+        """The token kinds that can come next (the FIRST set)."""
         if self._first is None:
             network = self._network
             shifts = (network.shifts[here] for here in self._steps)
@@ -83,7 +84,7 @@ class Reach(dict[int, Sequence[_Way]]):
 
     @property
     def sites(self) -> Sequence[_Way]:
-        """The positions reached without reading, and the positions to return to."""
+        """The positions reached without reading, each with the positions to return to."""
         if self._sites is None:
             network = self._network
             found: list[_Way] = []
@@ -101,11 +102,11 @@ class Reach(dict[int, Sequence[_Way]]):
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """The whole grammar, positions numbered across rules.
+    """The whole grammar, with positions numbered across rules.
 
-    ``shifts[p]`` maps a token kind to the next position, ``calls[p]`` lists (first position of the
-    called rule, position to return to), ``final[p]`` says whether the rule may end at ``p``, and
-    ``rule[p]`` names the rule ``p`` lies in.
+    ``shifts[p]`` maps a token kind to the next position. ``calls[p]`` lists pairs of the first
+    position of the called rule and the position to return to. ``final[p]`` says whether the rule
+    may end at ``p``, and ``rule[p]`` is the name of the rule to which ``p`` belongs.
     """
 
     lexer: Lexer
@@ -119,12 +120,12 @@ class Network:
     known: dict[int, Reach] = field(default_factory=dict, compare=False, repr=False)
 
     def passing(self) -> frozenset[int]:
-        """Positions from which there is no way on but to leave the rule."""
+        """Return the positions at which the only possible step is to leave the rule."""
         ways = zip(self.final, self.shifts, self.calls, strict=True)
         return frozenset(p for p, (f, s, c) in enumerate(ways) if f and not s and not c)
 
     def reach(self, position: int) -> Reach:
-        """What can be done from a position. A grammar with left recursion has no answer."""
+        """Return what can be done at a position. Does not end for a left-recursive grammar."""
         found = self.known.get(position)
         return self._reach(position) if found is None else found
 
@@ -144,7 +145,7 @@ class Network:
 
 
 def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
-    """Link the automata of all parser rules; ``lexer`` saves deriving it from the grammar."""
+    """Return the linked automata of all parser rules; ``lexer`` saves building it."""
     lexer = lexer or lexer_of(grammar)
     automata = {r.name: rule_automaton(grammar, r) for r in grammar.rules if not r.is_lexer}
     entry: dict[str, int] = {}
@@ -176,11 +177,11 @@ def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
 
 
 def with_rule(network: Network, grammar: Grammar, rule: Rule, lexer: Lexer) -> Network:
-    """The network with the automaton of one rule exchanged for that of its new text.
+    """Return the network with the automaton of one rule replaced by that of its new text.
 
-    Positions of all other rules, and the first one of this, keep their numbers; ``grammar`` already
-    has the new rule, and ``lexer`` numbers its tokens as the network's does. Costs far less than
-    linking anew, which is what makes trying thousands of edits possible.
+    All other rules keep their positions, and this one its first position. ``grammar`` already has
+    the new rule, and ``lexer`` numbers its tokens as the network does. This is far cheaper than
+    linking the network again, and makes it possible to try thousands of edits.
     """
     automaton = rule_automaton(grammar, rule)
     entry, first = network.entry, network.entry[rule.name]
@@ -211,7 +212,7 @@ _automata: dict[tuple[str, tuple[tuple[str, str], ...]], RuleAutomaton] = {}
 
 
 def rule_automaton(grammar: Grammar, rule: Rule) -> RuleAutomaton:
-    """The minimal automaton of one parser rule over the names of tokens and rules."""
+    """Return the minimal automaton of one parser rule over the names of tokens and rules."""
     names = _names(grammar, rule)
     key = (rule.text, tuple(sorted(names.items())))
     found = _automata.get(key)
@@ -225,11 +226,12 @@ def rule_automaton(grammar: Grammar, rule: Rule) -> RuleAutomaton:
 
 
 def exact_automata(grammar: Grammar, rule: Rule) -> Callable[[tuple[int, ...]], RuleAutomaton]:
-    """A rule from an address on, and from its start for the address of nothing.
+    """Return a function that gives the automaton of a rule from an address on.
 
-    Unlike in the minimal automaton, a state stands before an element only where the rule, as it is
-    written, can be there with what has been read; and nothing leads back to the start. The address
-    of a repetition and 0 is where another of its items may begin, with -1 it is behind one.
+    The empty address stands for the start of the rule. Unlike in the minimal automaton, a state
+    stands before an element only if the rule as written can be there after what has been read, and
+    no edge leads back to the start. In ``places``, the address of a repetition followed by 0 is the
+    place where another item may begin, followed by -1 the place after an item.
     """
     fragments = _Fragments(_names(grammar, rule), is_split=True)
     end = fragments.choice((a.elements for a in rule.alternatives), 0)
@@ -245,7 +247,7 @@ def exact_automata(grammar: Grammar, rule: Rule) -> Callable[[tuple[int, ...]], 
 
 
 def _names(grammar: Grammar, rule: Rule) -> dict[str, str]:
-    """The tokens that the quoted texts of a rule stand for."""
+    """Return the token names of the literals in a rule."""
     quoted = {e.text for e in _elements(rule) if isinstance(e, Literal)}
     return {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
 
@@ -262,9 +264,9 @@ def _elements(rule: Rule) -> Iterable[Element]:
 
 
 class _Fragments:
-    """Thompson's construction over symbols; ``None`` is an empty step.
+    """Thompson's construction over symbols; an edge with ``None`` reads nothing.
 
-    Alternatives begin in one state, or each in one of its own where they are to be ``is_split``.
+    Alternatives begin in one common state or, if ``is_split``, each in a state of its own.
     """
 
     def __init__(self, names: Mapping[str, str], *, is_split: bool = False) -> None:
@@ -306,7 +308,7 @@ class _Fragments:
                 before, after = self.state(), self.state()
                 self.edges[start].append((None, before))
                 end = self.element(item, before, address)
-                if self.is_split:  # where another item may begin, and behind one
+                if self.is_split:  # before another item, and after one
                     self.places.setdefault(before, []).append((*address, 0))
                     self.places.setdefault(end, []).append((*address, -1))
                 self.edges[end].append((None, after))
@@ -324,7 +326,7 @@ class _Fragments:
         return end
 
     def reachable(self, state: int) -> frozenset[int]:
-        """The states reached by empty steps; only for when all steps are there."""
+        """Return the epsilon closure of a state; call it only when all edges have been added."""
         found = self._reachable.get(state)
         if found is None:
             seen = {state}
@@ -345,9 +347,9 @@ def _subsets(
     *,
     is_apart: bool = False,
 ) -> tuple[list[dict[Symbol, int]], list[bool], list[set[tuple[int, ...]]]]:
-    """States with one way on for each symbol: their edges, whether each is final, their places.
+    """Return the states of the subset construction: edges, whether each is final, and places.
 
-    The start ``is_apart`` where nothing is to lead back to it.
+    If ``is_apart``, no edge leads back to the start.
     """
 
     def closure(states: Iterable[int]) -> frozenset[int]:
@@ -405,12 +407,12 @@ def _minimal(
 
 
 def may_be_empty(network: Network) -> frozenset[str]:
-    """Rules that may end without a token."""
+    """Return the rules that can be read without a token."""
     return _emptied(network, frozenset(), network.entry)
 
 
 def _emptied(network: Network, known: frozenset[str], rules: Iterable[str]) -> frozenset[str]:
-    """The ``known`` rules that may be empty, and those of ``rules`` that may be for that reason."""
+    """Return ``known`` and those of ``rules`` that may be empty given these."""
     found = set(known)
     while True:
         more = {r for r in rules if r not in found and _opening(network, r, found)[1]}
@@ -420,7 +422,7 @@ def _emptied(network: Network, known: frozenset[str], rules: Iterable[str]) -> f
 
 
 def _opening(network: Network, name: str, empty: Collection[str]) -> tuple[set[str], list[int]]:
-    """The rules that a rule may call before it has read a token, and where it may then end."""
+    """Return the rules that a rule may call before it reads a token, and where it may end then."""
     entry = network.entry[name]
     callees: set[str] = set()
     steps = [entry]
@@ -436,10 +438,11 @@ def _opening(network: Network, name: str, empty: Collection[str]) -> tuple[set[s
 def is_left_recursive(
     network: Network, changed: Iterable[str] | None = None, empty: frozenset[str] = frozenset()
 ) -> bool:
-    """Whether a rule can call itself before it has read a token: no simulation would end.
+    """Return whether a rule can call itself before it has read a token.
 
-    Where only the rules ``changed`` are other than in a network without such a rule, whose
-    `may_be_empty` is ``empty``, the others are looked at as far as these lead to them.
+    The simulation of such a network would not end. If only the rules ``changed`` differ from a
+    network without left recursion, whose `may_be_empty` is ``empty``, only rules that can be
+    reached from these are examined.
     """
     rules: Collection[str] = network.entry if changed is None else frozenset(changed)
     known = _emptied(network, empty.difference(rules), rules)
@@ -452,7 +455,7 @@ def is_left_recursive(
 def _reaches(
     network: Network, leading: dict[str, set[str]], empty: frozenset[str], name: str
 ) -> bool:
-    """Whether a name leads back to itself."""
+    """Return whether a rule can be reached from itself."""
     seen: set[str] = set()
     todo = [name]
     while todo:

@@ -1,9 +1,9 @@
-"""Parser rules as they are written: automata that keep the order and the places of the text.
+"""Parser rules as they are written: automata that keep the order and the addresses of the text.
 
-Where `grammar.parser.network` merges all that accepts the same, here every way through a rule is
-one way through its text. Steps out of a state are in the order in which ANTLR prefers them:
-alternatives as they are written, an optional part before its absence, one more round of a loop
-before its end. Of all ways to read something, ANTLR takes the first one in that order.
+The automata of `grammar.parser.network` are minimal; here every path through an automaton is one
+path through the text of the rule. The steps out of a state are in the order in which ANTLR prefers
+them: alternatives as they are written, an optional part before its absence, one more round of a
+loop before its end. Of all paths that read a text, ANTLR takes the first in this order.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from support.lazy_dataclass import dataclass
 #: States of every rule.
 FIRST, LAST = 0, 1
 
-#: What a step without a symbol means: an alternative begins, a part with a suffix begins, a round
-#: of it begins, the part ends.
+#: Meaning of a step without a symbol: an alternative begins, a part with a suffix begins, a round
+#: of it begins, or the part ends.
 Sign = OneOf["alternative", "part", "round", "end"]
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step to the state ``target``: over ``symbol``, the name of a token or a rule, or over none.
+    """A step to the state ``target`` that reads ``symbol``, a token or a rule, or nothing.
 
-    ``at`` is the address (`grammar.notation.addresses`) of what the step is about: of the element
-    for a symbol, of the alternative or of the element with the suffix for a ``sign``.
+    ``at`` is the address (`grammar.notation.addresses`) of the element with that symbol or, for a
+    ``sign``, of the alternative or the element with the suffix.
     """
 
     target: int
@@ -39,14 +39,14 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class OrderedAutomaton:
-    """``steps[state]`` are the steps out of a state in order, `FIRST` and `LAST` among them."""
+    """The automaton of a rule; ``steps[state]`` are the steps out of a state, preferred first."""
 
     steps: tuple[tuple[Step, ...], ...]
 
     def moves(self, state: int) -> list[tuple[str, int] | None]:
-        """What comes next from a state, best first: a symbol and the state after it.
+        """Return the symbols that can come next with the state after each, the preferred first.
 
-        ``None`` stands for the end of the rule. Each is given once, where it is best.
+        ``None`` stands for the end of the rule. Each move is listed once.
         """
         found: dict[tuple[str, int] | None, None] = {}
         seen = set()
@@ -67,14 +67,14 @@ class OrderedAutomaton:
 
 
 def ordered_automaton(grammar: Grammar, rule: Rule) -> OrderedAutomaton:
-    """The automaton of one parser rule."""
+    """Return the automaton of one parser rule."""
     building = _Building(grammar)
     building.choice(rule.alternatives, FIRST, LAST, ())
     return OrderedAutomaton(tuple(map(tuple, building.steps)))
 
 
 class _Building:
-    """Thompson's construction, each step where it comes in the text."""
+    """Thompson's construction that keeps the order of the text."""
 
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar

@@ -1,14 +1,14 @@
-"""From text to its parse tree, under any grammar, in a fraction of a second for a megabyte.
+"""The parser: from text to its parse tree, under any grammar, at more than a megabyte a second.
 
-`grammar.parser.derivation` finds which rules begin and end before each token. What results
-within a line is the same for every line with the same actions, so it is worked out once: the
-outlines of all that begins and ends on the line, and what stays open at its end or was open before.
-A file is put together from its lines, some look-ups and appends each. Nothing here or in what it
-rests on recurses over the text, so depth of nesting meets no limit.
+`grammar.parser.derivation` finds which rules begin and end before each token. The effect of a line
+is the same for every line with the same actions, so it is computed once: the outlines of all rules
+that begin and end on the line, and the rules that it opens or closes. A file is put together from
+its lines with a few look-ups and appends each. Nothing here recurses over the text, so the depth of
+nesting has no limit.
 
-Where a text has two readings the tree is that of ANTLR (see `grammar.parser.derivation`). A grammar
-in which a loop may go round without reading, which ANTLR refuses, has trees too; how often such a
-loop then goes round for nothing is not laid down.
+If a text has two readings, the tree is the one ANTLR builds (see `grammar.parser.derivation`). A
+grammar in which a loop can repeat without reading, which ANTLR rejects, has trees too; how many
+empty rounds such a loop has in the tree is not specified.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.tree import Outline, Tree
 from support.lazy_dataclass import dataclass
 
-# Memory stays flat on corpora of any size: lines that are built alike, and the outlines in them,
-# are remembered up to this number, and enormous lines not at all.
+# The caches of lines and outlines are bounded, and enormous lines are not cached at all.
 _MOST_REMEMBERED = 20_000
 _LONGEST_REMEMBERED = 1_000
 
@@ -42,13 +41,13 @@ class Stop:
     state: State
 
 
-#: What a line does to the open rules: ends the innermost (``None``) and those it is the last thing
-#: in, begins one within it that stays open, or adds to it a child that is complete.
+#: One effect of a line on the stack of open rules: end the innermost rule and the rules that end
+#: with it (``None``), begin a rule that stays open, or add a complete child to the innermost one.
 _Change = None | Begin | Outline | int
 
 
 class Parser:
-    """Parses texts under the grammar of a recogniser; remembers what it has worked out."""
+    """Parses texts under the grammar of a recogniser; caches the effects of lines."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -57,7 +56,7 @@ class Parser:
         self._outlines: dict[tuple[str, tuple[Outline | int, ...]], Outline] = {}
 
     def parse(self, text: str) -> Tree | Stop:
-        """The tree of a text, or where it stops being one of a program."""
+        """Return the tree of a text, or the first token at which it is no program."""
         lexer = self.recognizer.lexer
         lexemes = lexer.lexemes(text)
         kinds = self.recognizer.kinds_of(lexemes)
@@ -105,7 +104,7 @@ class Parser:
         return Outline(rules.pop().rule, tuple(children))
 
     def _lines(self, kinds: Sequence[int], actions: Sequence[int]) -> Iterator[tuple[int, ...]]:
-        """The actions of each line of a file, and of what follows the last one."""
+        """Yield the actions of each line of a file, and of the tokens after the last line end."""
         start, count, line_kind = 0, len(kinds), self.recognizer.line_kind
         while start < count:
             try:
@@ -128,7 +127,7 @@ class Parser:
         return found
 
     def _worked_out(self, actions: Iterable[Action]) -> Iterator[_Change]:
-        """What the actions of a line come to."""
+        """Yield the effects of a line on the stack of open rules."""
         changes: list[_Change] = []
         begun: list[tuple[Begin, list[Outline | int]]] = []
         for steps, kind in actions:
@@ -141,7 +140,7 @@ class Parser:
                     (begun[-1][1] if begun else changes).append(self._shared(rule, tuple(inside)))
                     if not is_last:
                         break
-                else:  # what ends began on an earlier line
+                else:  # the rule that ends began on an earlier line
                     changes.append(None)
             (begun[-1][1] if begun else changes).append(kind)
         yield from changes
@@ -150,7 +149,7 @@ class Parser:
             yield from inside
 
     def _shared(self, rule: str, children: tuple[Outline | int, ...]) -> Outline:
-        """The one outline that is built like this."""
+        """Return the interned outline with this rule and these children."""
         found = self._outlines.get((rule, children))
         if found is None:
             found = self._outlines[rule, children] = Outline(rule, children)

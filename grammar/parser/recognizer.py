@@ -1,10 +1,10 @@
 """The recogniser: whether a text is a program, and at which token it stops being one.
 
-The grammar is simulated as a transition network (`grammar.parser.network`) with all its readings at
-once: the automaton of `grammar.parser.lazy_automaton`, where a core is the set of all
-configurations that are possible after a token. Because every reading is kept, it stops at the first
-token that no valid program could have there, and what it could have gone on with is the exact
-expected set.
+The grammar is simulated as a recursive transition network (`grammar.parser.network`) with all its
+readings at once. The states are those of `grammar.parser.lazy_automaton`; a core is the set of all
+configurations that are possible after a token. Because every reading is kept, the recogniser stops
+at the first token that no valid program can have there, and the tokens that could come instead are
+the exact expected set.
 """
 
 from __future__ import annotations
@@ -25,18 +25,14 @@ Frames = tuple[tuple[int, ...], ...]
 
 
 class State(NamedTuple):
-    """Where the recogniser stands: a core and the frames below it."""
+    """A state of the recogniser: a core and the frames below it."""
 
     core: Core
     tail: Tail
 
 
 class Recognizer(Automaton):
-    """Recognises the programs of one grammar; remembers what it has worked out.
-
-    The network is made when it is first needed: a text that `grammar.parser.parse` can read needs
-    none.
-    """
+    """Recognises the programs of one grammar; caches the automaton it builds."""
 
     def __init__(self, grammar: Grammar, network: Network | None = None) -> None:
         self.grammar = grammar
@@ -59,17 +55,17 @@ class Recognizer(Automaton):
 
     @cached_property
     def empty_rules(self) -> frozenset[str]:
-        """Rules that may end without a token."""
+        """Rules that can be read without a token."""
         return may_be_empty(self.network)
 
     # ------------------------------------------------------------------------ reading
 
     def kinds(self, text: str) -> list[int]:
-        """Token kinds of a text, end of file included, skipped tokens left out."""
+        """Return the token kinds of a text, without skipped tokens and with the end of file."""
         return self.kinds_of(self.lexer.lexemes(text))
 
     def kinds_of(self, lexemes: Iterable[str]) -> list[int]:
-        """Token kinds of `Lexer.lexemes`, end of file included, skipped tokens left out."""
+        """Return the token kinds of lexemes, without skipped tokens and with the end of file."""
         kinds = list(map(self.lexer.kinds.__getitem__, lexemes))
         if SKIPPED in kinds:
             kinds = [kind for kind in kinds if kind != SKIPPED]
@@ -77,14 +73,14 @@ class Recognizer(Automaton):
         return kinds
 
     def accepts(self, text: str) -> bool:
-        """Whether the text is a program."""
+        """Return whether the text is a program."""
         return self.run(self.start, self.kinds(text))[1] is None
 
     def run(self, state: State, kinds: Sequence[int]) -> tuple[State, int | None]:
         """Read tokens from ``state``.
 
-        Returns the state after them and ``None``, or the state before the first token that no
-        program could have there and that token's index.
+        Returns the state after them and ``None``; or, if a token cannot come in any program, the
+        state before it and its index.
         """
         core, tail = state.core, state.tail
         following = iter(kinds)
@@ -99,55 +95,58 @@ class Recognizer(Automaton):
         return State(core, tail), None
 
     def step(self, state: State, kind: int) -> State | None:
-        """The state after one more token, or ``None`` where no program has it there."""
+        """Return the state after one more token, or ``None`` if the token cannot come there."""
         stepped = self._step(state.core, state.tail, kind)
         return None if stepped is None else State(*stepped)
 
     def expected(self, state: State) -> frozenset[int]:
-        """Every token kind that some program has next."""
+        """Return the token kinds that can come next in some program."""
         core = self._settled(state.core, state.tail)[0]
         return frozenset[int]().union(*(reach.first for reach, _ in self._ways[core]))
 
     def frames(self, state: State) -> Frames:
-        """The state as data: see `Frames`."""
+        """Return the state as plain data: see `Frames`."""
         below = state.tail.positions()
         return tuple(sorted((p, *stack.positions(), *below) for p, stack in state.core.kernel))
 
     def restore(self, frames: Frames) -> State:
-        """The state that `frames` describes, in a recogniser of the same grammar."""
+        """Return the state that `frames` describes; it may come from another recogniser.
+
+        Both recognisers must have the same grammar.
+        """
         kernel = frozenset((p, self._bottom.pushed(reversed(below))) for p, *below in frames)
         return State(self._core(kernel), self._no_tail)
 
     def sites(self, state: State) -> frozenset[Configuration]:
-        """Every configuration the state stands for, calls and returns followed."""
+        """Return the configurations of a state with calls and returns followed."""
         core = self._settled(state.core, state.tail)[0]
         return frozenset(self._sites(core))
 
     def at(self, configuration: Configuration, state: State) -> State:
-        """A state of one configuration, over the frames that lie below ``state`` when settled."""
+        """Return a state with one configuration, over the frames below the settled ``state``."""
         _, tail = self._settled(state.core, state.tail)
         return State(self._core(frozenset([configuration])), tail)
 
     def settled(self, state: State) -> State:
-        """The state with all frames in its core that it can return to before it reads on."""
+        """Return the state with every frame in its core that a return can reach before it reads."""
         core, tail = self._settled(state.core, state.tail)
         return state if core is state.core else State(core, tail)
 
     def state_of(self, configurations: Iterable[Configuration]) -> State:
-        """The state of some configurations, with nothing below them."""
+        """Return the state with these configurations and no frames below them."""
         return State(self._core(frozenset(configurations)), self._no_tail)
 
     def at_rule(self, rule: str) -> State:
-        """The state at the start of a rule, nothing around it."""
+        """Return the state at the start of a rule, without callers."""
         kernel = frozenset([(self.network.entry[rule], self._bottom)])
         return State(self._core(kernel), self._no_tail)
 
     def ends(self, state: State) -> bool:
-        """Whether what was read from ``state`` on can end there, nothing more being needed."""
+        """Return whether the sentence that began without callers can end in this state."""
         return self._settled(state.core, state.tail)[0].is_open
 
     def ways(self, core: Core) -> Sequence[tuple[Reach, Stack]]:
-        """What can be done from each configuration of a core, returns followed, and its stack."""
+        """Return what each configuration of a core can do, returns followed, with its stack."""
         return self._ways[core]
 
     # ---------------------------------------------------------------------- the automaton
@@ -156,9 +155,9 @@ class Recognizer(Automaton):
         return self.network.passing()
 
     def _close(self, core: Core) -> None:
-        """Follow returns from the kernel: what may come from where, and how deep returns reach.
+        """Follow the returns from the kernel: what can come next, and how deep returns reach.
 
-        What calls lead to is the same for every stack: `Network.reach` knows.
+        What a call leads to is the same for every stack; `Network.reach` caches it.
         """
         configurations = list(core.kernel)
         seen = set(configurations)
@@ -180,13 +179,13 @@ class Recognizer(Automaton):
                 configurations.append(returned)
 
     def _targets(self, core: Core, kind: int) -> Iterator[Configuration]:
-        """The configurations after one more token."""
+        """Yield the configurations after one more token."""
         for reach, stack in self._ways[core]:
             for target, returns in reach[kind]:
                 yield target, stack.pushed(returns)
 
     def _sites(self, core: Core) -> Iterator[Configuration]:
-        """Every configuration of a core, calls and returns followed; some more than once."""
+        """Yield the configurations of a core with calls and returns followed, with duplicates."""
         for reach, stack in self._ways[core]:
             for position, returns in reach.sites:
                 yield position, stack.pushed(returns)

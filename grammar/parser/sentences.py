@@ -1,7 +1,8 @@
-"""Sentences of a grammar: the shortest through a given place, and random ones.
+"""Sentences of a grammar: the shortest ones through a given rule, and random ones.
 
-A sentence is a list of token names; `Speller` turns it into text. The shortest sentences frame
-reproducers and show where lines may begin; the random ones feed the comparison with ANTLR.
+A sentence is a list of token names; `Speller` turns it into text. The shortest sentences surround
+the failing lines of reproducers and show in which states lines can begin. The random ones are used
+to compare the recogniser with ANTLR.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Sentences:
         return shortest_lengths(self.grammar)
 
     def shortest(self, rule: str) -> list[str]:
-        """Token names of the shortest sentence of ``rule``, ``EOF`` left out."""
+        """Return the token names of the shortest sentence of ``rule``, without ``EOF``."""
         return list(self._shortest(Reference(rule, (0, 0))))
 
     def _shortest(self, element: Element) -> Iterator[str]:
@@ -64,7 +65,10 @@ class Sentences:
 
     @cached_property
     def _frames(self) -> dict[str, tuple[list[str], list[str]]]:
-        """For each reachable rule the shortest tokens before and after it in a program."""
+        """For each reachable rule the shortest tokens before and after it in a program.
+
+        Found by a search like Dijkstra's over the calls between rules.
+        """
         frames: dict[str, tuple[list[str], list[str]]] = {self.grammar.start: ([], [])}
         todo = [self.grammar.start]
         while todo:
@@ -81,7 +85,7 @@ class Sentences:
         return frames
 
     def _calls(self, alternative: Alternative) -> Iterator[tuple[list[str], str, list[str]]]:
-        """Rules called in an alternative with the shortest tokens before and after each."""
+        """Yield the rules an alternative calls, with the shortest tokens before and after each."""
         parts = [list(self._shortest(e)) for e in alternative.elements]
         for i, element in enumerate(alternative.elements):
             left = [t for part in parts[:i] for t in part]
@@ -103,16 +107,16 @@ class Sentences:
 
     @property
     def reachable(self) -> list[str]:
-        """Names of the rules some program uses, nearest to the start first."""
+        """Names of the rules that can occur in a program, those nearest to the start rule first."""
         return sorted(self._frames, key=lambda n: sum(map(len, self._frames[n])))
 
     def frame(self, rule: str) -> tuple[list[str], list[str]]:
-        """The shortest tokens before and after ``rule`` in a program that uses it."""
+        """Return the shortest tokens before and after ``rule`` in a program that uses it."""
         before, after = self._frames[rule]
         return list(before), list(after)
 
     def through(self, rule: str) -> Iterator[list[str]]:
-        """Programs that use every alternative and every optional part of ``rule``, one each."""
+        """Yield a program for every alternative and every optional part of ``rule``."""
         before, after = self._frames[rule]
         for alternative in self._rules[rule].alternatives:
             for body in self._variants(alternative):
@@ -144,7 +148,7 @@ class Sentences:
     # --------------------------------------------------------------------------- random
 
     def random(self, chance: Random, size: int = 60) -> list[str]:
-        """Token names of a random program of some ``size`` tokens."""
+        """Return the token names of a random program of about ``size`` tokens."""
         budget = [size]
         out: list[str] = []
         self._random(Reference(self.grammar.start, (0, 0)), chance, budget, out)
@@ -185,7 +189,7 @@ class Sentences:
 
 
 class Speller:
-    """Spells tokens: the quoted text where a token has one, else its shortest text."""
+    """Spells tokens: a literal token as its text, any other as its shortest text."""
 
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar
@@ -201,7 +205,7 @@ class Speller:
         text = "".join(self._spell(Reference(name, (0, 0))))
         kind = self.lexer.kind_of[name]
         chance = Random(name)
-        for _ in range(200):  # the shortest text may be a keyword or belong to an earlier rule
+        for _ in range(200):  # the shortest text may be a keyword, or match an earlier rule
             if self.lexer.kinds[text] == kind:
                 break
             text = "".join(self._spell(Reference(name, (0, 0)), chance))
@@ -235,7 +239,7 @@ class Speller:
             yield from self._spell(element, chance)
 
     def text(self, tokens: list[str]) -> str:
-        """The program with these tokens, one blank between two of a line."""
+        """Return the program with these tokens, with one blank between two on a line."""
         out: list[str] = []
         for token in tokens:
             sample = self.samples[token]

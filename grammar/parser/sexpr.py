@@ -1,10 +1,10 @@
-"""Trees as S-expressions: short enough to read, exact enough to test a grammar by.
+"""Parse trees as S-expressions, the expected results of the syntax cases.
 
-A rule is ``(rule child …)``, a token its text. What any reader knows is left out: tokens that the
-rule cannot do without, brackets, separators between two neighbours, line ends, and what read
-nothing. A rule that then has one child and nothing left out but line ends is not shown, only its
-child: ``X = 1 + A[2]`` is ``(assignment X (sum 1 + (variable A (index 2))))`` however many levels
-of precedence lie between.
+A rule is ``(rule child …)``, a token its text. Whatever a reader can infer is left out: tokens that
+the rule always has, brackets, separators between two children, line ends, and rules that read
+nothing. A rule that then has a single child is replaced by it, unless a token other than a line end
+was left out. So ``X = 1 + A[2]`` is ``(assignment X (sum 1 + (variable A (index 2))))``, however
+many levels of precedence lie between.
 
 The functions recurse over the depth of a tree: they are made for trees that people read.
 """
@@ -24,7 +24,7 @@ Expression = str | tuple["Expression", ...]
 _BRACKETS = frozenset("()[]{}")
 _SEPARATORS = frozenset(",.")
 _LINE_END = "NEWLINE"
-# an atom with blanks or parentheses in it stands in backquotes, which KRL does not have
+# an atom with blanks or parentheses is put in backquotes, which KRL does not have
 _ATOM = r"\"[^\"\n]*\"|`[^`\n]*`|[^\s()`\"]+"
 _LEXEME = re.compile(rf"\s*({_ATOM}|[()])")
 _PLAIN = re.compile(r"\"[^\"\n]*\"|[^\s()`\"]+")
@@ -32,11 +32,11 @@ _WIDTH = 88
 
 
 class ExpressionError(Exception):
-    """The text is no S-expression; the message says where."""
+    """The text is no S-expression; the message names the line."""
 
 
 class Shortener:
-    """Makes S-expressions of the trees of one grammar."""
+    """Makes S-expressions from the parse trees of one grammar."""
 
     def __init__(self, grammar: Grammar) -> None:
         fixed = frozenset(grammar.literal_tokens.values())
@@ -49,7 +49,7 @@ class Shortener:
         }
 
     def expression(self, tree: Tree) -> Expression:
-        """The tree of a program."""
+        """Return the S-expression of a tree."""
         return self._of(tree.root)
 
     def _of(self, node: ParseNode) -> Expression:
@@ -74,7 +74,7 @@ class Shortener:
 
 
 def _needed(grammar: Grammar, elements: Iterable[Element]) -> Iterator[str]:
-    """Names of the tokens that a sequence of elements always has itself."""
+    """Yield the names of the tokens that a sequence of elements always has itself."""
     for element in elements:
         match element:
             case Reference() if not element.is_token:
@@ -88,7 +88,7 @@ def _needed(grammar: Grammar, elements: Iterable[Element]) -> Iterator[str]:
 
 
 def _says_nothing(child: ParseNode | Token) -> bool:
-    """Whether it is line ends only, or the end of the file, or nothing at all."""
+    """Return whether a child consists only of line ends or the end of the file, or is empty."""
     if isinstance(child, Token):
         return child.kind in (_LINE_END, "EOF")
     names, kinds = child.tree.lexer.names, child.tree.kinds[child.first : child.stop]
@@ -102,7 +102,7 @@ def _with_neighbours(
 
 
 def _are_items(*children: ParseNode | Token | None) -> bool:
-    """Whether all are there, and none is a bracket or separator itself."""
+    """Return whether all children exist and none is a bracket or separator."""
     return all(
         isinstance(child, ParseNode)
         or (child is not None and child.text not in _BRACKETS | _SEPARATORS)
@@ -114,14 +114,14 @@ def _are_items(*children: ParseNode | Token | None) -> bool:
 
 
 def write(expression: Expression, width: int = _WIDTH) -> str:
-    """The expression as text, in lines of ``width`` where it is longer than one."""
+    """Return the expression as text, broken into lines if it is longer than ``width``."""
     return "\n".join(_lines(expression, width))
 
 
 def _lines(expression: Expression, width: int) -> Iterator[str]:
     flat = _flat(expression)
     inner = (i for i, e in enumerate(expression) if not isinstance(e, str))
-    # what identifies a rule, its name and the tokens it begins with, stays on the first line
+    # the name of the rule and the tokens it begins with stay on the first line
     lead = next(inner, None)
     if len(flat) <= width or lead is None:
         yield flat
@@ -132,7 +132,7 @@ def _lines(expression: Expression, width: int) -> Iterator[str]:
 
 
 def _inner_lines(children: Iterable[Expression], width: int) -> Iterator[str]:
-    """Each rule in lines of its own; the tokens between two rules share one."""
+    """Yield each rule on lines of its own; the tokens between two rules share one."""
     for are_tokens, run in groupby(children, lambda child: isinstance(child, str)):
         if are_tokens:
             yield " ".join(map(_flat, run))
@@ -148,7 +148,7 @@ def _flat(expression: Expression) -> str:
 
 
 def read(text: str) -> Expression:
-    """The expression that `write` wrote; raises `ExpressionError`."""
+    """Return the expression that `write` wrote; raises `ExpressionError`."""
     outer: list[list[Expression]] = []
     current: list[Expression] = []
     place = 0

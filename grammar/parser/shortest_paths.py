@@ -1,7 +1,8 @@
-"""Shortest ways through a transition network: into a state, and from it to the end of a program.
+"""Shortest paths through a transition network: into a state, and from it to the end of a program.
 
-Where `grammar.parser.sentences` derives from the rules as written, these are found on the network,
-so they lead to any state a recogniser has been in. Ways are lists of token kinds.
+`grammar.parser.sentences` derives from the rules as they are written. These paths are found on the
+network by Dijkstra's algorithm, so they lead to any state in which a recogniser has been. A path is
+a list of token kinds.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ _Way = tuple[int, ...]
 
 
 class Paths:
-    """Shortest ways through one network."""
+    """Shortest paths through one network."""
 
     def __init__(self, network: Network) -> None:
         self._network = network
@@ -26,7 +27,7 @@ class Paths:
         self._into: dict[int, dict[int, _Way]] = {}
 
     def prefix(self, frames: Sequence[int]) -> list[int]:
-        """The shortest tokens after which a program can be in this configuration."""
+        """Return the shortest tokens after which a program can be in this configuration."""
         out: list[int] = []
         outer = [*reversed(frames)]
         for position, inner in zip(outer, [*outer[1:], None], strict=True):
@@ -37,16 +38,16 @@ class Paths:
         return out
 
     def completion(self, state: Frames) -> list[int]:
-        """The shortest tokens that end a program from this state; end of file included."""
+        """Return the shortest tokens that end a program from this state, with the end of file."""
         ways = [[kind for position in frames for kind in self._out[position]] for frames in state]
         return min(ways, key=lambda way: (len(way), way))
 
     def shortest(self, rule: str) -> list[int]:
-        """The shortest sentence of a rule."""
+        """Return the shortest sentence of a rule."""
         return list(self._out[self._network.entry[rule]])
 
     def _to_call(self, back: int, callee: int) -> _Way:
-        """From the start of a rule to the call of ``callee`` that returns to ``back``."""
+        """Return the path from the start of a rule to a call that returns to ``back``."""
         ways = self._ways_into(self._entry_of[back])
         calls = self._network.calls
         return min(
@@ -76,7 +77,7 @@ class Paths:
         return best
 
     def _ways_into(self, entry: int) -> dict[int, _Way]:
-        """From the start of a rule to each of its positions."""
+        """Return the shortest path from the start of a rule to each of its positions."""
         found = self._into.get(entry)
         if found is not None:
             return found

@@ -1,4 +1,4 @@
-"""Cases of syntax: a title, KRL source, and the tree or the error that it has to give.
+"""Syntax cases: a title, KRL source, and the tree or the error that it must give.
 
     ====================
     an IF without ELSE
@@ -14,14 +14,14 @@
 
     (procedure A (ifStatement B (halt)))
 
-Bars are lines of three or more signs. ``:error`` below the title says that the source is no
-program; the expectation is then ``LINE:COLUMN`` of the first token that no program has there, and
-the token. Blank lines around the source are no part of it. How trees are written is described in
-`grammar.parser.sexpr`.
+A bar is a line of three or more signs. ``:error`` below the title says that the source is no
+program. The expectation is then ``LINE:COLUMN`` of the first token that no program can have there,
+and the token. Blank lines around the source are ignored. `grammar.parser.sexpr` describes how trees
+are written.
 
-``python -m grammar.parser.syntax_cases PATH…`` lists the cases of files or folders that differ.
-With ``--update`` it writes the trees of the grammar in force into the files: look at every changed
-line before it is kept. It never makes an error of a tree or a tree of an error.
+``python -m grammar.parser.syntax_cases PATH…`` lists the failing cases of files or folders. With
+``--update`` it writes the trees of the current grammar into the files: review every changed line
+before you keep it. It never turns an error into a tree or a tree into an error.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ _MARK = ":error"
 
 
 class SyntaxCaseError(Exception):
-    """The text holds no cases; the message names the line."""
+    """The text is no file of cases; the message names the line."""
 
 
 @dataclass(frozen=True, slots=True)
 class SyntaxCase:
-    """One case. ``lines`` are where its expectation stands: the first line and the one after it."""
+    """One case. ``lines`` is the range of lines of its expectation, the end excluded."""
 
     title: str
     source: str
@@ -59,7 +59,7 @@ class SyntaxCase:
 
 
 def read_cases(text: str) -> list[SyntaxCase]:
-    """The cases of a file; raises `SyntaxCaseError` where it is not built as above."""
+    """Return the cases of a file; raises `SyntaxCaseError` if it is not in the format above."""
     lines = text.split("\n")
     bars = [i for i, line in enumerate(lines) if _BAR.fullmatch(line.rstrip())]
     if len(bars) % 2 or "".join(lines[: bars[0] if bars else None]).strip():
@@ -89,7 +89,7 @@ class CaseReader:
         self._shortener = Shortener(recognizer.grammar)
 
     def outcome(self, case: SyntaxCase) -> tuple[bool, str]:
-        """Whether the source is an error, and that error or the tree, as text."""
+        """Return whether the source has an error, and the error or the tree as text."""
         tree = self._parser.parse(case.source)
         if isinstance(tree, Stop):
             token = tree.text.strip() or ("end of line" if tree.text else "end of file")
@@ -97,7 +97,7 @@ class CaseReader:
         return False, write(self._shortener.expression(tree))
 
     def difference(self, case: SyntaxCase) -> str | None:
-        """What the source gives where that is not what is expected, else ``None``."""
+        """Return what the source gives instead of what is expected, or ``None`` if they agree."""
         is_error, found = self.outcome(case)
         if is_error != case.is_error:
             return f"no program: {found}" if is_error else f"no error, but\n{found}"
@@ -109,9 +109,10 @@ class CaseReader:
         return None if expected == found else f"found\n{found}\nexpected\n{expected}"
 
     def updated(self, text: str) -> str:
-        """A file of cases with what it should expect, all else as it was.
+        """Return a file of cases with the expectations replaced by what the sources give.
 
-        A case stays when it is an error and should be none, or the other way round.
+        A case whose source is an error although it should be none, or the other way round, stays as
+        it is.
         """
         lines = text.split("\n")
         for case in reversed(read_cases(text)):

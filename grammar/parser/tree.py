@@ -1,14 +1,14 @@
-"""Parse trees: what the rules of a grammar make of a text.
+"""Parse trees.
 
-A tree is kept in two halves. An `Outline` is a tree without its text: a rule and what it consists
-of. What lies on one line and is built alike shares its outline, in one file and across files, so
-that a megabyte needs few of them and is parsed in a fraction of a second. The `Tree` adds the
-tokens. `ParseNode` and `Token` are views of both, made when they are asked for; two views of the
-same place are equal. Work that depends on the rules alone can be done once for each outline and
-remembered, and chains of rules (`Outline.inner`) cost nothing to pass.
+A tree is kept in two halves. An `Outline` is a tree without its text: a rule and its children.
+Parts that lie on one line and have the same structure share their outline, within a file and across
+files, so a megabyte needs few of them. The `Tree` adds the tokens. `ParseNode` and `Token` are
+views of both, created on demand; two views of the same place are equal. A result that depends on
+the rules alone can be cached for each outline, and chains of rules with one child cost nothing
+(`Outline.inner`).
 
-Every token of the text is in the tree, and what the lexer skips (comments, folds, blanks) lies in
-the gaps between tokens: gaps and tokens in turn are the text.
+A tree is lossless: every token of the text is in it, and what the lexer skips (comments, folds,
+blanks) is in the gaps between tokens. Gaps and tokens in turn give the text.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ _LINE_END = re.compile(r"\r\n|\r|\n")
 
 
 class Outline:
-    """A rule and its children: outlines of rules, and kinds of tokens. Not to be changed.
+    """A rule and its children: outlines of rules, and token kinds. Immutable by convention.
 
-    ``width`` is the number of tokens in it. Expressions are chains of rules with one child each for
-    the most part, which `inner` passes.
+    ``width`` is the number of tokens in it. Most expressions are chains of rules with one child
+    each; `inner` skips such a chain.
     """
 
     __slots__ = ("_inner", "children", "rule", "width")
@@ -42,12 +42,12 @@ class Outline:
             width += child.width if isinstance(child, Outline) else 1
         self.width: int = width
         only = children[0] if len(children) == 1 else None
-        # not itself: what refers to itself stays until garbage is collected
+        # None rather than self: a reference cycle would only be freed by the garbage collector
         self._inner: Outline | None = only.inner if isinstance(only, Outline) else None
 
     @property
     def inner(self) -> Outline:
-        """The first outline from here inwards that is more than a rule whose only child is one."""
+        """The first outline, from this one inwards, whose children are not just one rule."""
         return self._inner or self
 
     def __repr__(self) -> str:
@@ -55,7 +55,7 @@ class Outline:
 
     @property
     def symbols(self) -> tuple[str | int, ...]:
-        """What the rule consists of: names of rules and kinds of tokens."""
+        """The children as names of rules and kinds of tokens."""
         return tuple(c.rule if isinstance(c, Outline) else c for c in self.children)
 
 
@@ -68,27 +68,27 @@ class Token:
 
     @property
     def kind(self) -> str:
-        """Its name in the grammar; ``EOF`` at the end of the file."""
+        """Name of the token in the grammar; ``EOF`` at the end of the file."""
         return self.tree.lexer.names[self.tree.kinds[self.index]]
 
     @property
     def text(self) -> str:
-        """As written; empty at the end of the file."""
+        """The token as written; empty at the end of the file."""
         return self.tree.lexemes[self.index]
 
     @property
     def offset(self) -> int:
-        """Characters before it in the text."""
+        """Offset of the token in the text, in characters."""
         return self.tree.offsets[self.index]
 
     @property
     def line(self) -> int:
-        """From 1."""
+        """Line of the token, from 1."""
         return self.tree.place(self.offset)[0]
 
     @property
     def column(self) -> int:
-        """From 1, in characters."""
+        """Column of the token, from 1, in characters."""
         return self.tree.place(self.offset)[1]
 
 
@@ -96,8 +96,8 @@ class Token:
 class ParseNode:
     """A rule in a tree: its outline, and the index of its first token.
 
-    The tokens from ``first`` to before ``stop`` are its own; a rule that read nothing has none, and
-    ``first`` is then the index of the token that comes next.
+    It consists of the tokens from ``first`` up to ``stop``, which is excluded. For a rule that read
+    nothing, ``first`` is the index of the next token.
     """
 
     tree: Tree = field(repr=False)
@@ -111,18 +111,18 @@ class ParseNode:
 
     @property
     def stop(self) -> int:
-        """Index of the token after its last one."""
+        """Index of the token after the last one of the node."""
         return self.first + self.outline.width
 
     @property
     def inner(self) -> ParseNode:
-        """The node behind a chain of rules that have one rule and nothing else in them."""
+        """The node at the end of a chain of rules with one rule as their only child."""
         outline = self.outline.inner
         return self if outline is self.outline else ParseNode(self.tree, outline, self.first)
 
     @property
     def children(self) -> list[ParseNode | Token]:
-        """What the rule consists of, in order; made anew whenever it is asked for."""
+        """The children in order; a new list on each access."""
         tree, at = self.tree, self.first
         found: list[ParseNode | Token] = []
         for child in self.outline.children:
@@ -136,17 +136,17 @@ class ParseNode:
 
     @property
     def span(self) -> tuple[int, int]:
-        """Offsets of its first character and of the one after its last."""
+        """Offsets of the first character and of the one after the last."""
         return self.tree.span(self.first, self.stop)
 
     @property
     def text(self) -> str:
-        """Its text as written, comments within included."""
+        """The text as written, comments between tokens included."""
         start, end = self.span
         return self.tree.text[start:end]
 
     def walk(self) -> Iterator[ParseNode | Token]:
-        """The node and everything below it, in the order of the text."""
+        """Yield the node and everything below it, in the order of the text."""
         todo: list[ParseNode | Token] = [self]
         while todo:
             here = todo.pop()
@@ -157,10 +157,11 @@ class ParseNode:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Tree:
-    """A parsed text.
+    """The parse tree of a text.
 
-    ``kinds`` and ``lexemes`` are kind and text of each token, the end of the file (with no text)
-    the last. ``is_unique`` means that no second reading was met: see `grammar.parser.derivation`.
+    ``kinds`` and ``lexemes`` are the kind and text of each token; the last one is the end of the
+    file, with an empty text. ``is_unique`` means that no second reading was met: see
+    `grammar.parser.derivation`.
     """
 
     text: str
@@ -172,7 +173,7 @@ class Tree:
 
     @property
     def root(self) -> ParseNode:
-        """The start rule."""
+        """The node of the start rule."""
         return ParseNode(self, self.outline, 0)
 
     @property
@@ -182,29 +183,29 @@ class Tree:
 
     @cached_property
     def offsets(self) -> Sequence[int]:
-        """Where each token begins, in characters from the start of the text."""
+        """The offset of each token in the text, in characters."""
         return [*self.lexer.offsets_of_tokens(self.text), len(self.text)]
 
     def gap(self, index: int) -> str:
-        """What was skipped before the token ``index``: blanks, comments."""
+        """Return the skipped text before the token ``index``: blanks and comments."""
         start = self.offsets[index - 1] + len(self.lexemes[index - 1]) if index else 0
         return self.text[start : self.offsets[index]]
 
     def span(self, first: int, stop: int) -> tuple[int, int]:
-        """From the first character of the tokens ``first`` to before ``stop`` to behind their last.
+        """Return the offsets of the tokens from ``first`` up to ``stop``, which is excluded.
 
-        As offsets; no tokens lie where the next one begins.
+        An empty range lies where the next token begins.
         """
         start = self.offsets[first]
         end = self.offsets[stop - 1] + len(self.lexemes[stop - 1]) if stop > first else start
         return start, end
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Line and column of a character, both from 1."""
+        """Return the line and column of an offset, both from 1."""
         line = bisect_right(self._lines, offset)
         return line, offset - self._lines[line - 1] + 1
 
     @cached_property
     def _lines(self) -> Sequence[int]:
-        """Where each line begins."""
+        """The offset at which each line begins."""
         return [0, *(found.end() for found in _LINE_END.finditer(self.text))]
