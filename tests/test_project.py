@@ -130,7 +130,7 @@ def test_make_has_the_agreed_targets() -> None:
 
 @pytest.mark.parametrize("document", _documents(), ids=lambda path: str(path.name))
 def test_documents_name_what_there_is(document: Path) -> None:
-    """A `make` target or `krl` command that a document names exists, and so does a linked file."""
+    """Targets of make, commands of `krl`, modules and linked files that a document names exist."""
     text = document.read_text(encoding="utf-8")
     code = "\n".join(
         re.findall(r"```.*?\n(.*?)```", text, re.DOTALL) + re.findall(r"`(.+?)`", text)
@@ -138,6 +138,11 @@ def test_documents_name_what_there_is(document: Path) -> None:
     assert set() == set(re.findall(r"^make ([a-z]+)", code, re.MULTILINE)) - _make_targets()
     commands = set(typer.main.get_command(app()).commands)  # type: ignore[attr-defined]
     assert set() == set(re.findall(r"^(?:\S+\\)?krl ([a-z]+)", code, re.MULTILINE)) - commands
+    named = re.findall(r"`([a-z0-9_/]+\.py)`", text)
+    modules = [
+        path.as_posix() for top in (*PACKAGES, "tests") for path in (ROOT / top).rglob("*.py")
+    ]
+    assert set() == {one for one in named if not any(path.endswith(f"/{one}") for path in modules)}
     links = set(re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text))
     assert set() == {link for link in links if not (document.parent / link).exists()}
 

@@ -54,7 +54,7 @@ def _broken(line: SourceLine) -> str | None:
 
 @cache
 def adjacent() -> Mapping[tuple[str, str], str]:
-    """Why by pairs of kinds (`recovery.negatives.tokens.Token`) that no line has side by side.
+    """Why, by pairs of `recovery.negatives.tokens.SourceToken` kinds that no line has side by side.
 
     ``start`` and ``end`` are the ends of a line, ``any`` is every kind.
     """
