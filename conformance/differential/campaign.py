@@ -1,4 +1,4 @@
-"""Many programs on several executors: in shards, the same whoever runs them."""
+"""Fuzzing campaigns: many programs on several executors, in shards that any process can run."""
 
 from __future__ import annotations
 
@@ -30,18 +30,23 @@ from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError
 
 _SHARD: Final = 50
-#: After so many shards the front end of a process begins anew: what it remembers of programs, some
+#: After so many shards, a process clears the caches of the front end, which grow by about 100 kB
+#: for each program.
 #: 100 kB each, would fill the memory.
 _LIFE: Final = 20
-#: When a world interferes, a smaller program may need another seed for it to do so again.
+#: A reduced program may need another seed for its random world to show the difference again; so
+#: many are tried.
 _SEEDS: Final = 4
-#: So many are reduced; of the others only the numbers are reported.
+#: The largest number of findings that are reduced; of the others only the numbers are reported.
 _MOST_REDUCED: Final = 20
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A program on which an executor diverges from the reference, made small if there is time."""
+    """A program on which an executor diverges from the reference, reduced if it was its turn.
+
+    ``number`` is that of the program, ``statements`` the size of a reduced program.
+    """
 
     number: int
     difference: Difference
@@ -51,10 +56,10 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What a campaign gave; ``ends`` is how programs ended, by the word for it.
+    """The result of a campaign; ``ends`` counts how programs ended.
 
-    A program that no executor takes, as the check finds an error in it, ends with "LinkError".
-    ``counts`` has how many programs reached each of the ``rules``, under the kind "rule".
+    A program that the check rejects ends with "LinkError". ``counts`` has, among others, the number
+    of programs that reached each of the ``rules``, with the kind "rule".
     """
 
     programs: int
@@ -69,7 +74,7 @@ class Findings:
 
 @dataclass(frozen=True, slots=True)
 class _Shard:
-    """What a process does at a time: programs from ``first`` to before ``end``."""
+    """The unit of work of a process: programs from ``first`` to before ``end``."""
 
     seed: int
     first: int
@@ -87,7 +92,7 @@ class _Outcome:
 
 
 def world_seed(seed: int, number: int, attempt: int = 0) -> str:
-    """What the world of a program is drawn from."""
+    """Return the seed of the random world of a program."""
     return f"world/{seed}/{number}/{attempt}"
 
 
@@ -100,13 +105,14 @@ def fuzz(
     scheduler: str | None = None,
     rules: Needs = MappingProxyType({}),
 ) -> Findings:
-    """Run so many programs on executors, of which the first is the reference.
+    """Run ``programs`` random programs on executors, of which the first is the reference.
 
-    ``jobs`` processes of this machine do it, or the Dask cluster whose ``scheduler`` has this
-    address; reducing what was found is left to the process that asks. ``on_done`` is called with
-    how many programs were done since the last call. Of ``rules`` is counted how many programs reach
-    them. The result depends on ``programs``, ``seed``, ``executors`` and ``rules`` alone. Raises
-    `support.parallel.workers.WorkersError`, also where a worker has not these executors.
+    Use ``jobs`` processes of this machine, or the Dask cluster whose ``scheduler`` has this
+    address. The calling process reduces the findings. ``on_done`` is called with the number of
+    programs since its last call. The programs that reach each of the ``rules`` are counted. The
+    result depends only on ``programs``, ``seed``, ``executors`` and ``rules``.
+
+    Raises `support.parallel.workers.WorkersError`, also if a worker does not have these executors.
     """
     names = tuple(executors)
     wanted = dict(rules)
@@ -140,7 +146,7 @@ _shards_run = count(1)
 
 @contextmanager
 def _unlittered() -> Iterator[None]:
-    """Garbage is looked for seldom while a shard runs, and not in what was there before.
+    """Collect garbage less often within this context, and ignore objects that existed before.
 
     Syntax trees are many small objects, so this saves a third of the time.
     """
@@ -190,7 +196,7 @@ def _run_all(shard: _Shard) -> _Outcome:
 
 
 def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
-    """A difference of the same kind on the same executor, in a program as small as can be."""
+    """Return a difference of the same kind on the same executor, in a program of minimal size."""
     attempts = range(_SEEDS if finding.difference.is_disturbed else 1)
     last = [finding.difference]
 
@@ -213,7 +219,7 @@ def _reduced(finding: Finding, seed: int, reference: str) -> Finding:
 
 
 def loaded(files: Files) -> Prepared | None:
-    """A program ready for executors, ``None`` where it does not check."""
+    """Return a program ready for executors; ``None`` if the check rejects it."""
     try:
         return prepared(files)
     except LinkError:
@@ -221,7 +227,7 @@ def loaded(files: Files) -> Prepared | None:
 
 
 def record_of(found: Findings, seconds: float) -> dict[str, Any]:
-    """What is written as JSON."""
+    """Return the result of a campaign as JSON."""
     return {
         "programs": found.programs,
         "seed": found.seed,

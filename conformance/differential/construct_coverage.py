@@ -1,9 +1,10 @@
 """Coverage of language constructs on executed lines.
 
 It counts kinds of nodes and their variants, operators, predefined functions, system variables, and
-the instructions of executed lines. `language` lists all that can occur of most kinds, so that what
-never occurred can be reported. A program reaches a rule or clause when it executes everything that
-all conformance cases of it use (`needs`); this does not show that it obeys the rule.
+the instructions of executed lines. For most kinds, `language` lists everything that can occur, so
+that what never occurred can be reported. A program reaches a rule or clause if it executes
+everything that all conformance cases of the rule use (`needs`). This does not show that it obeys
+the rule.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from interp.bytecode._generated.opcodes import Op
 from interp.values.builtins import BUILTINS
 from interp.values.faults import FAULTS, LinkError
 
-#: How often each thing occurred, by its kind and its name.
+#: The number of occurrences by kind and name.
 Counts = Counter[tuple[str, str]]
-#: What a program has to execute to reach a rule or clause, by its ID.
+#: What a program must execute to reach a rule or clause, by its ID.
 Needs = Mapping[str, frozenset[tuple[str, str]]]
 
 _CRITERIA: Final = "C_PTP C_DIS C_ORI C_VEL C_SPL".split()
@@ -45,7 +46,7 @@ _VARIANTS: Final = (
 
 @cache
 def language() -> Mapping[str, tuple[str, ...]]:
-    """All there is of each kind."""
+    """Return everything that can occur, by kind."""
     nodes = {one.__name__ for one in get_args(ast.Statement | ast.Expression)}
     operators = ARITHMETIC | BITWISE | EQUALITY | LOGICAL | ORDER | {":", "NOT", "B_NOT"}
     return {
@@ -54,13 +55,13 @@ def language() -> Mapping[str, tuple[str, ...]]:
         "operator": tuple(sorted(operators | {"sign -", "sign +"})),
         "function": tuple(BUILTINS),
         "instruction": tuple(op.name for op in Op),
-        # Nothing nests variables too deeply: types would have to hold themselves.
+        # "nesting" cannot happen: a type would have to contain itself.
         "fault": tuple(slug for slug in FAULTS if slug != "nesting"),
     }
 
 
 def missing(counts: Counts) -> dict[str, list[str]]:
-    """What never occurred, by kind; kinds of which all occurred are left out."""
+    """Return what never occurred, by kind; complete kinds are left out."""
     found = {
         kind: [name for name in names if not counts[kind, name]]
         for kind, names in language().items()
@@ -69,7 +70,7 @@ def missing(counts: Counts) -> dict[str, list[str]]:
 
 
 def needs(cases: Iterable[Case]) -> Needs:
-    """What all cases that run use which rest on the same rule or clause, where this is anything."""
+    """Return the constructs that all running cases of a rule or clause have in common, if any."""
     found: dict[str, frozenset[tuple[str, str]]] = {}
     for case in cases:
         if case.phase == "run":
@@ -90,12 +91,12 @@ def _used(case: Case) -> Iterator[tuple[str, str]]:
 
 
 def reached(rules: Needs, counts: Counts) -> Iterator[str]:
-    """The rules and clauses that a program has reached which has executed all this."""
+    """Return the rules and clauses that a program with these counts has reached."""
     return (rule for rule, used in rules.items() if used <= counts.keys())
 
 
 def counted(program: Prepared, facts: Sequence[Fact]) -> Counts:
-    """What a run exercised."""
+    """Return the counts of what a run has executed."""
     at = {place_of(fact) for fact in facts}
     executed = {(one.file, one.line) for one in at if one is not None}
     counts: Counts = Counter(_nodes(program, executed))
@@ -106,7 +107,7 @@ def counted(program: Prepared, facts: Sequence[Fact]) -> Counts:
     return counts
 
 
-#: What has no line of its own in a trace: it counts where its routine was executed.
+#: Nodes without a line of their own in a trace; they count if their routine was executed.
 _UNTOLD: Final = (
     ast.Definition | ast.Label | ast.CaseBranch | ast.TimeBlock | ast.ConstantVelocity
 )  # fmt: skip
@@ -157,7 +158,7 @@ def _of(node: ast.Node) -> Iterator[tuple[str, str]]:
 
 
 def _variants(node: Any) -> Iterator[str]:
-    """What distinguishes nodes of one kind."""
+    """Yield the variants of a node, which distinguish nodes of one kind."""
     match node:
         case ast.If() if node.otherwise is not None:
             yield "IF ELSE"
@@ -216,7 +217,7 @@ def _motion(node: Any) -> Iterator[str]:
 
 
 def _instructions(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[str]:
-    """Instructions that belong to executed lines; none where there is no bytecode of it."""
+    """Yield the instructions of executed lines; none if the program cannot be compiled."""
     try:
         codes = program.verified.program.codes
     except LinkError:

@@ -1,9 +1,9 @@
-"""Routines of real programs, run one by one on several executors.
+"""Routines of real programs, each run by itself on several executors.
 
-Each routine is looked at by itself: whether it checks without an error, whether all that it names
-is there, whether all of it is compiled, how it ends in a quiet world, and whether all executors say
-the same on the way. Motions take no time there, and inputs are drawn from a seed. What waits for
-the world to change in a way that it never does is stopped.
+For each routine it is determined whether it has no errors, whether everything that it names exists,
+whether it can be compiled completely, how it ends in a quiet world, and whether all executors
+agree. Motions take no time in that world, and inputs are drawn from a seed. A routine that waits
+for a change that never happens is stopped.
 """
 
 from __future__ import annotations
@@ -30,18 +30,21 @@ from interp.program.routine_callers import with_callers
 from interp.tree import TreeExecutor, system_values
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 
-#: How far a routine has come: it cannot be called, has errors, names what is not there, has what is
+#: The stage that a routine reaches: it cannot be called, has errors, names something that does not
+#: exist, has something that is not compiled, is invalid bytecode, or can run. A routine that is
+#: ``unlinked`` or ``refused`` is run too, up to that place.
 #: not compiled, is no sound bytecode, or nothing is wrong with it. What is unlinked or refused runs
 #: all the same, until that is reached.
 Stage = Literal["uncalled", "errors", "unlinked", "refused", "unverified", "runs"]
-#: How a run ended: by itself, by a fault, at what is not there, out of statements, out of requests,
+#: How a run ended: by itself, by a fault, at a missing name, after too many statements, after too
+#: many requests, or by a defect of ours.
 #: or by a defect of ours.
 Ending = Literal["", "end", "fault", "unlinked", "budget", "stopped", "crash"]
 
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How long a routine may run: so many statements, so many requests."""
+    """The limits of a run, in statements and in requests, and the seed of its inputs."""
 
     statements: int = 3_000
     requests: int = 500
@@ -50,7 +53,7 @@ class Effort:
 
 @dataclass(frozen=True, slots=True)
 class Unread:
-    """A file that cannot be read, and why."""
+    """A file that cannot be read, and the reason."""
 
     path: str
     reason: str
@@ -58,10 +61,11 @@ class Unread:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """The result of a routine; ``reason`` says why it got no further, ``why`` how its run ended.
+    """The result of a routine.
 
-    ``endings`` are those of its runs by executor, the reference first; ``differences`` what other
-    executors than the first said differently, by executor.
+    ``reason`` says why it got no further than ``stage``, and ``why`` how its run ended. ``endings``
+    are those of its runs by executor, the reference first. ``differences`` are the differences from
+    the first executor, by executor.
     """
 
     path: str
@@ -80,7 +84,7 @@ def trials(
     effort: Effort | None = None,
     on_found: Callable[[int], None] = lambda _count: None,
 ) -> Iterator[Trial | Unread]:
-    """Try every routine of some files; ``on_found`` receives their number."""
+    """Try every routine of some files; ``on_found`` is called with their number."""
     by_path = {source.path: source for source in sources}
     programs, unread = load_all(by_path.values())
     called: dict[tuple[str, str], str] = {}
@@ -102,7 +106,7 @@ def trials(
 
 
 def _own(program: CheckedProgram) -> list[Routine]:
-    """The routines of the first file but those that were added."""
+    """Return the routines of the main file, without added callers."""
     return [one for one in program.routines_of(program.main) if not _is_added(one)]
 
 
@@ -131,7 +135,7 @@ class _Project:
         self._reason = ""
 
     def trials(self) -> Iterator[Trial]:
-        """Each routine in its turn."""
+        """Yield the trial of each routine."""
         every = [one for program in self._programs for one in program.routines_of(program.main)]
         starts = [routine for routine in every if self._programs[0].can_begin(routine)]
         try:
@@ -177,7 +181,7 @@ class _Project:
         return ("unverified", self._reason) if self._verified is None else ("runs", "")
 
     def _start(self, program: CheckedProgram, routine: Routine) -> Routine | None:
-        """The routine to begin with: itself, or the one that was added to call it."""
+        """Return the routine to begin with: itself, or the caller that was added for it."""
         if program.can_begin(routine):
             return routine
         name = self._called.get((routine.unit.module.path, routine.name))
@@ -186,7 +190,7 @@ class _Project:
     # ----------------------------------------------------------------------- running
 
     def _disturbed(self, program: CheckedProgram, start: Routine) -> dict[str, str]:
-        """The differences of runs in a world that interferes, as that of the fuzzer does."""
+        """Return the differences of runs in a world that interferes, as the fuzzer's does."""
         first, *others = (
             (name, facts_of(partial(self._made, name, program, start), str(self._effort.seed)))
             for name in self._executors

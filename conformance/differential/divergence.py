@@ -1,4 +1,4 @@
-"""Divergence of two executors: the first fact that differs, with its context."""
+"""The divergence of two executors: the first fact that differs, with its context."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from grammar.syntax.source import Source
 from interp.port.events import EVERY_KIND
 from interp.program.load import load
 
-#: Texts by path; the first file is the one to begin with.
+#: The texts of a program by path, the main file first.
 Files = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The first fact that an executor does not share with the reference.
+    """The first fact in which an executor differs from the reference.
 
-    ``place`` counts facts from 0; a side is ``None`` where its run has ended before.
+    ``place`` counts facts from 0; a side is ``None`` if its run ended before.
     """
 
     executor: str
@@ -30,17 +30,17 @@ class Difference:
 
     @property
     def kind(self) -> tuple[str, str]:
-        """What each side did, without its values; a program that cannot run is something else."""
+        """The kinds of both facts, without values; linking errors are a kind of their own."""
         return _kind(self.expected), _kind(self.actual)
 
     @property
     def expected_text(self) -> str:
-        """What the reference did, with its line."""
+        """The fact of the reference as text, with its line."""
         return shown(self.expected)
 
     @property
     def actual_text(self) -> str:
-        """What the other did, with its line."""
+        """The fact of the other executor as text, with its line."""
         return shown(self.actual)
 
 
@@ -52,14 +52,14 @@ def _kind(fact: Fact | None) -> str:
 
 
 def prepared(files: Files) -> Prepared:
-    """A program ready for executors; raises `interp.values.faults.LinkError`."""
+    """Return a program ready for executors; raise `interp.values.faults.LinkError`."""
     return Prepared(load([Source(text, path) for path, text in files], files[0][0]))
 
 
 def difference(
     executor: str, expected: Sequence[Fact], actual: Sequence[Fact]
 ) -> Difference | None:
-    """The first difference, ``None`` where there is none."""
+    """Return the first difference, or ``None`` if there is none."""
     if expected == actual:
         return None
     least = min(len(expected), len(actual))
@@ -77,9 +77,10 @@ def difference(
 def diverged(
     program: Prepared, executor: str, expected: Sequence[Fact], seed: str
 ) -> Difference | None:
-    """Where an executor diverges from the facts of another one.
+    """Return the first difference of an executor from the facts of the reference.
 
-    It runs once more without events, as in a run without a trace: then it stops at other places.
+    The executor also runs without reporting events, because it then makes its requests at other
+    places.
     """
     found = difference(executor, expected, trace_of(program, EXECUTORS[executor], seed))
     if found is None:

@@ -1,4 +1,4 @@
-"""An undisturbed run step by step: the requests and events of an executor.
+"""An undisturbed run of an executor as a sequence of requests and events.
 
 Executors that run the same program in the same world make the same requests and report the same
 events, in the same order [design section 6].
@@ -22,34 +22,34 @@ Step = ExecutorEvent | Request
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """All requests and events of an executor; ``is_cut`` where it was stopped from outside."""
+    """All requests and events of an executor; ``is_cut`` is set if it was stopped from outside."""
 
     steps: tuple[Step, ...]
     is_cut: bool
 
     @property
     def last(self) -> Step:
-        """What it ended with."""
+        """The last step."""
         return self.steps[-1]
 
     def asked(self, kind: type[Any]) -> list[Any]:
-        """All requests of a kind."""
+        """Return all requests of a kind."""
         return [one for one in self.steps if isinstance(one, kind)]
 
     def values(self, *path: str | int) -> list[Any]:
-        """What was assigned to a variable, one after the other."""
+        """Return the values that were assigned to a variable, in order."""
         return [one.value for one in self.events_of("assign") if one.path == path]
 
     def events_of(self, kind: str) -> list[ExecutorEvent]:
-        """All events of a kind."""
+        """Return all events of a kind."""
         return [one for one in self.steps if isinstance(one, ExecutorEvent) and one.kind == kind]
 
 
 def observe(make: Callable[[Sink], Executor], world: QuietWorld, most: int = 10_000) -> Observed:
-    """Run a program to its end, or until it has made so many requests.
+    """Run a program to its end, or until it has made ``most`` requests.
 
-    No interrupt ever comes, and no trigger; RESUME is answered by nothing. Raises
-    `interp.values.faults.LinkError` where the program cannot begin.
+    No interrupt and no trigger ever happens; a RESUME is ignored. Raises
+    `interp.values.faults.LinkError` if the program cannot begin.
     """
     recorder = Recorder()
     executor = make(recorder)
@@ -66,6 +66,6 @@ def observe(make: Callable[[Sink], Executor], world: QuietWorld, most: int = 10_
 
 
 def difference(executor: str, expected: Observed, actual: Observed) -> divergence.Difference | None:
-    """Where an executor differs from the reference; ``None`` where they agree."""
+    """Return the first difference of an executor from the reference, ``None`` if they agree."""
     facts = ([fact_of(step) for step in one.steps] for one in (expected, actual))
     return divergence.difference(executor, *facts)

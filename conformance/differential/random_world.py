@@ -1,8 +1,7 @@
-"""A controller with random replies, interrupts and faults, drawn from a seed.
+"""Simulated controllers with replies from a seed, for differential testing.
 
-It answers with a fault now and then, and what was never written has values that are no zeros.
-Arrays of thousands of inputs and outputs cost nothing before they are used. A `QuietWorld` does
-neither.
+A `RandomWorld` also replies with a fault now and then, and its unwritten variables have random
+values. A `QuietWorld` does neither. Large arrays cost nothing before they are used.
 """
 
 from __future__ import annotations
@@ -37,16 +36,16 @@ from interp.values.values import (
 )
 
 _INPUTS: Final = frozenset({"$IN", "$ANIN", "$DIGIN1"})
-#: After so many polls in vain every input is TRUE, so that no wait is endless.
+#: After so many polls in vain every digital input is TRUE, so that no wait is endless.
 _PATIENCE: Final = 3
-#: One request of so many is answered with a fault.
+#: One of so many requests is answered with a fault.
 _SELDOM: Final = 250
 _FAULTS: Final = ("invalid", "read_only", "index")
 _LARGEST_WHOLE: Final = 256
 
 
 class RandomWorld:
-    """Answers requests; the same requests get the same answers."""
+    """A controller that answers requests at random; the seed and the requests determine replies."""
 
     def __init__(self, seed: str, *, has_faults: bool = True) -> None:
         self._random = Random(seed)  # no secret depends on it
@@ -56,7 +55,7 @@ class RandomWorld:
         self._looks = 0
 
     def reply(self, request: Request) -> Any:
-        """The answer to a request; a `Fault` where there is none, and now and then without need."""
+        """Return the reply to a request, which is a `Fault` now and then without a reason."""
         self._looks = self._looks + 1 if isinstance(request, Poll) and not request.is_first else 0
         if not isinstance(request, Read | Write | Invoke | Move | MoveSpline):
             return None
@@ -75,11 +74,11 @@ class RandomWorld:
         return None
 
     def below(self, end: int) -> int:
-        """A number from 0 to below ``end``, for those who disturb the program."""
+        """Return a random number in [0, ``end``), also for decisions of the caller."""
         return self._random.randrange(end)
 
     def read(self, path: Path) -> Value:
-        """The value of a system variable or a part of one; faults `index`, `uninitialised`."""
+        """Return a system variable or a part of one; faults ``index``, ``uninitialised``."""
         if path[0] in _INPUTS:
             return self._drawn(path)
         key, members = _split(path)
@@ -113,7 +112,7 @@ class RandomWorld:
             raise fault("invalid")
 
     def _invoked(self, request: Invoke) -> Outcome:
-        """A result at random, and values for all that is passed :OUT and has none."""
+        """Return a random result, and random values for arguments passed :OUT without a value."""
         function = self._system.functions[request.name]
         given = zip(function.parameters, request.arguments, strict=False)
         changes = {
@@ -127,7 +126,7 @@ class RandomWorld:
     # ----------------------------------------------------------------------- values
 
     def _drawn(self, path: Path) -> Value:
-        """An input: another value at each look."""
+        """Return the value of an input, a new one at each access."""
         if path[0] == "$ANIN":
             return self.below(9) / 4 - 1
         if path[0] == "$DIGIN1":
@@ -138,7 +137,7 @@ class RandomWorld:
         return drawn or self._looks >= _PATIENCE
 
     def _first(self, key: Path) -> Any:
-        """The value of what was never written."""
+        """Return the initial value of a variable that was never written."""
         return self._made(self._type(key))
 
     def _type(self, key: Path) -> Type:
@@ -155,7 +154,7 @@ class RandomWorld:
         return type_
 
     def _made(self, type_: Type) -> Any:
-        """A value of a type; texts and numbers are short and small."""
+        """Return a random value of a type; texts are short and numbers small."""
         match type_:
             case Structure():
                 return StructureValue(type_, [self._made(one.type) for one in type_.members])
@@ -177,11 +176,11 @@ class RandomWorld:
 
 
 class QuietWorld(RandomWorld):
-    """A world without a robot, in which nothing is drawn but inputs, and nothing fails.
+    """A world without a robot, in which only inputs are random, and nothing fails.
 
-    Motions take no time. ``values`` are those of system variables at first, by name in upper case;
-    what is handed out are copies. All others are zeros of the types that the controller's tables
-    give, INT where these give none.
+    Motions take no time. ``values`` are the initial values of system variables, by name in upper
+    case; they are copied. All other variables are zeros of the types in the controller's tables, or
+    INT if a type is unknown.
     """
 
     def __init__(self, seed: int = 0, values: Mapping[str, Value] | None = None) -> None:
@@ -207,7 +206,7 @@ class QuietWorld(RandomWorld):
 
 
 def _split(path: Path) -> tuple[Path, tuple[str | int, ...]]:
-    """What has a place of its own, and the members within: ``("$TOOL",)`` and ``("X",)``."""
+    """Split a path into the variable or element that is stored, and the members within it."""
     place = 1
     while place < len(path) and (isinstance(path[place], int) or path[place] == "TO"):
         place += 1

@@ -1,8 +1,9 @@
-"""Reduction: programs made as small as possible while a property holds.
+"""Test case reduction: programs are made as small as possible while a property holds.
 
-First lines are made blank: routines, halves of blocks, statements, the frames of blocks, branches,
-declarations. Blank lines keep the numbers of all others, so that places found once hold for a whole
-pass. When no line can go any more, expressions are replaced by their own parts and by constants.
+First, lines are blanked: routines, halves of blocks, statements, the frames of blocks, branches,
+declarations. Blank lines keep the numbers of all other lines, so that places remain valid during a
+whole pass. When no line can be removed any more, expressions are replaced by their parts and by
+constants. The idea is that of delta debugging (ddmin), guided by the syntax tree.
 """
 
 from __future__ import annotations
@@ -17,22 +18,22 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from grammar.syntax.walk import BODIES, bodies, children, walk
 
-#: A set of lines, counted from 1, of a file by its place among the files.
+#: A set of lines, counted from 1, in the file with an index.
 _Unit = tuple[int, frozenset[int]]
 
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """A program that was made small."""
+    """A reduced program, with its number of statements."""
 
     files: Files
     statements: int
 
 
 def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_500) -> Reduced:
-    """The smallest program found for which ``holds`` is true, as it is for ``files``.
+    """Return the smallest program found for which ``holds`` is true, as it is for ``files``.
 
-    ``holds`` is asked ``most`` times at most, about programs that may not even parse.
+    ``holds`` is called at most ``most`` times, also with programs that do not parse.
     """
     search = _Search(files, holds, most)
     goes_on = True
@@ -47,7 +48,7 @@ def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_5
 
 
 def statements_of(files: Files) -> int:
-    """How many statements there are that do something."""
+    """Return the number of statements, without declarations."""
     return sum(
         isinstance(node, ast.Statement) and not isinstance(node, ast.Definition)
         for path, text in files
@@ -59,7 +60,7 @@ def statements_of(files: Files) -> int:
 
 
 def _below(routine: ast.Routine) -> Iterator[ast.Node]:
-    """All statements, those within blocks too; not the assignments behind WITH and the like."""
+    """Yield all statements, including those in blocks, but no assignments after WITH."""
     todo: list[ast.Node] = list(routine.body)
     while todo:
         node = todo.pop()
@@ -75,7 +76,7 @@ class _Search:
         self._most = most
 
     def _takes(self, files: Files) -> bool:
-        """Whether to continue with these files instead."""
+        """Replace the files if the property holds for the new ones; return whether it does."""
         if self.tried >= self._most or files == self.files:
             return False
         self.tried += 1
@@ -87,7 +88,7 @@ class _Search:
     # ----------------------------------------------------------------------- lines
 
     def blank_lines(self) -> bool:
-        """One pass over all that can go, large things first; whether anything went."""
+        """Try to blank everything removable, large units first; return whether anything was."""
         before = self.files
         for number in range(len(self.files) - 1, 0, -1):
             self._takes(self.files[:number] + self.files[number + 1 :])
@@ -100,7 +101,7 @@ class _Search:
         return self.files != before
 
     def tidy(self) -> None:
-        """Take blank lines out, where what holds does not hang on them."""
+        """Remove blank lines, if the property still holds without them."""
         self._most += 1
         files = tuple(
             (path, "\n".join(row for row in text.split("\n") if row.strip()) + "\n")
@@ -111,11 +112,11 @@ class _Search:
     # ----------------------------------------------------------------------- expressions
 
     def simplify(self) -> bool:
-        """One pass over expressions, large ones first; whether any became simpler."""
+        """Simplify one expression, large ones first; return whether there was one."""
         before = self.files
         for number, (path, text) in enumerate(before):
             for first, end, simpler in _replacements(text, path):
-                # Places in the text hold only as long as it is the one they were found in.
+                # The spans are valid only for the text in which they were found.
                 if self._takes(_with(before, number, path, text[:first] + simpler + text[end:])):
                     return True
         return False
@@ -129,7 +130,7 @@ def _with(files: Files, number: int, path: str, text: str) -> Files:
 
 
 def _units(files: Files) -> list[_Unit]:
-    """All sets of lines that may go together, the largest first."""
+    """Return all sets of lines that may be removed together, the largest first."""
     found: list[_Unit] = []
     for number, (path, text) in enumerate(files):
         module = read_module(text, path)
@@ -164,7 +165,7 @@ def _lines(source: Source, node: ast.Node) -> frozenset[int]:
 
 
 def _groups(source: Source, nodes: Sequence[ast.Node]) -> Iterator[frozenset[int]]:
-    """All of them, halves, quarters and so on, down to each alone."""
+    """Yield the lines of all nodes, of halves, quarters and so on, down to single nodes."""
     lines = [_lines(source, node) for node in nodes]
     size = len(lines)
     while size:
@@ -174,7 +175,7 @@ def _groups(source: Source, nodes: Sequence[ast.Node]) -> Iterator[frozenset[int
 
 
 def _frames(source: Source, block: ast.Node, inner: Sequence[ast.Node]) -> Iterator[frozenset[int]]:
-    """The lines of a block that hold it together, and each branch but the first."""
+    """Yield the lines that frame a block, and each of its branches but the first."""
     whole = _lines(source, block)
     covered = frozenset().union(*(_lines(source, node) for node in inner))
     frame = sorted(whole - covered)
@@ -189,7 +190,7 @@ _CONSTANTS = ("0", "1", "TRUE", "FALSE", "1.0", '"A"')
 
 
 def _replacements(text: str, path: str) -> Iterator[tuple[int, int, str]]:
-    """Spans of expressions with shorter texts in their place."""
+    """Yield the spans of expressions, each with a shorter text to replace it."""
     module = read_module(text, path)
     if not isinstance(module, ast.Module):
         return

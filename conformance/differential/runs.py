@@ -1,8 +1,8 @@
-"""A run of a program under random interference; the available executors.
+"""A run of a program under random interference, and the available executors.
 
-The world enters the actions of interrupts, triggers and cyclic signals between two requests, looks
-at conditions, and answers RESUME by unwinding. What it does follows from its seed and from the
-requests alone, so that executors that ask the same are treated the same.
+The driver enters actions of interrupts, triggers and cyclic signals between two requests, evaluates
+conditions, and answers RESUME by unwinding. What it does depends only on its seed and on the
+requests, so executors that make the same requests are treated in the same way.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ from interp.values.faults import LinkError, RuntimeFailure
 
 __all__ = ["Prepared", "available", "is_available"]
 
-#: More statements than any generated program executes, and a slice short enough to come up.
+#: More statements than any generated program executes, and slices short enough to occur.
 LIMITS: Final = Limits(statements=20_000, per_slice=25)
 _MOST_REQUESTS: Final = 4_000
 _MOST_ENTERED: Final = 6
-#: One request of so many is a chance for something to be entered.
+#: At one of so many requests, something may be entered.
 _CHANCES: Final = 6
 
 
-#: Makes an executor of a program.
+#: Creates an executor for a program.
 Factory = Callable[[Prepared, Limits, Sink], Executor]
 
 
@@ -56,17 +56,17 @@ def _made(name: str) -> Factory:
 
 
 def untraced(name: str) -> Factory:
-    """Makes an executor that reports requests only."""
+    """Return a factory of executors that report no events."""
     return lambda prepared, limits, _sink: prepared.executor(name, limits)
 
 
-#: The executors by name; the first one is the reference.
+#: The factories of executors by name, the reference first.
 EXECUTORS: Mapping[str, Factory] = {name: _made(name) for name in (*executors.EXECUTORS, COMPILED)}
 
 
 @dataclass(slots=True)
 class _Known:
-    """What the world may enter or evaluate, as far as requests have shown it."""
+    """The code that the driver may enter or evaluate, as far as requests have shown it."""
 
     interrupts: dict[int, DeclareInterrupt] = field(default_factory=dict)
     switched: dict[int, bool] = field(default_factory=dict)
@@ -74,7 +74,7 @@ class _Known:
     conditions: list[CodeHandle] = field(default_factory=list)
 
     def note(self, request: Request) -> None:
-        """Learn from a request."""
+        """Note the code handles of a request."""
         match request:
             case DeclareInterrupt():
                 self.interrupts[request.number] = request
@@ -102,18 +102,18 @@ class _Driver:
         self, executor: Executor, world: RandomWorld, trace: Trace, allowed: int | None
     ) -> None:
         self.executor = executor
-        #: How many `StopAdvance` may pass at once; then they are no facts. Else each is one.
+        #: The reply to `StopAdvance`, which is then no fact; ``None`` makes each of them a fact.
         self.allowed = allowed
         self.world = world
         self.trace = trace
         self.known = _Known()
-        #: For each action that runs: the depth it was entered at, and the one RESUME goes back to.
+        #: For each running action: the depth when it was entered, and the depth RESUME returns to.
         self.inside: list[tuple[int, int]] = []
         self.entered = 0
         self.is_over = False
 
     def run(self) -> None:
-        """Run to the end, or until there were too many requests."""
+        """Run the program to its end, or until it has made too many requests."""
         reply: Any = None
         for _ in range(_MOST_REQUESTS):
             request = self.executor.advance(reply)
@@ -135,7 +135,7 @@ class _Driver:
                 reply = self.world.reply(request)
 
     def _is_entered_late(self, end: End) -> bool:
-        """Whether an action comes after the program's end, while the arm would still move."""
+        """Decide whether to enter an action after the program's end, as if the arm still moved."""
         actions = [one.action for one in self.known.interrupts.values()] + self.known.actions
         if self.is_over or not actions or self.world.below(3):
             return False
@@ -150,7 +150,7 @@ class _Driver:
         self.executor.unwind(depth)
 
     def _interferes(self, request: Request) -> bool:
-        """Whether an action was entered, before the request is answered."""
+        """Decide whether to enter an action before the request is answered."""
         world, known = self.world, self.known
         if world.below(_CHANCES):
             return False
@@ -191,12 +191,12 @@ class _Driver:
 def trace_of(
     prepared: Prepared, factory: Factory, seed: str, limits: Limits = LIMITS
 ) -> list[Fact]:
-    """All facts of a run; see `facts_of`."""
+    """Return all facts of a run; see `facts_of`."""
     return facts_of(lambda sink: factory(prepared, limits, sink), seed)
 
 
 def facts_of(make: Callable[[Sink], Executor], seed: str) -> list[Fact]:
-    """All facts of a run; an executor that raises what it should not is recorded as a fact too."""
+    """Return all facts of a run; an unexpected exception of the executor is a fact too."""
     trace = Trace()
     try:
         drawn = Random(seed).randrange(8)  # no secret depends on it
@@ -204,6 +204,6 @@ def facts_of(make: Callable[[Sink], Executor], seed: str) -> list[Fact]:
         _Driver(make(trace), RandomWorld(seed), trace, allowed).run()
     except LinkError as error:
         trace.raised(error)
-    except Exception as error:  # a defect, which is a finding here
+    except Exception as error:  # a defect of an executor, which is a finding here
         trace.raised(error)
     return trace.facts

@@ -1,8 +1,8 @@
 """Traces for comparison: requests and events in one sequence, as plain values.
 
-A fact is a tuple: a word, the place, and what there is to say. Values of different types never are
-equal, nor are 0.0 and -0.0. A piece of program that was handed out is a word: its number is the
-executor's own affair.
+A fact is a tuple of a word, the place, and further values. Values of different types are never
+equal, nor are 0.0 and -0.0. Code handles are replaced by a word, because executors number them
+differently.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Fact = tuple[Any, ...]
 
 
 class Trace:
-    """A sink that keeps facts."""
+    """A sink that stores facts."""
 
     __slots__ = ("facts",)
 
@@ -46,17 +46,17 @@ class Trace:
         self.facts.append(("return", at, name))
 
     def branch(self, at: At, way: int) -> None:
-        """A way was taken."""
+        """A statement chose a branch."""
         self.facts.append(("branch", at, way))
 
     # ----------------------------------------------------------------------- requests, and more
 
     def request(self, request: Request) -> None:
-        """The executor has asked."""
+        """The executor has made a request."""
         self.facts.append(fact_of(request))
 
     def evaluated(self, outcome: object) -> None:
-        """A condition was looked at; ``outcome`` is a value or what was raised."""
+        """A condition was evaluated; ``outcome`` is its value or the exception."""
         self.facts.append(("evaluated", None, _plain(outcome)))
 
     def entered(self) -> None:
@@ -64,16 +64,16 @@ class Trace:
         self.facts.append(("entered", None))
 
     def unwound(self, depth: int) -> None:
-        """Routines were left by RESUME."""
+        """RESUME has left routines."""
         self.facts.append(("unwound", None, depth))
 
     def raised(self, error: Exception) -> None:
-        """The executor did not come to be, or raised what it never should."""
+        """The executor could not be created, or has raised an unexpected exception."""
         self.facts.append(("raised", None, *_plain(error)))
 
 
 def fact_of(step: Any) -> Fact:
-    """A request, a part of one, or an event, as its name and its fields."""
+    """Return a request, a part of one, or an event, as its name and its fields."""
     return (type(step).__name__, *(_plain(getattr(step, name)) for name in _fields(type(step))))
 
 
@@ -96,14 +96,14 @@ _FIELDS: dict[Any, tuple[str, ...]] = {}
 
 
 def _fields(kind: Any) -> tuple[str, ...]:
-    """The names of the fields of a kind of request."""
+    """Return the names of the fields of a class, from a cache."""
     if kind not in _FIELDS:
         _FIELDS[kind] = tuple(field.name for field in dataclasses.fields(kind))
     return _FIELDS[kind]
 
 
 def plain(value: Value | None) -> Any:
-    """A value as constants and tuples of them."""
+    """Return a value as constants and nested tuples of them."""
     match value:
         case bool() | float():
             return (type(value).__name__, repr(value))
@@ -117,12 +117,12 @@ def plain(value: Value | None) -> Any:
 
 
 def place_of(fact: Fact) -> At | None:
-    """The place a fact was reported from; ``None`` where it has none."""
+    """Return the place that reported a fact, ``None`` if it has none."""
     return fact[1] if len(fact) > 1 and isinstance(fact[1], At) else None
 
 
 def shown(fact: Fact | None) -> str:
-    """A fact as a line of text."""
+    """Return a fact as a line of text."""
     if fact is None:
         return "nothing more"
     at = place_of(fact)

@@ -1,1 +1,1 @@
-"""What was observed of a case against what was expected; executors compared."""
+"""The evaluation of cases: observations against expectations, and comparison of executors."""

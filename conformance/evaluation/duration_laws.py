@@ -1,8 +1,8 @@
 """Laws about the duration of motions from rest to rest, at an override of 100.
 
-A PTP is as quick as its axes allow, in closed form; a LIN or CIRC no quicker than its speed and
-acceleration, and a LIN no slower where all axes are far from their limits. Rows of motions are
-compared with others of the same run.
+A PTP takes exactly the time that its axes need, in closed form. A LIN or CIRC is no faster than its
+speed and acceleration allow, and a LIN no slower if all axes are far from their limits. Sequences
+of motions are compared with other sequences of the same run.
 """
 
 from __future__ import annotations
@@ -25,32 +25,34 @@ from conformance.evaluation.path_geometry import change_rates
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
 
-#: Share of a time that rounding may add to it, and seconds for its two ends.
+#: Fraction of a time that rounding may add, and seconds for its two ends.
 _SHARE, _ENDS = 5e-4, 3e-4
-#: Seconds below which nothing is said of a motion: its ends lie between too few samples.
+#: Seconds below which a motion is not checked: there are too few samples between its ends.
 _SHORTEST: Final = 0.2
-#: Share of a time by which a way back may take longer: its samples are others.
+#: Fraction of a time by which a motion back may take longer, because its samples differ.
 _BACK: Final = 0.05
-#: Degrees an axis has to go for two ways to be alike whose ends are `NEAR_DEGREES` apart.
+#: Degrees that an axis must move for two motions to be compared whose ends are within
+#: `NEAR_DEGREES`.
 _FAR_DEGREES: Final = 5.0
-#: How many times as long a row of blends may take as what it is compared with.
+#: Largest ratio of the duration of blended motions to that of what they are compared with.
 _SLOWER, _STRAIGHT = 1.001, 1.05
-#: Share of the limits of axes below which none of them slows a path down.
+#: Fraction of the limits of all axes below which no axis can slow a path down.
 _IDLE: Final = 0.15
-#: mm/s³ and deg/s³ of spline motions, and seconds over which other paths build up acceleration.
+#: Jerk of spline motions in mm/s³ and deg/s³, and seconds in which other motions build up
+#: acceleration.
 _SPLINE_JERKS: Final = (500e3, 50e3)
 _RAMP: Final = 0.08
 
 
 def delays(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Motions that take another time than they have to, of a run whose override is 100."""
+    """Yield motions with an implausible duration, in a run whose override is 100."""
     for one in motions:
         yield from _is_quick(one)
     yield from _compared(motions)
 
 
 def seconds_of(length: float, speed: float, acceleration: float, jerk: float) -> float:
-    """How long a length takes at least, from rest to rest."""
+    """Return the shortest time in s for a length from rest to rest, with limited jerk."""
 
     def ramp(reached: float) -> float:
         if reached < acceleration**2 / jerk:
@@ -67,10 +69,10 @@ def seconds_of(length: float, speed: float, acceleration: float, jerk: float) ->
 
 
 def _is_quick(one: EndedMotion) -> Iterator[Violation]:
-    """A PTP that is not as quick as its axes can be [MOT-20], or a LIN or CIRC out of its time.
+    """Yield a PTP that differs from the time of its axes [MOT-20], or an implausible LIN or CIRC.
 
-    That is quicker than speed and acceleration allow, or for a LIN slower though all axes are far
-    from their limits: on a CIRC there is acceleration across it too.
+    Implausible is faster than speed and acceleration allow, or for a LIN slower although all axes
+    are far from their limits. A CIRC also has centripetal acceleration, so it may be slower.
     """
     motion = one.motion
     took = (one.end - one.start) / 1e6
@@ -95,7 +97,7 @@ def _is_quick(one: EndedMotion) -> Iterator[Violation]:
 
 
 def _of_axes(one: EndedMotion, way: Array) -> float:
-    """The seconds that the slowest axis takes to its end; 0 where it is not known."""
+    """Return the seconds that the slowest axis needs; 0 if unknown."""
     most, way = one.axis_rates, np.abs(way)
     moved = way > ROUNDING
     if most is None or not moved.any():
@@ -104,7 +106,7 @@ def _of_axes(one: EndedMotion, way: Array) -> float:
 
 
 def _of_path(one: EndedMotion) -> float:
-    """The seconds of a path, as the slowest of way, swivel and rotation would take; 0: unknown."""
+    """Return the seconds of a path: of translation, swivel or rotation; 0 if unknown."""
     motion, settings, most = one.motion, one.motion.settings, one.machine
     first, last = one.poses(one.ends)
     poses = np.concatenate((first[None], one.tools, last[None]))
@@ -136,7 +138,7 @@ def _of_path(one: EndedMotion) -> float:
 
 
 def _most_used(one: EndedMotion) -> float:
-    """The greatest share of speed, acceleration or jerk that an axis has."""
+    """Return the largest fraction of a limit of speed, acceleration or jerk that an axis uses."""
     rows, most = one.path.axes[one.rows], one.axis_rates
     if most is None or len(rows) < 5:
         return math.inf
@@ -151,7 +153,7 @@ def _most_used(one: EndedMotion) -> float:
 
 
 def _rows(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
-    """The motions from rest to rest, blended where there are several."""
+    """Yield the sequences of blended motions from rest to rest; most have a single motion."""
     row: list[EndedMotion] = []
     for one in motions:
         row = [*row, one] if row and not one.begins and follows(row[-1], one) else [one]
@@ -160,10 +162,11 @@ def _rows(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
 
 
 def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Rows that take another time than others of the same run allow them.
+    """Yield sequences whose duration contradicts that of other sequences of the same run.
 
-    A way back takes the time of the way there. Blended motions are no slower than the same to exact
-    stops, nor than one motion straight on where all were planned before the first began.
+    A motion back takes as long as the motion there. Blended motions are no slower than the same
+    motions with exact stops, and, if all were planned before the first began and lie on a straight
+    line, hardly slower than a single motion.
     """
     rows = [row for row in _rows(motions) if not any(one.motion.parts for one in row)]
     if not rows:
@@ -193,7 +196,7 @@ def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
 def _between(
     way: Array, rows: Sequence[Sequence[EndedMotion]], ends: Array, times: Sequence[int]
 ) -> Iterator[tuple[EndedMotion, int]]:
-    """Single motions between two places (2, axes), and the µs they took."""
+    """Yield single motions between two positions of the axes (2, axes), with their µs."""
     near = np.abs(ends - way).max(axis=(1, 2)) < NEAR_DEGREES
     for row, took in compress(zip(rows, times, strict=True), near):
         if len(row) == 1:
@@ -201,7 +204,7 @@ def _between(
 
 
 def _is_alike(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) -> bool:
-    """Whether two motions have the same kind, settings, auxiliary and end point."""
+    """Return whether two motions have the same kind, settings, auxiliary point and target."""
     first, second = one.motion, other.motion
     return (
         first.kind == second.kind
@@ -214,7 +217,7 @@ def _is_alike(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) ->
 
 
 def _is_straight(row: Sequence[EndedMotion]) -> bool:
-    """Whether they are PTP or LIN of the same settings on one line; the last is the whole of it."""
+    """Return whether PTP or LIN motions with equal settings lie on the line of the last one."""
     whole = row[-1]
     if whole.motion.kind not in ("PTP", "LIN"):
         return False
@@ -238,7 +241,7 @@ def _is_straight(row: Sequence[EndedMotion]) -> bool:
 
 
 def _exact(rows: Sequence[Sequence[EndedMotion]], row: Sequence[EndedMotion]) -> int | None:
-    """The µs of the motions of a row where the same run has them with exact stops."""
+    """Return the µs of the same motions with exact stops, if the run has them."""
     for place in range(len(rows) - len(row) + 1):
         same = rows[place : place + len(row)]
         are_alike = all(

@@ -1,10 +1,10 @@
-"""Evaluates expectations against observations.
+"""The evaluator: decides whether the observation of a case meets its expectations.
 
-Each `Check` has the state of one expectation: met, unmet, or open where the observation cannot
-settle it (a path without a robot, times that were not measured). `evaluate` adds what every case
-expects implicitly: that the front end reports no other error, that an output of which it expects a
-change changes only as it says, that the program ends, that the path keeps limits and shapes, and
-that events stand in an order that is possible. A crash has failed whatever a case is about.
+Each `Check` has the state of one expectation: met, unmet, or open if the observation cannot decide
+it (a path without a robot, times that were not measured). `evaluate` adds checks that apply to
+every case: the front end reports no other error; an output with expected changes does not change
+otherwise; the program ends; the path keeps limits and shapes; the order of events is possible. A
+crash always fails a case.
 """
 
 from __future__ import annotations
@@ -32,9 +32,10 @@ State = Literal["met", "unmet", "open"]
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """What became of an expectation: ``actual`` says what was seen instead, or why it is open.
+    """The result of one expectation.
 
-    ``is_sure``: where it is unmet the case has failed; ``basis`` is the rule or clause it rests on.
+    ``actual`` is what was observed instead, or why it is open. An unmet check with ``is_sure``
+    fails the case. ``basis`` is the rule or clause on which the expectation rests.
     """
 
     file: str
@@ -50,7 +51,7 @@ _ROBOTS = ("none", "kinematic", "mujoco")
 
 
 def evaluate(case: Case, seen: Observation) -> list[Check]:
-    """All checks of a case, in the order of its lines; what every case expects comes last."""
+    """Return the checks of a case in the order of its lines, then those of every case."""
     is_run = case.phase == "run"
     found = evaluate_run(case.expectations, seen) if is_run else _said_all(case, seen)
     said = [
@@ -67,8 +68,8 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
 
 
 def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
-    """What holds in every case, whatever it is about: limits, shapes, and the order of events."""
-    if not seen.is_exact:  # of a recording not all events are known, nor is its arm
+    """Yield violations of laws that hold in every case: limits, shapes, order of events."""
+    if not seen.is_exact:  # a recording has neither all events nor the machine data of its arm
         return
     texts = (*case.io, *(source.text for source in case.sources))
     slow = any("OV_PRO" in text.upper() for text in texts)
@@ -88,7 +89,7 @@ def _said_all(case: Case, seen: Observation) -> list[Check]:
 
 
 def evaluate_run(expectations: Sequence[Expectation], seen: Observation) -> list[Check]:
-    """A check for each expectation about a run."""
+    """Return a check for each expectation about a run."""
     marks = _marks(expectations)
     found = []
     for one in expectations:
@@ -141,9 +142,10 @@ def _said(one: Expectation, seen: Observation) -> Check:
 
 
 def _recorded(one: Expectation, seen: Observation) -> Check:
-    """What a controller says has its own numbers: ours are a line where it complains.
+    """Check an expectation about findings against a recording of a real controller.
 
-    It may notice only at the first word of the line behind.
+    A controller has its own numbers, so only the line is compared. It may report an error at the
+    first word of the next line.
     """
     places = (one.line, one.line + 1)
     there = [each for each in seen.findings if each.file == one.file and each.line in places]
@@ -163,10 +165,10 @@ def _list(findings: list[Finding] | tuple[Finding, ...]) -> str:
 
 
 def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
-    """No error but those that are expected."""
+    """Yield a check for each error that is not expected."""
     said = {(one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")}
     if case.phase == "parse" and said:
-        return  # only the first failure is specified
+        return  # only the first syntax error is specified
     if seen.watched is not None:
         said |= {(file, line + 1) for file, line in said}
     for found in seen.findings:
@@ -176,7 +178,7 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
 
 
 def _unsaid_outputs(case: Case, seen: Observation) -> Iterator[Check]:
-    """An output that a case sees changing changes where it says, to what it says, nowhere else."""
+    """Yield a check for each unexpected change of an output that has expected changes."""
     said = {
         (*one.arguments, one.file, one.line)
         for one in case.expectations
@@ -193,7 +195,7 @@ def _unsaid_outputs(case: Case, seen: Observation) -> Iterator[Check]:
 def evaluate_ending(
     expectations: Sequence[Expectation], seen: Observation, main: str
 ) -> Iterator[Check]:
-    """A check where the program did not end by itself, though nothing else is expected of it."""
+    """Yield a check if the program did not end by itself and no other ending is expected."""
     if not seen.ending:  # the ending was not recorded
         return
     kinds = {one.kind: one for one in expectations}

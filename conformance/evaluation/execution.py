@@ -1,7 +1,7 @@
-"""Executes cases: each is read, checked, or run on an executor with a robot.
+"""The execution of cases: each is parsed, checked, or run on an executor with a robot.
 
-A `Setup` names executor and robot. Those that this machine lacks are reported (`missing`), never
-silently left out.
+A `Setup` names executor and robot. A setup that this machine does not support is reported by
+`missing`, and never left out silently.
 """
 
 from __future__ import annotations
@@ -52,22 +52,23 @@ __all__ = [
     "prepared",
 ]
 
-#: Who reads and checks cases: there is one front end.
+#: The name of the front end that parses and checks cases; there is only one.
 FRONT: Final = "grammar"
-#: What ``;@ profile:`` may be: a controller, and that its program begins with a coincidence run.
+#: The values of ``;@ profile:``: a controller, and ``-bco`` if the program begins with a block
+#: coincidence run.
 PROFILES: Final = ("kss8", "kss8-bco", "kss5", "kss5-bco")
 MakeExecutor = Callable[[CheckedProgram, str | None, Limits, Sink | None], Executor]
 MakeRobot = Callable[[MachineData, int], Robot]
 
-#: So many statements a case may execute.
+#: The largest number of statements that a case may execute.
 _STATEMENTS: Final = 1_000_000
-#: Endings of a run in the words of expectations.
+#: The endings of a run that expectations call otherwise.
 _ENDINGS: Final[Mapping[str, str]] = {"time": "running"}
 
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """An executor and a robot, by name; ``motion`` is how motions are planned."""
+    """An executor and a robot, by name; ``motion`` is the strategy of motion planning."""
 
     executor: str
     robot: str
@@ -75,7 +76,7 @@ class Setup:
 
 
 def observe(case: Case, setup: Setup) -> Observation:
-    """The observation of a case. Never raises for what a program does."""
+    """Return the observation of a case. Never raises because of what a program does."""
     match case.phase:
         case "parse":
             return _parsed(case)
@@ -87,7 +88,7 @@ def observe(case: Case, setup: Setup) -> Observation:
 def observe_with(
     case: Case, executor: MakeExecutor | None = None, robot: MakeRobot | None = None
 ) -> Observation:
-    """The observation of a case that runs, on the given executor, robot, or both."""
+    """Return the observation of a case that runs, on the given executor, robot, or both."""
     return _run(case, Setup("tree", "none" if robot is None else "mujoco"), executor, robot)
 
 
@@ -105,7 +106,7 @@ def _parsed(case: Case) -> Observation:
 
 
 def _checked(case: Case) -> Observation:
-    """All findings, those about the advance run included; a case is a whole project."""
+    """Return all findings, including those about the advance run; a case is a whole project."""
     files, found = [], []
     for source in case.sources:
         read = read_module(source.text, source.path)
@@ -136,7 +137,7 @@ def _finding(found: Diagnostic) -> Finding:
 
 
 def missing(setup: Setup) -> str:
-    """Why a setup cannot be used on this machine; empty where it can."""
+    """Return why a setup cannot be used on this machine; "" if it can."""
     if not is_available(setup.executor):
         return f"there is no executor {setup.executor} on this machine"
     if setup.robot == "mujoco" and find_spec("mujoco") is None:
@@ -145,22 +146,22 @@ def missing(setup: Setup) -> str:
 
 
 class _ThirdParty(Prepared):
-    """A program for a third party's executor."""
+    """A program for the executor of a third party."""
 
     def __init__(self, program: CheckedProgram, make: MakeExecutor) -> None:
         super().__init__(program)
         self._make = make
 
-    # the name is part of what it overrides
+    # `name` is required by the signature of the base class
     def executor(self, name: str, limits: Limits, sink: Sink | None = None) -> Executor:  # noqa: ARG002
-        """The third party's, whatever the name."""
+        """Return the executor of the third party, whatever the name."""
         return self._make(self.program, self.routine, limits, sink)
 
 
 def _run(
     case: Case, setup: Setup, executor: MakeExecutor | None = None, robot: MakeRobot | None = None
 ) -> Observation:
-    """Run it; a program that cannot begin is a fault without a line."""
+    """Run a case; a program that cannot begin is observed as a fault without a line."""
     program = prepared(case)
     if isinstance(program, LinkError):
         return _refused(program)
@@ -193,20 +194,20 @@ def _robot(name: str) -> RobotName:
 
 
 def _machine(case: Case) -> MachineData | None:
-    """The arm of the profile, read once; ``None`` where the case has machine data of its own."""
+    """Return the arm of the profile; ``None`` if the case has its own machine data."""
     has_own = any(one.path.lower() == "$machine.dat" for one in case.sources)
     return None if has_own else default_machine()
 
 
 def _profile(name: str) -> Profile:
-    """A profile by its name; with ``-bco`` it begins with the block coincidence run [ADV-14]."""
+    """Return a profile by name; with ``-bco`` it begins with a block coincidence run [ADV-14]."""
     base, _, variant = name.partition("-")
     return replace(Profile.load(base), runs_coincidence=variant == "bco")
 
 
 @lru_cache(maxsize=16)
 def prepared(case: Case) -> Prepared | LinkError:
-    """A case checked and compiled once for all executors and robots that run it."""
+    """Return a case that is checked and compiled once for all executors and robots."""
     try:
         return Prepared(load(case.sources, case.main, strict=False))
     except LinkError as error:
@@ -219,13 +220,13 @@ def _refused(error: LinkError) -> Observation:
 
 
 def _submit(case: Case) -> str | None:
-    """The submit program is the first companion that ends in .sub."""
+    """Return the name of the submit program, the first companion file that ends in .sub."""
     names = [one.path for one in case.sources[1:] if one.path.lower().endswith(".sub")]
     return names[0][: -len(".sub")] if names else None
 
 
 def observed(done: session.RunResult, wanted: session.RunSetup) -> Observation:
-    """What was seen of a run, for expectations to be evaluated on."""
+    """Return the observation of a run, for the evaluation of expectations."""
     outcome = done.outcome
     return Observation(
         events=tuple(

@@ -1,7 +1,7 @@
-"""Laws that hold for every motion, whatever its program: it does what was programmed.
+"""Laws that hold for every motion of every program: it does what was programmed.
 
-It ends at its target, with the Status and Turn of that; a CIRC is the programmed circle; nothing
-is faster than programmed; and the tool is where axes and machine data put it.
+A motion ends at its target, with the Status and Turn of the target. A CIRC is the programmed
+circle. Nothing is faster than programmed. The tool is where axes and machine data put it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _ANGLES: Final = ("A", "B", "C")
 
 
 def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """What the motions of a run do that was not programmed."""
+    """Yield what the motions of a run do against their program."""
     path, machine = seen.path, seen.machine
     if path is not None and machine is not None:
         yield from _displaced(path, machine)
@@ -51,7 +51,7 @@ def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
 
 
 def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
-    """Set-points whose tool is not where machine data and axes put it [POS-11]."""
+    """Yield the first set-point whose tool is not where machine data and axes put it [POS-11]."""
     flanges = flanges_of(machine.chain, path.axes[:, :ROBOT_AXES])
     bounds = [int(np.searchsorted(path.times, time)) for time, _ in path.placements]
     for first, last, (_, placement) in zip(
@@ -75,7 +75,7 @@ def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
 
 
 def _arrives(one: EndedMotion) -> Iterator[Violation]:
-    """Not at its target [MOT-20]: what of it was programmed."""
+    """Yield components of the target that a motion does not reach [MOT-20]."""
     motion = one.motion
     target = dict(motion.target)
     if not one.stops or motion.is_relative or motion.angle is not None or motion.parts:
@@ -100,9 +100,9 @@ def _arrives(one: EndedMotion) -> Iterator[Violation]:
 
 
 def _stands(one: EndedMotion) -> Iterator[Violation]:
-    """Not at rest where it begins behind an exact stop, or ends with one.
+    """Yield a motion that is not at rest when it begins after, or ends with, an exact stop.
 
-    Beside rest an axis goes no further than the greatest jerk takes it, j·t³/6.
+    At a distance of t from rest, an axis can have moved by at most j·t³/6, with the largest jerk j.
     """
     axes, times = (*one.machine.axes, *one.machine.externals), one.path.times
     jerks = np.array([axis.dynamics.jerk if axis.dynamics else math.inf for axis in axes])
@@ -122,12 +122,12 @@ def _stands(one: EndedMotion) -> Iterator[Violation]:
 
 
 def _has_six(machine: MachineData) -> bool:
-    """Whether an arm can have any orientation."""
+    """Return whether an arm can take any orientation."""
     return machine.palletising is None and len(machine.chain.joints) == ROBOT_AXES
 
 
 def _has_posture(one: EndedMotion) -> Iterator[Violation]:
-    """A PTP to a pose with Status and Turn that has others [POS-03, POS-04, POS-05, POS-07]."""
+    """Yield a PTP that ends with another Status or Turn [POS-03, POS-04, POS-05, POS-07]."""
     target, machine = one.motion.target, one.machine
     if not one.stops or one.motion.kind not in ("PTP", "SPTP") or not {"X", "Y", "Z"} & set(target):
         return
@@ -154,7 +154,7 @@ def _has_posture(one: EndedMotion) -> Iterator[Violation]:
 
 
 def _ahead(machine: MachineData, axes: Sequence[float]) -> float:
-    """How far in mm the wrist centre lies in front of axis 1, along the X axis turned by it."""
+    """Return how far the wrist centre is in front of axis 1 in mm, along the turned X axis."""
     chain = machine.chain
     wrist = Chain(chain.joints[:4], Pose.of())
     still = np.array([[0.0, *axes[1:]]])
@@ -163,7 +163,7 @@ def _ahead(machine: MachineData, axes: Sequence[float]) -> float:
 
 
 def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
-    """A CIRC whose circle its auxiliary or end point is not on [MOT-20]."""
+    """Yield a CIRC whose auxiliary or end point is not on its circle [MOT-20]."""
     motion = one.motion
     points = [motion.auxiliary or {}, motion.target]
     if motion.kind not in ("CIRC", "SCIRC") or motion.is_relative or not one.begins:
@@ -185,9 +185,9 @@ def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
 
 
 def _passes_points(one: EndedMotion) -> Iterator[Violation]:
-    """A spline block that passes one of its points aside [SPL-03]."""
+    """Yield a spline block that does not pass through one of its points [SPL-03]."""
     motion = one.motion
-    parts = motion.parts if one.stops else motion.parts[:-1]  # the blend may begin on the last
+    parts = motion.parts if one.stops else motion.parts[:-1]  # a blend may cut the last part
     if motion.kind != "SPLINE" or motion.settings.placement.mode is not IpoMode.BASE:
         return
     targets = [target for part in parts for target in (part.auxiliary, part.target) if target]
@@ -202,7 +202,7 @@ def _passes_points(one: EndedMotion) -> Iterator[Violation]:
 
 
 def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
-    """Faster than programmed: the tool on its path [MOT-04], an axis in a PTP [MOT-02]."""
+    """Yield a path faster than programmed [MOT-04], or a PTP with a faster axis [MOT-02]."""
     motion, settings = one.motion, one.motion.settings
     if motion.kind == "PTP_SPLINE" or one.rows.stop - one.rows.start < 3:
         return

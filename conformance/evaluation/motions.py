@@ -1,7 +1,7 @@
-"""Completed motions of a run, with what was programmed and the movement of the axes.
+"""The completed motions of a run, with what was programmed and the movement of the axes.
 
-Where the tool is follows from axes and machine data alone (`flanges_of`), so that no kinematics of
-ours says where its own set-points lie.
+The pose of the tool is computed from axes and machine data alone (`flanges_of`), independently of
+the kinematics that has produced the set-points.
 """
 
 from __future__ import annotations
@@ -25,19 +25,20 @@ from interp.robot.simulation.tracking import PathRecord
 
 Array = npt.NDArray[np.float64]
 
-#: mm and degrees by which rounding may move a set-point.
+#: mm and degrees of rounding in a set-point.
 ROUNDING: Final = 1e-4
-#: mm and degrees that lie between two samples, where a place is looked up at its own moment.
+#: mm and degrees of tolerance for a position that is interpolated between two samples.
 NEAR_MM: Final = 0.5
 NEAR_DEGREES: Final = 0.2
 
 
 @dataclass(frozen=True)
 class EndedMotion:
-    """A motion that came to its end, times in µs; where it is blended, the blend is left out.
+    """A motion that came to its end, with times in µs; a blend at either end is left out.
 
-    ``begins`` and ``stops``: it starts from rest, and comes to it. ``planned`` is the time at
-    which its way was known. ``is_held``: a BRAKE, RESUME or stop lies between that and its end.
+    ``begins`` and ``stops`` say whether it starts from rest and ends at rest. ``planned`` is the
+    time at which it was planned. ``is_held`` is set if a BRAKE, RESUME or stop happened between
+    that time and its end.
     """
 
     motion: Motion
@@ -53,7 +54,7 @@ class EndedMotion:
 
     @cached_property
     def rows(self) -> slice:
-        """Its samples that lie in no blend."""
+        """The rows of its samples outside of blends."""
         times = self.path.times
         return slice(
             int(np.searchsorted(times, self.start)), int(np.searchsorted(times, self.end, "right"))
@@ -61,17 +62,17 @@ class EndedMotion:
 
     @cached_property
     def ends(self) -> Array:
-        """The axes at its start and its end, (2, axes), which may be within a cycle of the last."""
+        """The axes at start and end, (2, axes); the end may be a cycle after the last sample."""
         times = self.path.times
         return between(times, self.path.axes, [self.start, self.end], _cycle(times))
 
     @cached_property
     def tools(self) -> Array:
-        """The tool in the base at its samples, (n, 4, 4)."""
+        """The tool relative to the base at its samples, (n, 4, 4)."""
         return self.poses(self.path.axes[self.rows])
 
     def poses(self, axes: Array) -> Array:
-        """The tool in the base, (n, 4, 4), where axes (n, axes) stand."""
+        """Return the tool relative to the base, (n, 4, 4), for axes (n, axes)."""
         placement, own = self.motion.settings.placement, axes[:, ROBOT_AXES:]
         flanges = flanges_of(self.machine.chain, axes[:, :ROBOT_AXES])
         poses: Array = (
@@ -81,7 +82,7 @@ class EndedMotion:
 
     @cached_property
     def axis_rates(self) -> Array | None:
-        """Speed, acceleration and jerk that axes have in a PTP, (3, axes); ``None``: not known."""
+        """The largest speed, acceleration and jerk in a PTP, (3, axes); ``None`` if unknown."""
         settings, axes = self.motion.settings, (*self.machine.axes, *self.machine.externals)
         dynamics = [axis.dynamics for axis in axes if axis.dynamics is not None]
         if len(dynamics) < len(axes):
@@ -103,15 +104,15 @@ class EndedMotion:
         )
 
     def broken(self, law: str, actual: str, rule: str = "") -> Violation:
-        """A violation at its line."""
+        """Return a violation at the line of the motion."""
         return Violation(self.event, law, actual, rule)
 
 
 def ended(seen: Observation) -> Iterator[EndedMotion]:
-    """The motions that came to their end with no other on in between.
+    """Yield the motions that came to their end without another motion in between.
 
-    A CIRC behind a RESUME is left out, as it is no circle [INT-14]. None where path or machine
-    data are unknown.
+    A CIRC after a RESUME is left out, because it is no longer a circle [INT-14]. Yield nothing if
+    path or machine data are unknown.
     """
     path, machine = seen.path, seen.machine
     if path is None or machine is None:
@@ -143,17 +144,17 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
 
 
 def follows(one: EndedMotion, other: EndedMotion) -> bool:
-    """Whether the second motion is the next that was planned behind the first."""
+    """Return whether the second motion was planned directly after the first."""
     return other.motion.number == one.motion.number + 1
 
 
 def _cycle(times: npt.NDArray[np.int64]) -> int:
-    """µs from one sample to the next."""
+    """Return the time between two samples in µs."""
     return int(times[-1] - times[-2]) if len(times) > 1 else 0
 
 
 def flanges_of(chain: Chain, axes: Array) -> Array:
-    """Poses of the flange (n, 4, 4) in front of the foot, joint by joint, for axes (n, 6)."""
+    """Return flange poses (n, 4, 4) relative to the foot, joint by joint, for axes (n, 6)."""
     pose = np.eye(4)
     for joint, values in zip(chain.joints, axes.T, strict=False):
         move = np.tile(np.eye(4), (len(values), 1, 1))

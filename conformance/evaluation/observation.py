@@ -1,8 +1,8 @@
 """Observations of a case: findings, or a trace and a path.
 
-It comes from our executors (`conformance.evaluation.execution`) or from a recording made on a
-controller (`conformance.recording`), and is evaluated the same way. Values are as in the trace,
-that is as JSON has them (`interp.values.json_form`).
+An observation comes from our executors (`conformance.evaluation.execution`) or from a recording of
+a controller (`conformance.recording`), and is evaluated in the same way. Values are in the form of
+the trace, that is as JSON (`interp.values.json_form`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from interp.robot.simulation.tracking import PathRecord
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What a front end says of a line; ``code`` is KSS or KRL with a number, or ``syntax``."""
+    """A finding of a front end; ``code`` is KSS or KRL with a number, or ``syntax``."""
 
     file: str
     line: int
@@ -30,8 +30,8 @@ class Finding:
 class Event:
     """An event of the trace.
 
-    ``time`` is in µs of the virtual clock, ``None`` where it was not measured. ``fields`` are what
-    this kind of event has besides, as in docs/trace.md.
+    ``time`` is in µs of the virtual clock, ``None`` if it was not measured. ``fields`` are the
+    further fields of this kind of event, as in docs/trace.md.
     """
 
     time: int | None
@@ -42,13 +42,13 @@ class Event:
     fields: Mapping[str, Any] = field(default_factory=dict)
 
     def record(self) -> dict[str, Any]:
-        """It as JSON, as in a trace."""
+        """Return the event as JSON, as in a trace."""
         at = f"{self.file}:{self.line}" if self.file else ""
         return {"t": self.time, "task": self.task, "kind": self.kind, "at": at, **self.fields}
 
     @staticmethod
     def of(record: Mapping[str, Any]) -> Event:
-        """The event of a line of a trace; raises `ValueError` where it is none."""
+        """Return the event in a line of a trace; raise `ValueError` if the line is malformed."""
         try:
             rest = dict(record)
             time, task = rest.pop("t", None), rest.pop("task", "robot")
@@ -68,14 +68,14 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """All that was seen of a case.
+    """Everything that was observed of a case.
 
-    ``findings`` where it was read or checked only. ``ending`` is how a run ended: ``end``,
-    ``fault``, ``halt``, ``running`` (its time was over), or ``crash`` with the reason in ``note``.
-    ``cycle`` is the interpolation cycle in µs; ``is_exact``: times are known to the µs.
-    ``watched`` are the kinds of events that a recording says it has, ``None`` where all are there.
-    ``machine`` is the arm whose limits the path has to keep, where it is known. ``values`` are
-    those of variables when the run was over, by name in upper case, where they were asked for.
+    ``findings`` belong to a case that was only parsed or checked. ``ending`` is ``end``, ``fault``,
+    ``halt``, ``running`` (the time was over), or ``crash`` with the reason in ``note``. ``cycle``
+    is the interpolation cycle in µs. ``is_exact`` says that times are known to the µs. ``watched``
+    are the kinds of events that a recording contains; ``None`` if all are present. ``machine`` is
+    the arm whose limits the path must keep, if known. ``values`` are those of requested variables
+    at the end of the run, by name in upper case.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -91,11 +91,11 @@ class Observation:
     values: Mapping[str, Any] = field(default_factory=dict)
 
     def of_kind(self, *kinds: str) -> Iterable[Event]:
-        """The events of some kinds, in their order."""
+        """Return the events of some kinds, in their order."""
         return (event for event in self.events if event.kind in kinds)
 
     def on_line(self, file: str, line: int, *kinds: str) -> list[Event]:
-        """The events of some kinds that a line caused; all of them where ``file`` is empty."""
+        """Return the events of some kinds at a line; those of all lines if ``file`` is empty."""
         return [
             event
             for event in self.events

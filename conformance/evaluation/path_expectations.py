@@ -1,8 +1,8 @@
 """Expectations about the path of a motion: shape, speed, tracking.
 
-The part of a path that belongs to a line is that of its last motion, from start to end. Its own
-part, for lines and circles, is what lies between the blends. What it has to be is analytic and
-stands in the case; the path is that of the set-points, in each interpolation cycle.
+The path of a line is that of its last motion, from start to end. For lines and circles, only the
+section between the blends is compared. The expected path is given analytically in the case; the
+observed path are the set-points in each interpolation cycle.
 """
 
 from __future__ import annotations
@@ -39,17 +39,19 @@ from interp.values.poses import Pose
 
 Array = npt.NDArray[np.float64]
 
-#: The usual tolerance of a speed, as a share of it.
+#: The usual tolerance of a speed, as a fraction of it.
 _SPEED: Final = 0.01
-#: How far a simulated arm may be off its path where a case does not say, in mm [design section 4].
+#: How far a simulated arm may be off its path in mm, unless a case says otherwise [design
+#: section 4].
 _TRACKING: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The motion of a line, times in µs; ``leave`` and ``join`` are the ends of its blend.
+    """The motion of a line, with times in µs.
 
-    ``is_whole``: it is the path of the whole run.
+    ``entered`` is the end of the blend before it, or its start. ``leave`` and ``join`` are the
+    start and the end of the blend after it. With ``is_whole`` it is the path of the whole run.
     """
 
     path: PathRecord
@@ -62,21 +64,21 @@ class _Part:
 
     @property
     def points(self) -> Array:
-        """Where the tool was, X, Y and Z."""
+        """X, Y and Z of the tool in mm at all samples."""
         return np.asarray(self.path.points[:, :3], dtype=np.float64)
 
     def at(self, time: float) -> Array:
-        """Where the tool was at a time."""
+        """Return X, Y and Z of the tool at a time in µs."""
         return between(self.path.times, self.points, time)
 
     def own(self) -> Array:
-        """Samples of the tool between the blends."""
+        """Return the samples of the tool between the blends."""
         last = self.end if self.leave is None else self.leave
         kept = (self.path.times >= self.entered) & (self.path.times <= last)
         return self.points[kept]
 
     def stretches(self) -> Iterator[slice]:
-        """Rows during which frames and tool stayed: between them points do not belong together."""
+        """Yield rows with the same frames and tool; points of different rows are not comparable."""
         if not self.is_whole:
             kept = np.flatnonzero(
                 self.within(self.start, self.end if self.join is None else self.join)
@@ -90,13 +92,13 @@ class _Part:
         yield from starmap(slice, pairwise(bounds))
 
     def within(self, start: int, end: int) -> npt.NDArray[np.bool_]:
-        """Which samples lie between two times."""
+        """Return which samples lie between two times."""
         kept: npt.NDArray[np.bool_] = (self.path.times >= start) & (self.path.times <= end)
         return kept
 
 
 def evaluate_on_path(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
-    """Whether an expectation about the path is met."""
+    """Return whether an expectation about the path is met, with what was observed."""
     if seen.path is None:
         return "open", "no path was recorded"
     part = _part(one, seen, seen.path)
@@ -166,7 +168,7 @@ def _path(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
 
 
 def _joint(one: Expectation, part: _Part) -> Evaluated:
-    """All axes have come the same share of their way [MOT-01]."""
+    """Check that all axes always have covered the same fraction of their way [MOT-01]."""
     last = part.end if part.leave is None else part.leave
     axes = part.path.axes[part.within(part.entered, last)][:, :6]
     if not len(axes):
@@ -178,7 +180,7 @@ def _joint(one: Expectation, part: _Part) -> Evaluated:
 
 
 def _distance(part: _Part, point: Array) -> float:
-    """How near the tool comes to a point while the motion, and the blend behind it, continues."""
+    """Return the smallest distance of the tool from a point, including the blend that follows."""
     if part.is_whole:
         stretches = [_refined(part, rows) for rows in part.stretches()]
         return min(float(nearest(points[:-1], points[1:], point).min()) for points in stretches)
@@ -188,13 +190,13 @@ def _distance(part: _Part, point: Array) -> float:
 
 
 def _refined(part: _Part, rows: slice) -> Array:
-    """The points of some rows and others between them, at least two."""
+    """Return the points of some rows with interpolated points between them, at least two."""
     times, points = part.path.times[rows], part.points[rows]
     return refined(times, points, float(times[0]), float(times[-1]), 4 * len(times) + 2)
 
 
 def _avoids(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
-    """The tip of the tool stays out of a zone in $WORLD, between samples too."""
+    """Check that the tip of the tool stays out of a zone in $WORLD, also between samples."""
     numbers = _numbers(one)
     zone, frame = (numbers[:-6], numbers[-6:]) if "in" in one.arguments else (numbers, np.zeros(6))
     inverse = matrix_of(Pose.of(*frame.tolist()).inverse())
@@ -254,7 +256,7 @@ def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) ->
 
 
 def _continuous(poses: Array) -> Array:
-    """Poses whose angles do not jump by a turn, so that there is something between them."""
+    """Return poses whose angles are unwrapped, so that they can be interpolated."""
     return np.hstack((poses[:, :3], np.unwrap(poses[:, 3:], period=360.0, axis=0)))
 
 
@@ -285,7 +287,7 @@ def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
 
 
 def _fastest(one: Expectation, part: _Part) -> Evaluated:
-    """The highest speed of the tool in $WORLD in the whole run, and when that was."""
+    """Check the highest speed of the tool in $WORLD during the whole run."""
     wanted, fastest, when = float(one.arguments[-1]), 0.0, 0
     for rows in part.stretches():
         times = part.path.times[rows]
@@ -302,7 +304,7 @@ def _fastest(one: Expectation, part: _Part) -> Evaluated:
 
 
 def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
-    """No axis is faster than its machine data allow; ``smooth``: none changes its speed faster."""
+    """Check that no axis exceeds its speed limit, or with ``smooth`` its acceleration limit."""
     if seen.machine is None:
         return "open", "the limits of the arm are not known"
     last = part.end if part.join is None else part.join
@@ -323,7 +325,7 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
 
 
 def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
-    """The measured tool is near the set-points."""
+    """Check that the measured tool is near its set-points."""
     measured = part.path.points_measured
     if measured is None:
         return "open", "nothing was measured"

@@ -1,6 +1,6 @@
-"""Distances of points from lines, circles and arcs of blends, and interpolation of samples.
+"""Distances of points from lines, circles and blend arcs, and interpolation of samples.
 
-Points are in mm, shape (n, 3). What is analytic here comes from the case, never from our planner.
+Points are in mm, shape (n, 3). The analytic shapes come from the case, never from our planner.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-#: How far the tool may be off where nothing else is said, and an axis, a linear one in mm.
+#: The usual tolerances: mm for the tool, degrees (mm if linear) for an axis.
 TOLERANCE_MM: Final = 0.05
 TOLERANCE_DEGREES: Final = 0.01
-#: `change_rates` overestimate speeds, accelerations and jerks by so much at most.
+#: The largest factor by which `change_rates` overestimates speeds, accelerations and jerks.
 RATE_MARGIN: Final = 1.02
 
-#: So many points stand for the arc of a blend: 0.001 mm apart from it for arcs of 1 m.
+#: The number of points of a sampled blend arc; its error is 0.001 mm for arcs of 1 m.
 _POINTS = 4_001
-#: An axis that goes less far, in degrees or mm, does not move.
+#: Degrees or mm below which an axis does not move.
 _STILL = 1e-9
 
 
 def from_line(points: Array, start: Array, end: Array) -> Array:
-    """The distance of each point from a line segment."""
+    """Return the distance of each point from a line segment."""
     along = end - start
     length = float(along @ along)
     share = (
@@ -35,7 +35,7 @@ def from_line(points: Array, start: Array, end: Array) -> Array:
 
 
 def nearest(starts: Array, ends: Array, point: Array) -> Array:
-    """The distance of a point from each of some line segments, their ends of shape (n, 3)."""
+    """Return the distance of a point from each of n line segments, with ends of shape (n, 3)."""
     along = ends - starts
     squares = np.einsum("ij,ij->i", along, along)
     shares = np.einsum("ij,ij->i", point - starts, along) / np.where(squares > 0.0, squares, 1.0)
@@ -44,9 +44,9 @@ def nearest(starts: Array, ends: Array, point: Array) -> Array:
 
 
 def crosses_box(starts: Array, ends: Array, low: Array, high: Array) -> npt.NDArray[np.bool_]:
-    """Which line segments, their ends of shape (n, 3), have a point inside a box, not only on it.
+    """Return which line segments, with ends of shape (n, 3), have a point strictly inside a box.
 
-    ``low`` and ``high`` are opposite corners of the box, whose edges lie along the axes.
+    ``low`` and ``high`` are opposite corners of the box, whose edges are parallel to the axes.
     """
     along = ends - starts
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -61,9 +61,10 @@ def crosses_box(starts: Array, ends: Array, low: Array, high: Array) -> npt.NDAr
 
 
 def circle_of(first: Array, second: Array, third: Array) -> tuple[Array, Array]:
-    """The centre of the circle through three points, and its axis as a unit vector.
+    """Return the centre of the circle through three points, and its axis as a unit vector.
 
-    Seen against the axis it turns to the left. Raises `ValueError` for points on a line.
+    Seen from the tip of the axis, the circle runs counterclockwise. Raises `ValueError` for
+    collinear points.
     """
     one, other = second - first, third - first
     normal = np.cross(one, other)
@@ -76,7 +77,7 @@ def circle_of(first: Array, second: Array, third: Array) -> tuple[Array, Array]:
 
 
 def from_circle(points: Array, first: Array, second: Array, third: Array) -> Array:
-    """The distance of each point from the circle through three points."""
+    """Return the distance of each point from the circle through three points."""
     centre, axis = circle_of(first, second, third)
     radius = float(np.linalg.norm(first - centre))
     height = (points - centre) @ axis
@@ -85,9 +86,10 @@ def from_circle(points: Array, first: Array, second: Array, third: Array) -> Arr
 
 
 def from_arc(points: Array, start: Array, corner: Array, end: Array) -> Array:
-    """The distance of each point from the parabola that leaves and joins two lines at their corner.
+    """Return the distance of each point from the parabola of a blend between two lines.
 
-    ``start`` and ``end`` are where it leaves the first line and joins the second.
+    The parabola leaves the first line at ``start`` and joins the second at ``end``; ``corner`` is
+    where the lines meet.
     """
     share = np.linspace(0.0, 1.0, _POINTS)[:, None]
     arc = (1 - share) ** 2 * start + 2 * share * (1 - share) * corner + share**2 * end
@@ -95,7 +97,7 @@ def from_arc(points: Array, start: Array, corner: Array, end: Array) -> Array:
 
 
 def from_synchronous(axes: Array) -> float | None:
-    """How far axes are from having come the same share of their way; ``None`` where none moves."""
+    """Return the largest deviation of axes from synchronous motion; ``None`` if none moves."""
     way = axes[-1] - axes[0]
     longest = int(np.argmax(np.abs(way)))
     if abs(way[longest]) < _STILL:
@@ -107,10 +109,10 @@ def from_synchronous(axes: Array) -> float | None:
 def between(
     times: npt.NDArray[np.int64], rows: Array, moments: npt.ArrayLike, after: int = 0
 ) -> Array:
-    """Rows at other times, by the cubic through the four samples around each; the ends are kept.
+    """Return rows at other times, interpolated by the cubic through the four nearest samples.
 
-    ``rows`` is of shape (n, columns), the result of shape (moments, columns), or (columns,) for one
-    moment. The last cubic continues for ``after`` µs.
+    ``rows`` has shape (n, columns). The result has shape (moments, columns), or (columns,) for one
+    moment. Moments outside are moved to the ends; the last cubic is extrapolated for ``after`` µs.
     """
     last = times[-1] + after
     wanted = np.clip(np.atleast_1d(np.asarray(moments, dtype=np.float64)), times[0], last)
@@ -130,20 +132,20 @@ def between(
 def refined(
     times: npt.NDArray[np.int64], rows: Array, start: float, end: float, count: int = 200
 ) -> Array:
-    """Rows at so many times from one to another."""
+    """Return rows at ``count`` equidistant times from ``start`` to ``end``."""
     return between(times, rows, np.linspace(start, end, count))
 
 
 def change_rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
-    """Differences of rows a second, shape (n - 1, columns)."""
+    """Return the difference quotients of rows per second, shape (n - 1, columns)."""
     return np.asarray(np.diff(rows, axis=0) / (np.diff(times)[:, None] / 1e6))
 
 
 def drawn(kind: str, points: Array, count: int = 33) -> Array:
-    """Points along a ``line``, a ``circle`` or the arc of a ``blend``, to be looked at.
+    """Return points along a ``line``, a ``circle`` or the arc of a ``blend``, for drawing.
 
-    ``points`` are those that define it, shape (2, 3) or (3, 3); a circle goes from the first over
-    the second to the third.
+    ``points`` define the shape, (2, 3) or (3, 3); a circle goes from the first through the second
+    to the third.
     """
     share = np.linspace(0.0, 1.0, count)[:, None]
     if kind == "line":

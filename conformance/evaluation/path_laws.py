@@ -1,4 +1,4 @@
-"""Laws of every path of set-points: limits of the axes, and the shape of each motion."""
+"""Laws that every path of set-points obeys: limits of the axes, and the shape of each motion."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from interp.robot.simulation.tracking import PathRecord
 
 Array = npt.NDArray[np.float64]
 
-#: A path of fewer rows has no jerk, and no shape that it could miss.
+#: The smallest number of rows of a path that is checked.
 _FEWEST: Final = 4
 _LIMITS: Final = "set-points keep the limits of the axes"
 
 
 def deviations(seen: Observation) -> Iterator[Violation]:
-    """What of a path is beyond the machine data, at most one of a kind, and which motions stray.
+    """Yield violations of axis limits, at most one of each kind, and motions of a wrong shape.
 
-    Nothing where there is no path; no limits where the machine data are not known.
+    Yield nothing if there is no path, and no limits if the machine data is unknown.
     """
     path = seen.path
     if path is not None and len(path.times) >= _FEWEST:
@@ -43,7 +43,7 @@ def deviations(seen: Observation) -> Iterator[Violation]:
 
 
 def _excesses(seen: Observation, path: PathRecord) -> Iterator[Violation]:
-    """Software limits [MOT-15], highest speeds [MOT-06], accelerations [MOT-02] and jerks."""
+    """Check software limits [MOT-15], speeds [MOT-06], accelerations [MOT-02] and jerks."""
     if seen.machine is None:
         return
     axes = (*seen.machine.axes, *seen.machine.externals)[: path.axes.shape[1]]
@@ -72,13 +72,13 @@ def _excesses(seen: Observation, path: PathRecord) -> Iterator[Violation]:
 
 
 def _violation(seen: Observation, time: int, law: str, actual: str, rule: str) -> Violation:
-    """With the motion that is under way at a time in µs."""
+    """Return a violation at the motion that runs at a time in µs."""
     begun = [one for one in seen.of_kind("motion_start") if (one.time or 0) <= time]
     return Violation(begun[-1] if begun else None, law, f"{actual} at {time / 1e6:.3f} s", rule)
 
 
 def _drifts(seen: Observation, path: PathRecord) -> Iterator[Violation]:
-    """That the arm moves while no motion is under way, up to a BRAKE or RESUME; the first time."""
+    """Yield the first movement of the arm between motions, up to a BRAKE or RESUME."""
     since: int | None = 0
     for one in seen.of_kind("motion_start", "motion_end", "brake", "resume", "end"):
         if one.kind == "motion_end":
@@ -96,13 +96,13 @@ def _drifts(seen: Observation, path: PathRecord) -> Iterator[Violation]:
 
 
 def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:
-    """Motions that are no line, no circle, or not synchronous [MOT-01] between their blends.
+    """Yield motions that are no line, no circle, or not synchronous [MOT-01] between their blends.
 
-    With a fixed tool it is the base in the tool that has the shape [ORI-07].
+    With a fixed tool, the base relative to the tool has the shape [ORI-07]; it is not checked.
     """
     if any(placement.mode is not IpoMode.BASE for _, placement in path.placements):
         return
-    # Other frames, or a motion in between where an interrupt has left the path: another shape.
+    # A change of frames, or a motion of an interrupt routine in between, changes the shape.
     changes = [time for time, _ in path.placements]
     changes += [one.time for one in seen.of_kind("motion_start") if one.time is not None]
     for start, first, last in _own_parts(seen):
@@ -127,7 +127,7 @@ def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:
 
 
 def _own_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:
-    """The motions that came to their end: start, and from when to when they were in no blend."""
+    """Yield each ended motion with the times in µs between which it was in no blend."""
     found: dict[tuple[str, object], Event] = {}
     for one in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end"):
         found.setdefault((one.kind, one.fields.get("motion")), one)
@@ -140,7 +140,7 @@ def _own_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:
 
 
 def _off_circle(points: Array) -> float:
-    """How far points are from the circle through three of them; 0 where these make none."""
+    """Return the deviation of points from a circle through three of them; 0 if collinear."""
     try:
         return float(from_circle(points, points[0], points[len(points) // 2], points[-1]).max())
     except ValueError:

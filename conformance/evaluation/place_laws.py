@@ -1,7 +1,7 @@
-"""Laws about where blends begin and end and where triggers switch, as docs/motion.md says.
+"""Laws about where blends begin and end and when triggers switch, as docs/motion.md says.
 
-The ways are the programmed ones, from point to point, not the executed ones: the share of a blend
-follows from targets, criteria and machine data alone.
+They use the programmed paths, from point to point, instead of the executed ones: the extent of a
+blend follows from targets, criteria and machine data alone.
 """
 
 from __future__ import annotations
@@ -25,34 +25,34 @@ from interp.robot.kinematics.placement import IpoMode
 
 _SHARES: Final = np.linspace(0.0, 1.0, 501)[:, None]
 _POINT: Final = ("X", "Y", "Z")
-#: Tolerance of a zone, in mm and degrees.
+#: Tolerance of a blend zone in mm and degrees.
 _NEAR_MM, _NEAR_DEGREES = 0.05, 0.01
-#: Tolerance of times in µs: they are rounded, and so are the ends of motions.
+#: Tolerance of times in µs, because times and ends of motions are rounded.
 _NEAR_TIME: Final = 3
-#: The largest share of a way that a blend takes.
+#: The largest fraction of a motion that a blend may use.
 _HALF: Final = 0.5
 
 
 @dataclass(frozen=True)
 class _Way:
-    """A motion to its target: the axes of a PTP (n, axes), where known; the tool (n, 3)."""
+    """The programmed path of a motion: axes (n, axes) of a PTP if known, and tool points (n, 3)."""
 
     axes: Array | None
     points: Array
 
     @cached_property
     def sums(self) -> Array:
-        """The way of the tool up to each point, mm."""
+        """The path length of the tool up to each point in mm."""
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate(([0.0], np.cumsum(steps)))
 
     @property
     def middle(self) -> float:
-        """The way up to half of its parameter, mm."""
+        """The path length up to the middle of the parameter in mm."""
         return float(np.interp(_HALF, np.linspace(0.0, 1.0, len(self.sums)), self.sums))
 
     def gone(self, point: Array) -> float:
-        """The way up to what of it is nearest to a point, mm."""
+        """Return the path length in mm up to the place that is nearest to a point."""
         starts, along = self.points[:-1], np.diff(self.points, axis=0)
         squares = np.maximum((along**2).sum(axis=1), 1e-12)
         shares = np.clip(((point - starts) * along).sum(axis=1) / squares, 0.0, 1.0)
@@ -62,7 +62,7 @@ class _Way:
 
 
 def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Blends that take more of a motion than their criteria say, or less of both [BLD-07]."""
+    """Yield blends that use more of a motion than their criteria say, or less of both [BLD-07]."""
     law = "a blend takes of both motions what its criteria say"
     for (one, way), (other, further) in pairwise(_ways(motions)):
         if one.stops or other.begins or not one.motion.criteria or not follows(one, other):
@@ -85,9 +85,9 @@ def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
 def _excess(
     one: EndedMotion, way: _Way | None, criterion: str, first: EndedMotion, *, at_end: bool
 ) -> float | None:
-    """By how many tolerances a blend takes more of a motion than it should; ``None``: not known.
+    """Return by how many tolerances a blend uses too much of a motion; ``None`` if unknown.
 
-    ``first`` is the motion before the point: its $APO.CDIS counts on both sides.
+    ``first`` is the motion before the point, whose $APO.CDIS applies on both sides.
     """
     cdis = max(first.motion.settings.approximation.cdis, 0.0)
     is_both = one.motion.kind == "SPTP" and cdis > 0.0
@@ -110,7 +110,7 @@ def _excess(
 
 
 def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | None]]:
-    """The path of each motion, ``None`` if not all of it is given in numbers."""
+    """Yield each motion with its programmed path, ``None`` if that is not completely numeric."""
     axes: Array | None = None
     point: Array | None = None
     placement = None
@@ -135,7 +135,7 @@ def _way(
     origin: Array | None,
     last: Array | None,
 ) -> _Way | None:
-    """A way between axes, of a PTP, or between points, of a path; ``None``: not known."""
+    """Return the path between axes for a PTP, else between points; ``None`` if unknown."""
     motion = one.motion
     is_plain = not motion.parts and motion.angle is None and one.machine.palletising is None
     if not is_plain or motion.settings.placement.mode is not IpoMode.BASE:
@@ -157,13 +157,13 @@ def _way(
 
 
 def _tool(one: EndedMotion, axes: Array) -> Array:
-    """Where the tool is in the base (n, 3) with some axes."""
+    """Return the positions of the tool relative to the base (n, 3) for axes."""
     points: Array = one.poses(np.atleast_2d(axes))[:, :3, 3]
     return points
 
 
 def _axes(one: EndedMotion, before: Array | None) -> Array | None:
-    """The axes of a target given as axes; what it leaves out stays [MOT-16]."""
+    """Return the axes of a target given as axes; omitted ones keep their value [MOT-16]."""
     names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
     target = one.motion.target
     if before is None or one.motion.is_relative or not set(names[:ROBOT_AXES]) & set(target):
@@ -172,7 +172,7 @@ def _axes(one: EndedMotion, before: Array | None) -> Array | None:
 
 
 def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Array | None:
-    """The point that a target gives; what it leaves out stays [MOT-16]."""
+    """Return the point of a target; omitted components keep their value [MOT-16]."""
     given = set(_POINT) & set(target or {})
     if target is None or not given or one.motion.is_relative or (before is None and len(given) < 3):
         return None
@@ -185,9 +185,9 @@ def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Arr
 
 
 def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Triggers that switch at another time than follows from the path [TRG-02, TRG-04, TRG-08].
+    """Yield triggers that switch at a time that contradicts the path [TRG-02, TRG-04, TRG-08].
 
-    Nothing where not all of their motions came to their end, or some are of a spline block.
+    Yield nothing if some of their motions did not come to their end, or belong to a spline block.
     """
     stopped = min((one.time or 0 for one in seen.of_kind("brake", "resume", "halt")), default=None)
     motions = [one for one in motions if stopped is None or one.end <= stopped]
@@ -212,14 +212,14 @@ def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
             first, last = spans[0]
             yield Violation(event, law, f"{time} us, not {first:.0f} to {last:.0f}")
             return
-        if fitting:  # of places that overlap the one that is over first
+        if fitting:  # of overlapping periods, use the one that ends first
             spans.remove(min(fitting, key=itemgetter(1)))
 
 
 def _moments(
     place: Place, one: EndedMotion, before: EndedMotion | None, after: EndedMotion | None
 ) -> tuple[float, float]:
-    """Between which times in µs a place is passed, its delay included."""
+    """Return the period in µs in which a place is passed, its delay included."""
     earliest = one.start if before is None else before.end
     latest = one.end if after is None else after.start
     end = one.end if after is None else after.event.time or 0

@@ -1,7 +1,7 @@
-"""Laws of every run, whatever its program: the order of events in a trace.
+"""Laws that every run obeys, whatever its program: the order of events in a trace.
 
-A law needs no expectation, so that a case notices what goes wrong beside what it is about. Where no
-rule of KRL says it, docs/trace.md does.
+A law needs no expectation. So a case also notices errors that are unrelated to what it states. A
+law that no rule of KRL states is stated in docs/trace.md.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ from typing import Final
 
 from conformance.evaluation.observation import Event, Observation
 
-#: $ADVANCE is at most 5 [ADV-01]; the motion under way is none of them.
+#: $ADVANCE is at most 5, not counting the running motion [ADV-01].
 _MOST_AHEAD: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """An event that breaks a law: the law, what was seen, and the rule of KRL that says it.
+    """An event that violates a law: the law, what was observed, and the rule of KRL if any.
 
-    Without an event where what breaks it comes before all of them.
+    ``event`` is ``None`` if the violation is before all events.
     """
 
     event: Event | None
@@ -30,7 +30,7 @@ class Violation:
 
 
 def violations(seen: Observation) -> Iterator[Violation]:
-    """The first violation of each law in a run whose events are all known."""
+    """Yield the first violation of each law, in a run whose events are all known."""
     for law in (_in_time, _changes, _levels, _motions, _ahead, _faults, _ends):
         found = next(law(seen.events), None)
         if found is not None:
@@ -49,7 +49,7 @@ def _in_time(events: Sequence[Event]) -> Iterator[Violation]:
 
 
 def _changes(events: Sequence[Event]) -> Iterator[Violation]:
-    """Inputs and outputs are reported where they change."""
+    """Inputs and outputs are reported when they change, and only then."""
     values: dict[tuple[object, object], object] = {}
     for one in events:
         if one.kind in ("in", "out", "anout"):
@@ -62,7 +62,7 @@ def _changes(events: Sequence[Event]) -> Iterator[Violation]:
 
 
 def _levels(events: Sequence[Event]) -> Iterator[Violation]:
-    """Routines of interrupts nest, each with a higher priority than what it interrupts."""
+    """Interrupt routines nest, each with a higher priority than what it interrupts."""
     levels: dict[str, list[object]] = {}
     for one in events:
         priority = one.fields.get("priority")
@@ -84,9 +84,10 @@ def _is_higher(priority: object, other: object) -> bool:
 
 
 def _motions(events: Sequence[Event]) -> Iterator[Violation]:
-    """Motions begin in the order in which they are planned, one behind the other.
+    """Motions begin in the order of planning, one after the other.
 
-    Up to a BRAKE or RESUME: then the path is left, and others may come before it is gone on.
+    This is checked up to a BRAKE or RESUME. After that the arm may leave the path, and other
+    motions may come before it continues.
     """
     planned = started = 0
     is_moving = False
@@ -116,7 +117,7 @@ def _motions(events: Sequence[Event]) -> Iterator[Violation]:
 
 
 def _ahead(events: Sequence[Event]) -> Iterator[Violation]:
-    """The advance run is at most so many motions ahead of the robot."""
+    """The advance run is at most `_MOST_AHEAD` motions ahead of the robot."""
     planned = started = 0
     for one in events:
         number = one.fields.get("motion")
@@ -130,7 +131,7 @@ def _ahead(events: Sequence[Event]) -> Iterator[Violation]:
 
 
 def _faults(events: Sequence[Event]) -> Iterator[Violation]:
-    """The message of a fault that has a number is shown before, at the same place and time."""
+    """The message of a fault with a number appears before it, at the same place and time."""
     shown: set[tuple[object, ...]] = set()
     for one in events:
         number = one.fields.get("number")
@@ -142,7 +143,7 @@ def _faults(events: Sequence[Event]) -> Iterator[Violation]:
 
 
 def _ends(events: Sequence[Event]) -> Iterator[Violation]:
-    """A program ends or fails once, and begins no further statement."""
+    """A program ends or fails once, and begins no statement after that."""
     over: set[str] = set()
     for one in events:
         if one.kind in ("line", "end", "fault") and one.task in over:

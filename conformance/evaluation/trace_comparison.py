@@ -1,8 +1,8 @@
-"""The first difference between two runs of one case, with the state of each at that point.
+"""The first difference between two runs of a case, with the state of both at that point.
 
-Executors conform when their traces are equal, full level included [docs/trace.md].
-`first_divergence` finds the first event that differs and, for both sides, the value of every
-variable and output at that point, as the trace has reported them.
+Executors conform to each other if their traces are equal, at the full level too [docs/trace.md].
+`first_divergence` finds the first event that differs. For both sides it reports the values of all
+variables and outputs at that point, reconstructed from the trace.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ import numpy as np
 from conformance.evaluation.observation import Event, Observation
 from interp.robot.simulation.tracking import PathRecord
 
-#: How many events before the divergence are kept to be shown.
+#: How many events before the divergence are kept for display.
 _BEFORE: Final = 5
-#: Set-points of two executors come from one planner: they are equal up to this, in degrees.
+#: Degrees of tolerance between set-points of two executors, which come from one planner.
 _SAME_AXES: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One of two runs: who it is, the event it has there (``None``: it has ended), its state."""
+    """One of the two runs: its name, its event (``None`` if it has ended), and its state."""
 
     name: str
     event: dict[str, Any] | None
@@ -33,7 +33,7 @@ class Side:
     outputs: dict[str, Any]
 
     def record(self) -> dict[str, Any]:
-        """It as JSON."""
+        """Return it as JSON."""
         return {
             "name": self.name,
             "event": self.event,
@@ -44,9 +44,9 @@ class Side:
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """The first difference: ``place`` counts events from 0; file and line are those of the source.
+    """The first difference: ``place`` counts events from 0; file and line are in the source.
 
-    ``before`` are the last events that both have.
+    ``before`` are the last events that both runs have in common.
     """
 
     place: int
@@ -57,7 +57,7 @@ class Divergence:
     right: Side
 
     def record(self) -> dict[str, Any]:
-        """It as JSON."""
+        """Return it as JSON."""
         return {
             "place": self.place,
             "file": self.file,
@@ -78,7 +78,7 @@ class Divergence:
 def first_divergence(
     names: tuple[str, str], left: Observation, right: Observation
 ) -> Divergence | None:
-    """The first difference of two runs; ``None`` where they are the same."""
+    """Return the first difference of two runs, or ``None`` if they are equal."""
     pairs = zip_longest(left.events, right.events)
     for place, (one, other) in enumerate(pairs):
         if one != other or not _same_types(one, other):
@@ -89,7 +89,7 @@ def first_divergence(
 
 
 def _same_types(one: Event | None, other: Event | None) -> bool:
-    """Whether equal events give values of one type: 1, 1.0 and TRUE are equal in Python only."""
+    """Return whether equal events have values of the same type: in Python, 1 == 1.0 == True."""
     if one is None or other is None:
         return one is other
     return type(one.fields.get("value")) is type(other.fields.get("value"))

@@ -16,19 +16,19 @@ from conformance.suite.expectations import Anchor, Expectation, When
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.faults import FAULTS
 
-#: Whether it is met, and what was seen.
+#: The state of an expectation, and what was observed.
 Evaluated = tuple[Literal["met", "unmet", "open"], str]
 
 
 @dataclass(frozen=True, slots=True)
 class Marks:
-    """Lines that expectations of a case refer to: by name, and those whose order counts."""
+    """The lines to which expectations of a case refer by name, and those whose order counts."""
 
     named: Mapping[str, tuple[str, int]]
     ordered: frozenset[tuple[str, int]]
 
 
-#: The words of expectations for events of the trace.
+#: The event of the trace for each word of an expectation.
 _EVENTS: Final[Mapping[str, str]] = {
     "start": "motion_start",
     "end": "motion_end",
@@ -43,13 +43,13 @@ _EVENTS: Final[Mapping[str, str]] = {
     "trigger": "trigger",
     "ends": "end",
 }
-#: Relative: single precision agrees to the seventh digit [TYP-02].
+#: Relative tolerance: single precision has about seven digits [TYP-02].
 _REAL: Final = 1e-6
-#: What "exactly" means where times are whole microseconds that were rounded once or twice, in µs.
+#: Tolerance for "exactly" in µs: times are whole µs and were rounded once or twice.
 _EXACTLY: Final = 2
 
 
-#: What has to be watched for the rest, besides `_EVENTS`.
+#: The kind of event that an expectation needs, in addition to `_EVENTS`.
 _NEEDS: Final[Mapping[str, str]] = {
     "value": "assign",
     "values": "assign",
@@ -69,7 +69,7 @@ _NEEDS: Final[Mapping[str, str]] = {
 
 
 def unwatched(one: Expectation, seen: Observation) -> str:
-    """The kind of event that a recording would have to have and has not; empty where it has."""
+    """Return the kind of event that a recording lacks for an expectation; "" if it has it."""
     if seen.watched is None or one.arguments == ("on",):
         return ""
     kind = _NEEDS.get(one.kind) or _EVENTS.get(one.kind) or one.kind
@@ -77,7 +77,7 @@ def unwatched(one: Expectation, seen: Observation) -> str:
 
 
 def evaluate_on_trace(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
-    """Whether an expectation about the trace is met."""
+    """Return whether an expectation about the trace is met, with what was observed."""
     return _EVALUATORS.get(one.kind, _happens)(one, seen, marks)
 
 
@@ -106,7 +106,7 @@ def _value(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
 
 
 def _steps(name: str) -> list[str | int]:
-    """``A[2].X`` as the trace has it: A, 2, X."""
+    """Return the steps of a variable: ``A[2].X`` becomes A, 2, X."""
     return [
         int(part) if part.isdigit() else part.upper()
         for part in re.split(r"[\[\],.]+", name.rstrip("]"))
@@ -115,7 +115,7 @@ def _steps(name: str) -> list[str | int]:
 
 
 def _assigned(event: Event, steps: Sequence[str | int]) -> list[Any]:
-    """The value that the event gave it, if it did."""
+    """Return a list of the value that an event assigns to the variable, empty if it does not."""
     path = _steps(str(event.fields.get("name", "")))
     if path != list(steps[: len(path)]):
         return []
@@ -173,7 +173,7 @@ def _runs(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
 
 
 def _order(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
-    """The places of this line among all lines that have an order are those it names."""
+    """Check the positions of this line in the sequence of all lines that have an order."""
     ordered = marks.ordered
     ways = [(event.file, event.line) for event in seen.of_kind("line")]
     places = [place for place in ways if place in ordered]
@@ -192,7 +192,7 @@ def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     names = {str(event.fields.get("slug") or "link") for event in there}
     names |= {str(event.fields.get("number")) for event in there}
     wanted = one.arguments[0]
-    if seen.watched is not None and not wanted.isdigit():  # our words for faults are not binding
+    if seen.watched is not None and not wanted.isdigit():  # a controller does not know our slugs
         known = FAULTS.get(wanted)
         wanted = "" if known is None or known.number is None else str(known.number)
     is_met = wanted in names if wanted else bool(there)
@@ -235,7 +235,7 @@ def _lasts(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
 
 
 def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
-    """An event is there, at its time; or never, or so often."""
+    """Check that an event happens at its time, or never, or so many times."""
     events = _events(one, seen)
     words = one.arguments
     if one.near:
@@ -274,7 +274,7 @@ def _events(one: Expectation, seen: Observation) -> list[Event]:
 
 
 def _near(one: Expectation, events: Sequence[Event], path: PathRecord) -> tuple[list[Event], str]:
-    """The events that happened while the tool was near the place, and how near the others were."""
+    """Return the events during which the tool was near the place, and the distances as text."""
     *place, most = one.near
     timed = [(event, event.time) for event in events if event.time is not None]
     tools = between(path.times, path.points[:, :3], [time for _, time in timed])
@@ -348,7 +348,7 @@ def _is_then(
 
 
 def time_of(anchor: Anchor, seen: Observation, marks: Marks) -> int:
-    """The time of a moment in µs; raises `LookupError` where its event never came."""
+    """Return the time of a moment in µs; raise `LookupError` if its event never happened."""
     more = round(anchor.seconds * 1e6)
     if not anchor.event:
         return more
@@ -373,7 +373,7 @@ def _times(events: Sequence[Event]) -> str:
 
 
 def _seen(one: Expectation, events: Sequence[Event]) -> str:
-    """The times of events, with the lines that caused them where it may be any."""
+    """Return the times of events as text, with their lines if the expectation names no line."""
     if one.file:
         return _times(events)
     places = [f" ({event.file}:{event.line})" if event.file else "" for event in events[:8]]
@@ -381,7 +381,7 @@ def _seen(one: Expectation, events: Sequence[Event]) -> str:
 
 
 def _moments(when: When, seen: Observation, marks: Marks) -> str:
-    """The times of the moments that the expectation names, to explain a failure."""
+    """Return the times of the moments that the expectation names, to explain a failure."""
     if not when.first.event:
         return ""
     anchors = [when.first] + ([when.last] if when.last else [])

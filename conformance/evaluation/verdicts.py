@@ -1,11 +1,11 @@
-"""Verdicts: the outcome of a case on one executor and robot; known failures.
+"""Verdicts: the outcome of a case on one executor and robot, and the known failures.
 
 ==============  ==================================================================================
-pass            all that is expected was seen
-fail            it was not; or executors differ; or a known failure passes
-unconfirmed     it was not, but no rule or clause that says so is sure enough to fail an executor
-known-failure   it was not, and ``known_failures.toml`` says why
-skipped         no expectation could be evaluated, and why
+pass            all expectations are met
+fail            an expectation is not met, or executors differ, or a known failure passes
+unconfirmed     an expectation is not met, but its basis is not certain enough to fail an executor
+known-failure   an expectation is not met, and ``known_failures.toml`` gives the reason
+skipped         no expectation could be evaluated
 ==============  ==================================================================================
 """
 
@@ -27,7 +27,7 @@ _FILE: Final = Path(__file__).parents[1] / "known_failures.toml"
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A failure that is known: which case, on which executors and robots (patterns), and why."""
+    """A known failure: the case, patterns of executors and robots, and the reason."""
 
     case: str
     reason: str
@@ -37,13 +37,13 @@ class Known:
 
 @dataclass(frozen=True, slots=True)
 class KnownFailures:
-    """All of them."""
+    """All known failures."""
 
     entries: tuple[Known, ...] = ()
 
     @staticmethod
     def load(path: Path = _FILE) -> KnownFailures:
-        """Those of a file; raises `ValueError` where it is not in its format."""
+        """Return the known failures in a file; raise `ValueError` for a malformed file."""
         data: Mapping[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
         try:
             return KnownFailures(tuple(Known(**entry) for entry in data.get("known", ())))
@@ -51,7 +51,7 @@ class KnownFailures:
             raise ValueError(f"{path}: {error}") from error
 
     def reason(self, case: str, executor: str, robot: str) -> str:
-        """Why it is known to fail there; empty where it is not."""
+        """Return the reason of a known failure; "" if the failure is not known."""
         for one in self.entries:
             if (
                 one.case == case
@@ -62,13 +62,13 @@ class KnownFailures:
         return ""
 
     def of_no_case(self, names: Iterable[str]) -> list[str]:
-        """Entries about cases that do not exist."""
+        """Return entries about cases that do not exist."""
         known = set(names)
         return [one.case for one in self.entries if one.case not in known]
 
 
 def verdict_of(checks: Sequence[Check], known: str = "") -> tuple[Verdict, str]:
-    """The verdict and its reason, from what became of the expectations of a case."""
+    """Return the verdict of a case and its reason, from the checks of its expectations."""
     unmet = [one for one in checks if one.state == "unmet"]
     if unmet:
         first = next((one for one in unmet if one.is_sure), unmet[0])

@@ -1,1 +1,1 @@
-"""Rules, cases, their expectations, and the linter of cases."""
+"""The conformance suite: rules, cases, their expectations, and the linter of cases."""

@@ -1,8 +1,8 @@
-"""Cases: programs that state one fact each, and where they are found.
+"""Cases: programs that each state one fact about KRL, and their discovery and parsing.
 
 A case is a ``.src``, ``.sub`` or ``.dat`` file that begins with front matter, comments ``;@ key:
-value``. What it expects stands beside the lines that cause it, in comments ``;> …``. CASES.md is
-the format in full. `read_case` is strict: a case that says something unknown is none.
+value``. Its expectations are comments ``;> …`` beside the lines that cause them. CASES.md defines
+the format. `read_case` is strict: it rejects a case with any unknown key or word.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from conformance.suite.registry import basis, corners
 from grammar.syntax.source import Source
 from support.files.untrusted import read_text
 
-#: The cases of this project.
+#: The folder of the cases of this project.
 CASES: Final = Path(__file__).parents[1] / "cases"
-#: Ends of files that a program consists of.
+#: The suffixes of program files.
 ENDINGS: Final = (".src", ".sub", ".dat")
 _KEYS: Final = (
     "rule",
@@ -44,23 +44,24 @@ _KEYS: Final = (
 )
 _MANY: Final = ("io",)
 _FRONT: Final = re.compile(r";@\s*([a-z]+):\s*(.*?)\s*$")
-#: The code of a line, and what stands behind the first ``;>`` that is in no text.
+#: The code of a line, and what follows the first ``;>`` outside a text.
 _EXPECTING: Final = re.compile(r'((?:[^";]|"[^"]*"|;(?!>))*);>(.*)$')
 
 
 class CaseError(ValueError):
-    """A case that cannot be read; the text says where and why, in one line."""
+    """A case cannot be read; the text is one line with the place and the reason."""
 
 
 @dataclass(frozen=True)
 class Case:
     """A case.
 
-    ``name`` is ``suite/stem``. ``sources`` are its files, the one it begins with first; their paths
-    are names without folders. ``rules`` are IDs, the first is the one it states; ``basis`` is that
-    or the clause of it on which all expectations rest that name no other. ``seconds`` is how
-    much virtual time it has. ``unconfirmed`` is why its reading is ours although its rule is sure.
-    ``machine`` is the file beside it that is among its sources as ``$machine.dat``.
+    ``name`` is ``suite/stem``. ``sources`` are its files, the main file first; their paths are file
+    names without folders. ``rules`` are rule IDs; the first is the rule that the case states.
+    ``basis`` is that rule, or the clause of it, for all expectations that name no other.
+    ``seconds`` limits the virtual time of the run. ``unconfirmed`` is the reason if our
+    interpretation is uncertain although the rule is certain. ``machine`` is the file in its folder
+    that is among its sources as ``$machine.dat``.
     """
 
     name: str
@@ -80,31 +81,31 @@ class Case:
 
     @property
     def suite(self) -> str:
-        """The folder it lies in."""
+        """The folder of the case, relative to the root of the cases."""
         return self.name.rpartition("/")[0]
 
     @property
     def main(self) -> str:
-        """The name of the file that it begins with."""
+        """The name of the main file."""
         return self.sources[0].path
 
     @property
     def may_fail(self) -> bool:
-        """Whether anything it states is sure enough that not to do so is a fault."""
+        """Whether any of its expectations is certain enough that breaking it fails the case."""
         return any(self.is_sure(one) for one in self.expectations)
 
     def is_sure(self, one: Expectation) -> bool:
-        """Whether what an expectation rests on is sure enough to fail the case."""
+        """Return whether the basis of an expectation is certain enough to fail the case."""
         return basis(one.basis or self.basis or self.rules[0]).may_fail and not self.unconfirmed
 
     @property
     def expects_syntax_error(self) -> bool:
-        """Whether some line of it is no KRL."""
+        """Whether it expects a syntax error."""
         return any(one.kind == "syntax" for one in self.expectations)
 
     @property
     def is_negative(self) -> bool:
-        """Whether it is about what has to be refused: by the front end, or by a running program."""
+        """Whether it is about something that the front end or the running program must reject."""
         kinds = {one.kind for one in self.expectations}
         if kinds & {"syntax", "error", "warning", "fault"}:
             return True
@@ -114,14 +115,14 @@ class Case:
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 over its files: what a recording of it was made of."""
+        """SHA-256 of its files, to detect that a recording was made of another version."""
         found = hashlib.sha256()
         for source in self.sources:
             found.update(f"{source.path}\n{source.text}\n".encode())
         return found.hexdigest()
 
     def line(self, file: str, number: int) -> str:
-        """A line of one of its files, without what is expected there; empty where there is none."""
+        """Return a line of one of its files without expectations; "" if there is no such line."""
         for source in self.sources:
             if source.path == file:
                 lines = source.text.splitlines()
@@ -132,7 +133,10 @@ class Case:
 def find_cases(
     root: Path = CASES, on_error: Callable[[CaseError], None] | None = None
 ) -> list[Case]:
-    """All cases below a folder, by name; raises the first `CaseError`, or hands over all."""
+    """Return all cases below a folder, by name.
+
+    Raises the first `CaseError`, or passes each to ``on_error`` if that is given.
+    """
     found = []
     for path in sorted(root.rglob("*")):
         if path.suffix.lower() in ENDINGS and path.is_file() and _is_case(path):
@@ -146,11 +150,11 @@ def find_cases(
 
 
 def selected(cases: Iterable[Case], selection: Sequence[str]) -> list[Case]:
-    """The cases that one of the words names; all where there is none.
+    """Return the cases that any of the words names; without words, all cases.
 
     A word is a suite, a case (``suite/stem``), a rule, a topic of rules, a phase, a path, or
-    ``corner``, alone or with a kind (``corner:zero``).
-    Raises `CaseError` for a word that names nothing.
+    ``corner``, alone or with a kind (``corner:zero``). Raises `CaseError` for a word that names
+    nothing.
     """
     every = list(cases)
     if not selection:
@@ -186,7 +190,7 @@ def _is_case(path: Path) -> bool:
 
 
 def read_case(path: Path, root: Path = CASES) -> Case:
-    """The case that a file holds. Raises `CaseError`."""
+    """Return the case in a file. Raises `CaseError`."""
     source = _read(path)
     front = _front_matter(source)
     rules = tuple(word.strip() for word in front.get("rule", [""])[0].split(","))
@@ -257,7 +261,7 @@ def _front_matter(source: Source) -> Mapping[str, list[str]]:
 
 
 def _companions(path: Path, named: str) -> Iterator[Source]:
-    """The other files: those of the same stem, and those that ``with`` names."""
+    """Yield the other files of a case: those of the same stem, and those that ``with`` names."""
     names = [path.stem + ending for ending in ENDINGS if ending != path.suffix.lower()]
     wanted = [path.with_name(name) for name in names]
     yield from (_read(one) for one in wanted if one.is_file() and not _is_case(one))
@@ -266,14 +270,14 @@ def _companions(path: Path, named: str) -> Iterator[Source]:
 
 
 def _beside(path: Path, name: str) -> Source:
-    """A file of the folder of a case, by its name; raises `CaseError` where it is not there."""
+    """Return a file in the folder of a case by its name; raise `CaseError` if it does not exist."""
     if not re.fullmatch(r"[$\w][\w.-]*", name) or not path.with_name(name).is_file():
         raise CaseError(f"{path}: {name!r} is not beside it")
     return _read(path.with_name(name))
 
 
 def _expectations(source: Source, path: Path) -> Iterator[Expectation]:
-    """Those beside the lines of a file; one on a line of its own belongs to the line before it."""
+    """Yield the expectations in a file; one on its own line belongs to the code line before it."""
     about = 0
     for number, line in enumerate(source.text.splitlines(), start=1):
         found = _EXPECTING.match(line)

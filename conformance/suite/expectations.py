@@ -1,7 +1,8 @@
-"""Expectations: what a case says beside its lines, ``;> out 2 TRUE at end 1 - 0.1``.
+"""Expectations: what a case says beside its lines, as in ``;> out 2 TRUE at end 1 - 0.1``.
 
-`KINDS` lists the words an expectation can begin with, and what may follow them. CASES.md says what
-each means on a real controller; `conformance.evaluation.evaluator` decides whether it is met.
+`KINDS` lists the words with which an expectation can begin, and the syntax of their arguments.
+CASES.md says what each means on a real controller; `conformance.evaluation.evaluator` decides
+whether it is met.
 """
 
 from __future__ import annotations
@@ -17,15 +18,16 @@ PHASES: Final[tuple[Phase, ...]] = ("parse", "check", "run")
 
 
 class ExpectationError(ValueError):
-    """An expectation that means nothing; the text says why, in one line."""
+    """An expectation is malformed; the text is one line with the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A word that expectations begin with.
+    """A word with which expectations begin.
 
-    ``form`` is what its arguments look like, a regular expression over the words joined by blanks.
-    ``timed``: a time may follow. ``robot``: the least robot that it needs.
+    ``form`` is the syntax of its arguments, a regular expression over the words joined by blanks.
+    ``timed`` allows a time after them, ``tolerant`` a tolerance. ``robot`` is the simplest robot
+    that can evaluate the expectation.
     """
 
     word: str
@@ -109,17 +111,17 @@ def _kinds() -> Mapping[str, Kind]:
     return MappingProxyType({kind.word: kind for kind in kinds})
 
 
-#: All kinds by their word.
+#: All kinds of expectations, by their words.
 KINDS: Final = _kinds()
 
 
 @dataclass(frozen=True, slots=True)
 class Anchor:
-    """A moment: ``seconds`` after an event of a motion, after a mark, or after the start.
+    """A moment: ``seconds`` after an event of a motion, a mark, an output, or the start.
 
     ``event`` is ``start``, ``end``, ``apex``, ``blend-start``, ``blend-end`` or ``planned`` of the
-    motion ``of`` (its number, from 1, in the order of planning); ``mark`` with a name; ``out`` or
-    ``in`` with a number: the first time that it changes; or empty.
+    motion with the number ``of``, counted from 1 in the order of planning; ``mark`` with a name;
+    ``out`` or ``in`` with a number, for its first change; or "" for the start of the run.
     """
 
     event: str
@@ -129,7 +131,7 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class When:
-    """A moment something has to happen at, before, after, or a span that it has to happen in."""
+    """The moment at, before or after which something must happen, or a period for it."""
 
     relation: Literal["at", "before", "after", "between"]
     first: Anchor
@@ -139,12 +141,12 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """What one ``;>`` says; ``file`` and ``line`` are the place it is about.
+    """One expectation ``;> …``; ``file`` and ``line`` are the place that it is about.
 
-    Where ``file`` is empty it is about all that the program does. ``tolerance`` is in the unit of
-    what is compared (seconds for times); ``None``: the usual one. ``basis`` is the rule or clause
-    it rests on; empty: the first of its case. ``near`` are X, Y and Z of a place in mm, and how far
-    from it the tool may be then.
+    With an empty ``file`` it is about the whole run. ``tolerance`` is in the unit of the compared
+    quantity, in seconds for times; ``None`` means the usual tolerance. ``basis`` is the rule or
+    clause on which it rests; if empty, that of the case. ``near`` is X, Y, Z and a radius in mm:
+    the tool must be within that sphere when the event happens.
     """
 
     kind: str
@@ -159,7 +161,7 @@ class Expectation:
 
     @property
     def needs(self) -> Literal["none", "kinematic", "mujoco"]:
-        """The least robot that it can be evaluated with."""
+        """The simplest robot with which it can be evaluated."""
         return "kinematic" if self.near else KINDS[self.kind].robot
 
 
@@ -180,7 +182,7 @@ _MOMENT_PARTS: Final = re.compile(
 
 
 def read_expectation(text: str, file: str, line: int) -> Expectation:
-    """The expectation that stands behind ``;>``. Raises `ExpectationError`."""
+    """Return the expectation in the text after ``;>``. Raises `ExpectationError`."""
     cited = _BASIS.search(text.strip())
     rest = " ".join(_WORDS.findall(text.strip()[: cited.start()] if cited else text))
     word, _, rest = rest.partition(" ")

@@ -1,13 +1,13 @@
-"""Cases of feature interactions: each pair of features has one in ``cases/interaction/``.
+"""Cases of feature interactions in ``cases/interaction/``: pairwise testing of features.
 
-A case has one value of each feature: the path under way, what an interrupt or the operator does to
-it, when, what is triggered on it, what stands behind it, and what else there is. What it expects
-follows from these values, each from the rule that is named with it. The rows are a covering array
-of strength two, chosen greedily. Run ``python -m conformance.suite.interactions`` after a change; a
-test fails when the cases are stale.
+A case has one value for each feature: the path of the motion, what an interrupt or the operator
+does and when, what is triggered on the path, what follows the motion, and so on. Its expectations
+follow from these values, each by the rule that it cites. The rows are a covering array of strength
+two (every pair of values occurs), constructed greedily. Run ``python -m
+conformance.suite.interactions`` after a change; a test fails if the cases are stale.
 
-`drawn` makes others by seed, with more values of each feature, that are kept nowhere and expect
-nothing: executors have to do the same, and no law may be broken.
+`drawn` generates further cases from a seed, with more values of each feature. They are not stored
+and expect nothing specific: all executors must behave the same, and no law may be violated.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
     "advance": ("1", "3", "5"),
 }
 
-#: Values whose effects no rule states completely: what is drawn has them too.
+#: More values, whose effects no rule states completely; `drawn` uses them too.
 _MORE: Final[Mapping[str, tuple[str, ...]]] = {
     "path": (
         *("chain_blend", "circ_rel", "circ_long", "ori_blend", "vel_blend", "slin", "scirc"),
@@ -62,7 +62,7 @@ _MORE: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 _CP: Final = ("lin", "spline", "rel")
-#: Statements of the path with what they show, and where it ends.
+#: For each path, its statements with their expectations, and its end point.
 _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
     "lin": (("LIN {X 545} ;> path line 445 0 810 to 545 0 810 [MOT-20]",), "545 0 810"),
     "lin_blend": (
@@ -167,13 +167,13 @@ _BESIDE: Final = (
 )
 _FIRST: Final = "INT-01"
 _SPEED: Final = "  $VEL.CP = 0.25"
-#: Triggers whose moment is given by no rule alone.
+#: Triggers whose moment no single rule determines.
 _WORDS: Final = {
     "delay": "DISTANCE=1 DELAY=-60 DO $OUT[2]=TRUE",
     "pulse": "DISTANCE=1 DELAY=20 DO PULSE($OUT[2], TRUE, 0.2)",
     "onstart": "PATH=10 ONSTART DELAY=5 DO $OUT[2]=TRUE",
 }
-#: What stands behind the motions; ``LAST`` is the number of the last of them.
+#: The statements after the motions; ``LAST`` stands for the number of the last motion.
 _BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
     "none": (),
     "position": ("R = $POS_ACT.X", "R = 1 ;> line at end LAST [ADV-07]"),
@@ -195,7 +195,7 @@ _BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
 
 
 def covering(features: Mapping[str, tuple[str, ...]]) -> list[dict[str, str]]:
-    """Rows in which each pair of values of two features stands together at least once."""
+    """Return rows in which every pair of values of two features occurs at least once."""
     names = list(features)
     missing = {
         frozenset(((one, left), (other, right)))
@@ -204,7 +204,7 @@ def covering(features: Mapping[str, tuple[str, ...]]) -> list[dict[str, str]]:
     }
     rows: list[dict[str, str]] = []
     while missing:
-        row = dict(min(missing, key=sorted))  # a pair that is missing, and what adds most to it
+        row = dict(min(missing, key=sorted))  # start with a missing pair, then add greedily
         for name in names:
             if name not in row:
                 row[name] = max(
@@ -219,7 +219,7 @@ def covering(features: Mapping[str, tuple[str, ...]]) -> list[dict[str, str]]:
 
 
 def cases() -> Iterator[tuple[str, str]]:
-    """The names and texts of all files."""
+    """Yield the names and contents of all files."""
     for number, row in enumerate(covering(FEATURES), 1):
         name = f"pair_{number:03}"
         yield f"{name}.src", "\n".join([*_front(row), *_main(name, row), ""])
@@ -227,7 +227,7 @@ def cases() -> Iterator[tuple[str, str]]:
 
 
 def drawn(seed: int) -> list[Case]:
-    """Cases in which any two values of different features meet; the seed says with which others."""
+    """Return cases that cover all pairs of values; the seed determines the combinations."""
     chance = Random(f"interactions {seed}")
     every = {name: (*values, *_MORE.get(name, ())) for name, values in FEATURES.items()}
     features = {
@@ -341,7 +341,7 @@ def _way(row: Row, *, is_left: bool) -> Iterator[str]:
     last = "3" if blends else "2"
     for text in _BEHIND[row["behind"]]:
         shown = text.replace("LAST", last)
-        if row["act"] == "halt":  # it stands for half a second, and the arm continues
+        if row["act"] == "halt":  # it halts for half a second, and the arm continues
             shown = shown.replace(" at end", " after end")
         yield f"  {text.partition(' ;>')[0] if is_left else shown}"
     if is_left:

@@ -1,8 +1,8 @@
-"""The rules of KRL that cases state: text, certainty, and what may follow.
+"""The registry of rules of KRL that cases state: text, certainty, consequences.
 
-``rules.toml`` is the registry. A case names the rules it is about by their IDs, or by that of a
-clause where a rule has any; whether an expectation may fail a case depends on what it rests on
-(`basis`).
+The data is in ``rules.toml``. A case names its rules by their IDs, or by the ID of a clause if the
+rule has clauses. Whether an expectation may fail its case depends on the rule or clause on which it
+rests (`basis`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, slots=True)
 class Clause:
-    """A part of a rule that is better or worse known than others; its ID is ``BLD-01.b``."""
+    """A part of a rule whose certainty differs from that of other parts; its ID is ``BLD-01.b``."""
 
     id: str
     tier: str
@@ -28,10 +28,11 @@ class Clause:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule: ``statement`` says it in our words, ``tier`` how well it is known, from ``source``.
+    """A rule: ``statement`` is our wording, ``tier`` its certainty, ``source`` where it is from.
 
-    ``profile`` is ``any`` or the controllers it is about, ``today`` what knows it in this project.
-    ``unshown`` is why no case shows it, empty where cases have to.
+    ``profile`` is ``any``, or the controllers to which it applies. ``today`` are the parts of this
+    project that implement it. ``unshown`` is the reason why no case demonstrates it; if it is
+    empty, a case must.
     """
 
     id: str
@@ -52,7 +53,7 @@ class Rule:
 
 @cache
 def registry() -> Mapping[str, Rule]:
-    """All rules by their IDs, in the order of the file."""
+    """Return all rules by their IDs, in the order of the file."""
     text = resources.files("conformance").joinpath("rules.toml").read_text(encoding="utf-8")
     found = {}
     for row in tomllib.loads(text)["rule"]:
@@ -63,13 +64,13 @@ def registry() -> Mapping[str, Rule]:
 
 @cache
 def corners() -> Mapping[str, frozenset[str]]:
-    """The names of cases that state corners, by kinds."""
+    """Return the names of cases about corner cases, by their kinds."""
     text = resources.files("conformance").joinpath("corners.toml").read_text(encoding="utf-8")
     return {kind: frozenset(names.split()) for kind, names in tomllib.loads(text).items()}
 
 
 @cache
 def basis(id_: str) -> Rule | Clause:
-    """The rule or clause of an ID. Raises `KeyError` where there is none."""
+    """Return the rule or clause with an ID. Raises `KeyError`."""
     rule = registry()[id_.partition(".")[0]]
     return rule if rule.id == id_ else {one.id: one for one in rule.clauses}[id_]

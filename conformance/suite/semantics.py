@@ -1,8 +1,8 @@
-"""Generator of the reference of rules, ``docs/semantics.md``.
+"""The generator of ``docs/semantics.md``, the reference of all rules.
 
-Made of the registry (`conformance.suite.registry`) and of the codes of findings
+Its input is the registry (`conformance.suite.registry`) and the codes of findings
 (`grammar.diagnostics.codes`). Run ``python -m conformance.suite.semantics`` after a change to
-either; a test fails when the page is stale.
+either; a test fails if the page is stale.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from grammar.semantics.rules import is_confirmed
 
 PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
 
-#: What can be done for a rule, and the page's word for it; with codes where findings have one.
+#: What implements a rule, and its name on the page; codes of findings are added to it.
 _TODAY = {
     "grammar": "grammar",
     "tables": "tables",
@@ -93,7 +93,7 @@ _SOURCES = """\
 
 
 def codes_of() -> Mapping[str, tuple[str, ...]]:
-    """The codes of findings that rest on each rule, by its ID."""
+    """Return the codes of the findings that rest on each rule, by the rule's ID."""
     found: dict[str, tuple[str, ...]] = dict.fromkeys(registry(), ())
     for code in by_slug().values():
         for rule in code.rules:
@@ -102,7 +102,7 @@ def codes_of() -> Mapping[str, tuple[str, ...]]:
 
 
 def page() -> str:
-    """The page as it should be."""
+    """Return the content of the page."""
     by_topic: dict[str, list[Rule]] = {topic: [] for topic in _TOPICS}
     codes = codes_of()
     for rule in registry().values():
@@ -143,7 +143,7 @@ def _counts(its: list[Rule]) -> Iterator[int]:
 
 
 def _rows(rule: Rule, codes: tuple[str, ...]) -> Iterator[str]:
-    """The row of a rule, and one of each clause."""
+    """Yield the row of a rule, then one for each clause."""
     yield _row(rule, codes)
     for one in rule.clauses:
         sure = "" if one.may_fail else "; fails no case"
