@@ -1,1 +1,1 @@
-"""Two states of programs compared as a programmer wants it: routines, statements, points, data."""
+"""Comparison of two states of programs, by routines, statements, taught points and data."""

@@ -1,4 +1,4 @@
-"""Two backups, or two files, compared: the record that `krl diff` prints."""
+"""The comparison of two backups or two files: the record that `krl diff` prints."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ Record = dict[str, Any]
 
 
 def compare(old: Sequence[Source], new: Sequence[Source]) -> Record:
-    """The differences of two states, each given by its files with paths below its root.
+    """Return the differences of two states, each given by its files with paths below its root.
 
     The record has ``files`` (numbers of those that are the ``same``, and that differ only in
-    ``noise``; paths of those ``added``, ``removed`` and ``moved``), ``names`` that were changed
+    ``noise``; paths of those ``added``, ``removed`` and ``moved``), ``names`` that were renamed
     throughout, ``routines`` (changed, added, removed, moved, renamed, with ``hunks`` of
-    statements), ``points`` and ``data``, each in the order of paths. A single file on each side is
-    the same file, whatever its name.
+    statements), ``points`` and ``data``, each in the order of paths. If there is one file on each
+    side, the two are compared whatever their names are.
     """
     before, after = _contents(old), _contents(new)
     pairs = _paired(before, after)
@@ -70,7 +70,10 @@ def _contents(sources: Sequence[Source]) -> list[Content]:
 
 
 def _folders(old: str, new: str) -> list[str]:
-    """The folders of which one was moved to the other: what is before the same end of two paths."""
+    """Return the folder a file was moved from and the one it was moved to.
+
+    The folders and the name that end both paths are left out.
+    """
     parts = old.split("/"), new.split("/")
     ends = zip(*map(reversed, parts), strict=False)
     same = sum(1 for _ in takewhile(lambda pair: pair[0].casefold() == pair[1].casefold(), ends))
@@ -78,7 +81,7 @@ def _folders(old: str, new: str) -> list[str]:
 
 
 def _address(path: str) -> str:
-    """The place of a file on its controller: what comes before the drive is another's affair."""
+    """Return the path of a file from the drive of its controller on, with letter case folded."""
     parts = path.casefold().split("/")
     start = next((n for n, part in enumerate(parts) if part in _DRIVES), 0)
     return "/".join(parts[start:])
@@ -182,7 +185,7 @@ def _alone(kind: str, one: _Placed) -> Record:
 
 
 def _changed(old: _Placed, new: _Placed, is_same_file: bool) -> Record | None:
-    """What became of a routine; ``None`` where nothing did."""
+    """Return the record of a routine, or ``None`` if nothing of it changed."""
     before, after = old.routine, new.routine
     is_renamed = before.name.upper() != after.name.upper()
     hunks = list(_hunks(before, after))
@@ -211,7 +214,7 @@ def _hunks(old: RoutineText, new: RoutineText) -> Iterator[Record]:
 
 
 def _line(routine: RoutineText, index: int) -> int:
-    """The line of a statement, or behind the last one."""
+    """Return the line number of a statement, or the one after the last statement."""
     if index < len(routine.body):
         return routine.body[index].number
     return (routine.body[-1] if routine.body else routine.head).number + 1
@@ -230,7 +233,7 @@ def _hunk(old: Sequence[CodeLine], new: Sequence[CodeLine], line: int, new_line:
 
 
 def _data(old: Content, new: Content, *, is_point: bool) -> Iterator[Record]:
-    """What became of the points of a data list, or of everything else in it."""
+    """Yield the changes to the points of a data list, or to everything else in it."""
     before, after = _of_kind(old, is_point), _of_kind(new, is_point)
     renamed = {}
     if is_point:
@@ -274,7 +277,7 @@ def _datum(kind: str, path: str, one: Datum, old: str | None, new: str | None) -
 
 
 def _point(old: Content, new: Content, was: Datum, now: Datum) -> Iterator[Record]:
-    """A point that was taught anew, or whose tool or base is another."""
+    """Yield a point if its coordinates, its tool or its base changed."""
     frames = frame_numbers(old.data, was.name.upper()), frame_numbers(new.data, now.name.upper())
     if was.key == now.key and frames[0] == frames[1]:
         return

@@ -1,6 +1,6 @@
-"""Content of a file for comparison, without headers, comments, folds and layout.
+"""The content of a file that is compared: without headers, comments, folds and layout.
 
-Code is compared by lines, so that a file that cannot be read can be compared too; data by names.
+Code is compared by lines, so that a file with syntax errors can be compared too; data by names.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _LISTS = frozenset({"DEFDAT", "ENDDAT"})
 
 @dataclass(frozen=True, slots=True)
 class CodeLine:
-    """A line that says something: its number from 1, its text, and ``key``, equal for the same.
+    """A line of code: its number from 1, its text, and a ``key`` that is equal for equal lines.
 
-    Letter case, blanks and zeros at the end of numbers make no difference.
+    Letter case, blanks and trailing zeros of numbers do not change the key.
     """
 
     number: int
@@ -35,10 +35,10 @@ class CodeLine:
 
 @dataclass(frozen=True, slots=True)
 class RoutineText:
-    """A routine: its first line, and what stands between this and its end.
+    """A routine: its first line and the lines up to its end.
 
-    ``signature`` is the key of the first line without the name. Lines outside all routines are one
-    routine without a name.
+    ``signature`` is the key of the first line without the name. The lines outside all routines form
+    one routine without a name.
     """
 
     name: str
@@ -48,7 +48,7 @@ class RoutineText:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The keys of the body."""
+        """The keys of the lines in the body."""
         return tuple(line.key for line in self.body)
 
 
@@ -56,7 +56,7 @@ class RoutineText:
 class Datum:
     """An item of a data list: a variable with its type and initial value, or another declaration.
 
-    ``key`` stands for all that it says, ``value`` is the tree of the initial value.
+    ``key`` is equal for equal items; ``value`` is the tree of the initial value.
     """
 
     name: str
@@ -77,13 +77,13 @@ class Content:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """All that the file says."""
+        """The keys of everything in the file."""
         lines = [key for routine in self.routines for key in (routine.signature, *routine.keys)]
         return (*lines, *(datum.key for datum in self.data.values()))
 
 
 def content_of(source: Source) -> Content:
-    """What a file says. Of a data list, what cannot be read is compared by lines."""
+    """Return the content of a file; parts of a data list with syntax errors are kept as lines."""
     syntax = read_source(source).syntax if source.path.lower().endswith(".dat") else None
     data = {}
     lines = list(_code(source))

@@ -1,4 +1,4 @@
-"""Matching of two versions: by the same name, else the same content, else similarity."""
+"""Matching the items of two versions: by name, else by equal content, else by similarity."""
 
 from __future__ import annotations
 
@@ -11,24 +11,25 @@ from typing import TypeVar
 
 _K = TypeVar("_K", bound=Hashable)
 
-# Less is no likeness: short routines have much in common.
+# Less similar items are not matched, because short routines always have much in common.
 _LEAST = 0.6
-# More than anybody renames and changes at once: then only what is the same counts.
+# With more unmatched items on one side, only equal ones are matched.
 _MOST = 300
 # Beyond so many lines, or pairs of equal lines, exact comparison takes long.
 _LONG = 5_000
 _MOST_PAIRS = 200_000
 
 
-#: ``equal``, ``replace``, ``delete`` or ``insert``; where that begins and ends in both lists.
+#: ``equal``, ``replace``, ``delete`` or ``insert``, with its range in the old and the new list.
 _Operation = tuple[str, int, int, int, int]
 
 
 def line_operations(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
-    """What makes one list of lines the other, as `SequenceMatcher.get_opcodes` says it.
+    """Return the edit operations between two lists of lines, as `SequenceMatcher.get_opcodes` does.
 
-    In long lists lines that each has once are taken for the same, as many as are in order (patience
-    diff): comparison costs as much as there is between them. What comes up often is left aside.
+    In long lists, lines that occur once in each list are anchors, as in a patience diff, and the
+    parts between them are compared on their own. There, lines that occur often are ignored at
+    first, as in `SequenceMatcher` with ``autojunk``.
     """
     anchors = _anchors(old, new) if len(old) + len(new) > _LONG else []
     found: list[_Operation] = []
@@ -38,7 +39,7 @@ def line_operations(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
             found.append((tag, at + first, at + last, start + begin, start + end))
         at, start = before + 1, after + 1
         found.append(("equal", before, at, after, start))
-    found.pop()  # what is no line, behind the last
+    found.pop()  # the sentinel after the last line
     return [_joined(list(ones)) for ones in _runs(found)]
 
 
@@ -52,11 +53,13 @@ def _exact(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
 
 
 def _anchors(old: Sequence[str], new: Sequence[str]) -> list[tuple[int, int]]:
-    """The places of lines that are once in each list, as many as come in the same order."""
+    """Return the index pairs of lines that occur once in each list, as many as are in order."""
     one, other = Counter(old), Counter(new)
     place = {line: number for number, line in enumerate(new) if other[line] == 1}
-    ends: list[int] = []  # the least place in the new list that so long a row can end at
-    last: list[int] = []  # that place in the old list
+    # longest increasing subsequence: for each length, the least index in the new list at which a
+    # subsequence of it ends, and the index of that line in the old list
+    ends: list[int] = []
+    last: list[int] = []
     way: dict[int, int | None] = {}
     for number, line in enumerate(old):
         if one[line] == 1 and line in place:
@@ -73,7 +76,7 @@ def _anchors(old: Sequence[str], new: Sequence[str]) -> list[tuple[int, int]]:
 
 
 def _runs(found: Iterable[_Operation]) -> Iterator[Iterator[_Operation]]:
-    """Equal lines in one run, and each change by itself."""
+    """Yield runs of equal lines as one group, and every other operation as a group of its own."""
     return (run for _, run in groupby(found, key=lambda one: one[0] == "equal" or one))
 
 
@@ -87,10 +90,10 @@ def likest(
     new: Mapping[_K, Sequence[str]],
     kind: Callable[[_K], object] = lambda _: None,
 ) -> Iterator[tuple[_K, _K]]:
-    """Pairs of old and new things of a kind, each in one pair, by the lines they consist of.
+    """Yield matching pairs of old and new items of the same kind, each item in at most one pair.
 
-    What is the same comes first, then what has most in common, the first of several. Things of no
-    lines are in no pair.
+    Items are compared by their lines. Equal ones are matched first, then the most similar ones; on
+    a tie the first one counts. Items without lines are not matched.
     """
     left, right = _counted(old, kind), _counted(new, kind)
     same: dict[object, deque[_K]] = {}
@@ -112,7 +115,7 @@ def likest(
 def _counted(
     things: Mapping[_K, Sequence[str]], kind: Callable[[_K], object]
 ) -> dict[_K, tuple[object, frozenset[tuple[str, int]]]]:
-    """The kind of each thing, and its lines with how often each comes; those that have any."""
+    """Return the kind of each item and its multiset of lines; items without lines are left out."""
     return {
         key: (kind(key), frozenset(Counter(lines).items()))
         for key, lines in things.items()

@@ -1,7 +1,7 @@
-"""Displacement of a taught point: distance, rotation, axes; and its tool and base.
+"""How far a taught point was moved: distance, rotation, axes; and its tool and base.
 
-Positions are in millimetres, angles in degrees: A about Z, then B about the new Y, then C about the
-new X, as KUKA has them.
+Positions are in millimetres, angles in degrees in the convention of KUKA: A about Z, then B about
+the new Y, then C about the new X.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ _Quaternion = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class PointChange:
-    """What is different about a point; ``None`` where it has no such thing.
+    """The difference between two values of a point; a field is ``None`` if it does not apply.
 
-    ``distance`` in mm and ``angle`` in degrees are those between two poses, ``axis`` is the largest
-    difference of a robot axis in degrees. ``components`` are all that differ, old and new.
+    ``distance`` (mm) and ``angle`` (degrees) are those between two poses; ``axis`` is the largest
+    difference of a robot axis in degrees. ``components`` are all that differ, with old and new
+    value.
     """
 
     distance: float | None
@@ -35,7 +36,7 @@ class PointChange:
 
 
 def point_change(old: Datum, new: Datum) -> PointChange | None:
-    """From one value to another; ``None`` unless both are written out in numbers."""
+    """Return the change from one value to another, or ``None`` unless both are aggregates."""
     before, after = numbers_of(old), numbers_of(new)
     if before is None or after is None:
         return None
@@ -55,7 +56,10 @@ def point_change(old: Datum, new: Datum) -> PointChange | None:
 
 
 def frame_numbers(data: Mapping[str, Datum], point: str) -> tuple[int | None, int | None]:
-    """Tool and base of a point that an inline form has taught: XP1 has them in FP1."""
+    """Return the numbers of tool and base of a point taught by an inline form.
+
+    The form keeps them in a variable beside the point: ``FP1`` for ``XP1``.
+    """
     form = data.get(f"F{point[1:]}") if point.startswith("X") else None
     known = numbers_of(form) if form else None
     numbers = [(known or {}).get(name) for name in ("TOOL_NO", "BASE_NO")]
@@ -64,7 +68,7 @@ def frame_numbers(data: Mapping[str, Datum], point: str) -> tuple[int | None, in
 
 
 def numbers_of(datum: Datum) -> dict[str, float] | None:
-    """The components of an aggregate that are numbers; ``None`` for anything else."""
+    """Return the components of an aggregate that are numbers; ``None`` for other values."""
     if not isinstance(datum.value, ast.Aggregate):
         return None
     found = {}
@@ -86,7 +90,7 @@ def _number(node: ast.Expression) -> float | None:
 
 
 def _rotation(a: float, b: float, c: float) -> _Quaternion:
-    """The rotation of A, B, C as a unit quaternion."""
+    """Return the rotation of A, B, C as a unit quaternion."""
     (sa, ca), (sb, cb), (sc, cc) = (
         (math.sin(math.radians(one) / 2), math.cos(math.radians(one) / 2)) for one in (a, b, c)
     )
@@ -99,10 +103,10 @@ def _rotation(a: float, b: float, c: float) -> _Quaternion:
 
 
 def _angle(one: _Quaternion, other: _Quaternion) -> float:
-    """The angle between two orientations in degrees, exact for small ones too."""
+    """Return the angle between two orientations in degrees; accurate for small angles too."""
     w, x, y, z = one
     v, p, q, r = other
-    # what leads from one to the other: its vector part is the sine of half the angle
+    # the relative rotation; the length of its vector part is the sine of half the angle
     vector = (
         w * p - x * v - y * r + z * q,
         w * q + x * r - y * v - z * p,

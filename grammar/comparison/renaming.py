@@ -1,7 +1,7 @@
-"""Names changed throughout: reported once, not line by line.
+"""Names that were changed throughout: reported once instead of line by line.
 
-A name is renamed where lines that changed differ in it alone, always in the same way, and the old
-name is nowhere in the new state, nor the new one in the old.
+A name counts as renamed if changed lines differ only in it, always in the same way, the old name is
+nowhere in the new state, and the new name is nowhere in the old one.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
 
 
 def names_in(content: Content) -> set[str]:
-    """The names in a file, in upper case."""
+    """Return the names in a file, in upper case."""
     return {name for key in _keys(content) for name in _NAME.findall(key) if name}
 
 
@@ -35,7 +35,7 @@ def _keys(content: Content) -> Iterator[str]:
 def renamings(
     pairs: Sequence[tuple[Content, Content]], old: set[str], new: set[str]
 ) -> dict[str, str]:
-    """The new name for each that was renamed; ``old`` and ``new`` are all names of both states."""
+    """Return the new name of each renamed one; ``old`` and ``new`` are all names of the states."""
     votes: Counter[tuple[str, str]] = Counter()
     gone, come = old - new, new - old
     for before, after in pairs:
@@ -58,7 +58,7 @@ def _data_keys(content: Content) -> tuple[str, ...]:
 def _votes(
     old: Sequence[str], new: Sequence[str], gone: set[str], come: set[str]
 ) -> Iterator[tuple[str, str]]:
-    """Old and new name for each line that differs in names alone that are not in both states."""
+    """Yield the old and new name for each changed line that differs only in renamed names."""
     for tag, first, last, start, end in line_operations(old, new):
         if tag != "replace" or last - first != end - start:
             continue
@@ -76,7 +76,7 @@ def _split(found: re.Match[str]) -> str:
 
 
 def renamed(content: Content, names: Mapping[str, str]) -> Content:
-    """The file with names exchanged for others wherever they are compared."""
+    """Return the file with names replaced in everything that is compared."""
     if not names:
         return content
     data = {}

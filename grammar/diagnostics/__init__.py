@@ -1,1 +1,1 @@
-"""Findings as values: codes, messages, source context, SARIF."""
+"""Diagnostics as values: codes, messages, suggestions, source excerpts, SARIF."""

@@ -1,8 +1,8 @@
-"""Baselines: the findings that a team knows already, so that only new ones are reported.
+"""Baselines: the findings that a team has accepted, so that only new ones are reported.
 
-A finding is known by its file, its code and the text of its line, blanks aside, so that lines may
-come and go above it. Of the same finding on several lines of the same text as many are known as
-there were.
+A finding is identified by its file, its code and the text of its line without blanks, so that lines
+can be added or removed above it. If several lines have the same text, the number of such findings
+counts.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ _VERSION = 1
 
 
 class Baseline:
-    """The findings that are known, with how many of each."""
+    """The known findings, with the number of each."""
 
     def __init__(self, counts: Mapping[_Key, int]) -> None:
         self._counts = dict(counts)
 
     @staticmethod
     def of(found: Iterable[Diagnostic], line_of: LineOf, place: Callable[[str], str]) -> Baseline:
-        """All of some findings; ``place`` is the path of a file as a baseline has it."""
+        """Return a baseline of findings; ``place`` gives the path it stores for a file."""
         return Baseline(Counter(_key(one, line_of, place) for one in found))
 
     @staticmethod
     def read(record: object) -> Baseline:
-        """From a record as `Baseline.record` makes it; raises `ValueError` for any other."""
+        """Return the baseline that `Baseline.record` wrote; raises `ValueError` for other data."""
         try:
             if not isinstance(record, dict) or record["version"] != _VERSION:
                 raise ValueError("not a baseline of this version")
@@ -46,7 +46,7 @@ class Baseline:
         return Baseline(counts)
 
     def record(self) -> dict[str, Any]:
-        """A record for JSON, sorted, so that changes of it can be read."""
+        """Return the baseline for JSON, sorted, so that its changes can be reviewed."""
         findings = [
             {"path": path, "code": code, "text": text, "count": count}
             for (path, code, text), count in sorted(self._counts.items())
@@ -56,7 +56,7 @@ class Baseline:
     def new(
         self, found: Iterable[Diagnostic], line_of: LineOf, place: Callable[[str], str]
     ) -> tuple[list[Diagnostic], int]:
-        """The findings that are not known, and how many known ones are there no more."""
+        """Return the findings that are not known, and the number of known ones that are gone."""
         left = Counter(self._counts)
         new = []
         for one in in_order(found):

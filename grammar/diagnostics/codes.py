@@ -1,9 +1,9 @@
-"""The codes of findings: one table with what each means, for messages, filters and documents.
+"""The codes of findings: one table with the meaning of each, for messages, filters and documents.
 
-``codes.tsv`` has a row for each code. A code is the number of the controller's own message where
-one fits, KSS2296, else ours: KRL0 reading, KRL1 names and declarations, KRL2 types, KRL3 calls,
-KRL4 control flow, KRL5 motions, interrupts and triggers, KRL6 what stops the robot, KRL7 files,
-KRL9 the check itself. Code and *slug*, a name for people, both stand once.
+``codes.tsv`` has a row for each code. A code is the number of the controller's own message if there
+is one (KSS2296). All others are ours, by subject: KRL0 syntax, KRL1 names and declarations, KRL2
+types, KRL3 calls, KRL4 control flow, KRL5 motions, interrupts and triggers, KRL6 what stops the
+robot, KRL7 files, KRL9 the check itself. Every code also has a *slug*, a unique name for people.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from typing import Literal, get_args
 
 from support.lazy_dataclass import dataclass
 
-#: From the gravest to the mildest. An error is what the controller refuses.
+#: In descending order. An error is a program that the controller rejects.
 Severity = Literal["error", "warning", "note"]
 
 
 @dataclass(frozen=True, slots=True)
 class DiagnosticCode:
-    """What a code means: ``title`` says what is wrong, ``explanation`` why, in sentences.
+    """The meaning of a code: ``title`` says what is wrong, ``explanation`` why, in sentences.
 
-    ``severity`` is that of a finding of which nothing else is known; ``rules`` are IDs.
+    ``severity`` is the default of its findings; ``rules`` are rule IDs.
     """
 
     code: str
@@ -36,7 +36,7 @@ class DiagnosticCode:
 
 @cache
 def by_slug() -> Mapping[str, DiagnosticCode]:
-    """All codes by their slugs, in the order of the table."""
+    """Return all codes by their slugs, in the order of the table."""
     table = resources.files(__package__).joinpath("codes.tsv").read_text(encoding="utf-8")
     found = {}
     for row in table.splitlines()[1:]:
@@ -48,15 +48,15 @@ def by_slug() -> Mapping[str, DiagnosticCode]:
 
 @cache
 def by_code() -> Mapping[str, DiagnosticCode]:
-    """The same by their codes."""
+    """Return all codes by their names, such as KSS2296."""
     return {entry.code: entry for entry in by_slug().values()}
 
 
 def code(slug: str) -> DiagnosticCode:
-    """The code with this slug; raises `KeyError`, which can only be a mistake of ours."""
+    """Return the code with this slug; raises `KeyError` if there is none, which is a defect."""
     return by_slug()[slug]
 
 
 def of_message(number: int) -> DiagnosticCode | None:
-    """The code of a message of the controller, where findings have it."""
+    """Return the code for a message number of the controller, or ``None`` if no finding has it."""
     return by_code().get(f"KSS{number}")

@@ -1,7 +1,7 @@
-"""Findings as values: place, severity, message, reason, fix.
+"""Diagnostics as values: place, severity, message, reason, fix.
 
-The front end raises nothing for a bad program, it returns these. They are ordered here and become
-records for JSON; `grammar.diagnostics.rendering` makes text of them and `grammar.diagnostics.sarif`
+The front end returns these for a bad program and raises no exception. This module sorts them and
+makes records for JSON; `grammar.diagnostics.rendering` makes text and `grammar.diagnostics.sarif`
 SARIF.
 """
 
@@ -15,18 +15,18 @@ from support.lazy_dataclass import dataclass
 
 
 class Places(Protocol):
-    """A text that knows its lines: a `grammar.syntax.source.Source`, a `parser.tree.Tree`."""
+    """A text that can convert offsets: a `grammar.syntax.source.Source` or a `parser.tree.Tree`."""
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Line and column of a character, both from 1."""
+        """Return the line and column of an offset, both from 1."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Region:
     """Part of a text. Lines and columns count from 1, columns in characters.
 
-    ``end_column`` is the column behind the last character, so a region of no characters has both
-    ends at the same place.
+    ``end_column`` is the column after the last character; an empty region begins and ends at the
+    same place.
     """
 
     line: int
@@ -36,16 +36,17 @@ class Region:
 
     @staticmethod
     def of(text: Places, span: tuple[int, int]) -> Region:
-        """The region of a span: offsets of the first character and of the one behind the last."""
+        """Return the region of a span, which is a start offset and an exclusive end offset."""
         return Region(*text.place(span[0]), *text.place(span[1]))
 
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """What would mend it, in words; and as an edit where one is plain.
+    """How to correct the program: a sentence and, if it is certain enough, an edit.
 
-    The edit writes ``replacement`` in place of ``region``, in the file of the finding. ``names``
-    are what may be meant in place of the finding, the likeliest first: for a person to choose.
+    The edit replaces ``region`` in the file of the finding by ``replacement``. ``names`` are
+    possible replacements of the finding's own region, the likeliest first, from which a person has
+    to choose.
     """
 
     text: str
@@ -55,7 +56,7 @@ class Fix:
 
     @property
     def is_edit(self) -> bool:
-        """Whether a tool could apply it."""
+        """Whether a tool can apply the fix."""
         return self.region is not None and self.replacement is not None
 
 
@@ -63,8 +64,8 @@ class Fix:
 class Diagnostic:
     """One finding.
 
-    ``path`` is the file as it was named, with ``/``. ``message`` says what is wrong, ``reason``
-    why, both without a full stop; ``rules`` are the IDs that say so.
+    ``path`` is the file as it was given, with ``/``. ``message`` says what is wrong and ``reason``
+    why, both without a full stop; ``rules`` are the IDs of the rules that say so.
     """
 
     path: str
@@ -78,7 +79,7 @@ class Diagnostic:
 
     @property
     def edits(self) -> tuple[tuple[str, Region, str], ...]:
-        """The edits a person can choose from, the likeliest first: in words, where, what there."""
+        """The edits to choose from, the likeliest first: description, region, replacement."""
         fix = self.fix
         if fix is None:
             return ()
@@ -99,9 +100,10 @@ def diagnose(
     is_unconfirmed: bool = False,
     fix: Fix | None = None,
 ) -> Diagnostic:
-    """A finding of the code with this slug; severity and rules are those of the code if not given.
+    """Return a finding of the code with this slug.
 
-    What is unconfirmed is at most a warning. Raises `KeyError` for an unknown slug.
+    Severity and rules are those of the code by default. An unconfirmed finding is at most a
+    warning. Raises `KeyError` if the slug is unknown.
     """
     entry = code(slug)
     severity = severity or entry.severity
@@ -112,7 +114,7 @@ def diagnose(
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """By path, place, code and message, each once: the same whatever order they were found in."""
+    """Return the findings without duplicates, sorted by path, place, code and message."""
     return sorted(dict.fromkeys(diagnostics), key=_key)
 
 
@@ -121,7 +123,7 @@ def _key(diagnostic: Diagnostic) -> tuple[str, Region, str, str]:
 
 
 def records(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
-    """What ``krl check --format json`` prints, in order."""
+    """Return what ``krl check --format json`` prints, in order."""
     return [_record(diagnostic) for diagnostic in in_order(diagnostics)]
 
 

@@ -7,24 +7,25 @@ from itertools import islice
 
 from grammar.diagnostics.diagnostic import Fix
 
-# Cost is bounded: so many names are looked at, and none that is longer.
+# Bounds on the cost: the number of names that are compared, and their length.
 _MOST_NAMES = 20_000
 _LONGEST_NAME = 64
 _MOST_SHOWN = 3
 
 
 def nearest(name: str, names: Iterable[str], most: int = _MOST_SHOWN) -> list[str]:
-    """Up to ``most`` of ``names`` that differ from ``name`` by few slips, the likeliest first.
+    """Return up to ``most`` of ``names`` with a small edit distance to ``name``, nearest first.
 
-    A slip is a letter too many, too few or wrong, or two that changed places; letter case is no
-    difference. Short names may have one slip, longer ones up to three. Each costs at most the
-    length of ``name`` times the number of slips, and the same names give the same answer.
+    The distance counts letters that are missing, added or replaced, and neighbours that are
+    swapped; letter case is ignored. It may be 1 for short names and up to 3 for longer ones. The
+    result depends only on the order of ``names``; the cost for each is bounded by the length of
+    ``name`` times the allowed distance.
     """
     return [candidate for _, _, candidate in _ranked(name, names)[:most]]
 
 
 def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
-    """The names that are near, the likeliest first: slips, letters that begin alike, the name."""
+    """Return the near names sorted by distance, then by the length of the common beginning."""
     wanted = name.upper()
     if not wanted or len(wanted) > _LONGEST_NAME:
         return []
@@ -41,13 +42,13 @@ def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
 
 
 def did_you_mean(name: str, names: Iterable[str], mark: str = "") -> Fix | None:
-    """``did you mean X?``; where several of ``names`` are equally near, up to three of them."""
+    """Return the fix ``did you mean X?`` with the nearest names, up to three on a tie."""
     ranked = _ranked(name, names)
     return one_of((near for slips, _, near in ranked if slips == ranked[0][0]), mark)
 
 
 def one_of(names: Iterable[str], mark: str = "") -> Fix | None:
-    """``did you mean X or Y?`` for the first names, each once with a ``mark`` in front, if any."""
+    """Return the fix ``did you mean X or Y?`` for the first three names, each after ``mark``."""
     shown = [f"{mark}{one}" for one in {one.upper(): one for one in names}.values()][:_MOST_SHOWN]
     if not shown:
         return None
@@ -61,9 +62,9 @@ def _common_start(one: str, other: str) -> int:
 
 
 def _distance(one: str, other: str, most: int) -> int:
-    """Slips between two names, or a number above ``most`` when there are more.
+    """Return the edit distance of two names, or ``most + 1`` if it is greater than ``most``.
 
-    Optimal string alignment, in a band of ``most`` around the diagonal.
+    Optimal string alignment, computed in a band of width ``most`` around the diagonal.
     """
     if one == other:
         return 0

@@ -1,9 +1,9 @@
-"""Error recovery: reads a program although some of its lines cannot be read.
+"""Error recovery: builds a syntax tree although some lines have syntax errors.
 
-A syntax error costs its statement, not the file. The first line that cannot be read is blanked,
-character by character so that every place stays what it is, and the rest is read again until it can
-be read whole. What only fails because of an earlier error is marked: closers and parts of a block
-whose opener was blanked, and blocks whose closer was.
+A syntax error costs its statement, not the file. The first line that cannot be read is overwritten
+with blanks, so that all offsets stay valid, and the text is parsed again, until it is a program.
+Failures that only follow from an earlier error are marked: the end or a branch of a block whose
+first line was blanked, and a block whose last line was blanked.
 """
 
 from __future__ import annotations
@@ -22,31 +22,31 @@ from grammar.syntax.node_plans import TooDeep
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
-# Every line that is blanked out costs a reading of the whole text.
+# Every line that is blanked out costs a parse of the whole text.
 _MOST_ROUNDS = 60
 _LARGEST = 2_000_000
 _ROUTINES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
-#: How a routine begins that ends so.
+#: A first line for a routine, by its closing word.
 _HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
-#: Heads and ends in whose place a block is gone through once, with the counter of a loop.
+#: Replacements for the first or last line of a block, with which its body runs once.
 _ONCE = {"CASE": "CASE 0", "IF": "IF TRUE THEN", "FOR": "FOR {}=1 TO 1", "UNTIL": "UNTIL TRUE"}
 _STRUCTURE = frozenset({*BLOCKS, *BRANCHES, *CLOSERS})
 _SLIPS_OF_STRUCTURE = Typos(_STRUCTURE, 3, series=Series.NONE)
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
-#: A type that loses its last members is still one, and known to have others.
+#: A type declaration can be cut after some of its members: the type is then known to have others.
 _TYPE = re.compile(r"[ \t]*(?:(?:DECL|GLOBAL)[ \t]+)*(?:ENUM|STRUC)\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """What can be read of a text that is no program.
+    """What can be read of a text with syntax errors.
 
-    ``syntax`` is the tree of all but the lines that cannot be read, `None` where there are too many
-    of these or no routine is left. ``failures`` are in the order of the text, those marked that
-    only follow from others. ``dropped`` is the text of the lines that were left out, ``exchanged``
-    the numbers of all that were read as something else: what is found in these is none of theirs.
-    ``text`` is what was read in the end, ``left_out`` are the numbers of the lines left out. It
-    ``is_cut`` where the last routine or data list has no end.
+    ``syntax`` is the tree of the text without the lines that cannot be read; ``None`` if there are
+    too many of these or no routine is left. ``failures`` are in the order of the text, marked if
+    they only follow from others. ``dropped`` is the text of the lines that were left out.
+    ``exchanged`` are the numbers of all lines that were replaced; findings on them have to be
+    discarded. ``text`` is the text that was parsed in the end, ``left_out`` are the numbers of the
+    lines left out. ``is_cut`` says that the last routine or data list has no end.
     """
 
     syntax: ast.Module | None
@@ -59,7 +59,7 @@ class Recovered:
 
 
 def recover(text: str, path: str = "") -> Recovered:
-    """Read a text that has failures; ``path`` is where it comes from."""
+    """Return what can be read of a text with syntax errors; ``path`` is its file."""
     if len(text) <= _LARGEST:
         found = _Recovery(text, path).run()
         if found is not None:
@@ -72,7 +72,7 @@ def recover(text: str, path: str = "") -> Recovered:
 
 
 def _causes_first(source: Source, failures: Sequence[SyntaxFailure]) -> Iterator[SyntaxFailure]:
-    """Failures of a text, those marked that only follow from a block that was not closed."""
+    """Yield the failures of a text; those that follow from an unclosed block are marked."""
     blocks = open_blocks(source, [failure.line for failure in failures])
     is_unclosed = False
     for failure in failures:
@@ -84,7 +84,7 @@ def _causes_first(source: Source, failures: Sequence[SyntaxFailure]) -> Iterator
 
 
 class _Recovery:
-    """A text on its way to one that can be read."""
+    """A text that is edited until it can be parsed."""
 
     def __init__(self, text: str, path: str) -> None:
         self._path = path
@@ -98,7 +98,7 @@ class _Recovery:
         self._is_cut = False
 
     def run(self) -> Recovered | None:
-        """The tree and the failures; ``None`` where this leads to nothing."""
+        """Return the tree and the failures; ``None`` if recovery fails."""
         ours = builder()
         for _ in range(_MOST_ROUNDS):
             tree = ours.parser.parse(self._text)
@@ -159,12 +159,12 @@ class _Recovery:
         )
 
     def _is_orphan(self, line: int, token: str) -> bool:
-        """Whether a line that fails at a token closes or continues a block with it."""
+        """Return whether a line fails at its first word, which closes or continues a block."""
         word = lead(self._written.line(line))
         return word == token.upper() and (word in CLOSERS or word in BRANCHES)
 
     def _is_explained(self, cause: OpenBlock) -> bool:
-        """Whether a line of its routine that failed before may be what should close a block."""
+        """Return whether a line that failed earlier may have been meant to close the block."""
         routine = cause
         while routine.outer is not None:
             routine = routine.outer
@@ -174,9 +174,10 @@ class _Recovery:
         return any(_is_like_structure(self._written.line(line)) for line in failed)
 
     def _readings_of(self, line: int, column: int, block: OpenBlock | None) -> Iterator[str]:
-        """As what a line that opens or divides a block, or declares a type, can be read.
+        """Yield replacements for a line that opens or divides a block or declares a type.
 
-        Up to where it fails, else with its word and what goes through the block once.
+        First its beginning up to the failure, then a line with the same first word that is valid
+        and lets the body run once.
         """
         written = self._written.line(line)
         beginning = written[: column - 1].rstrip()
@@ -189,13 +190,13 @@ class _Recovery:
             yield _ONCE[word].format((*_NAME.findall(written), "")[1])
 
     def _read_otherwise(self, line: int) -> bool:
-        """Read a line as the next that it may be; as it was where there is none."""
+        """Replace a line by its next possible replacement; restore it if there is none left."""
         if self._exchanged.pop(line, None) is not None:
             self._dropped.discard(line)
         return any(text and self._write(line, text) for text in self._readings[line])
 
     def _open(self, line: int, block: OpenBlock | None) -> bool:
-        """Read a line outside all routines as the beginning of the one that ends below it."""
+        """Replace a line outside all routines by the first line of the routine that ends below."""
         if block is not None or line in self._dropped:
             return False
         words = _NAME.findall(self._written.line(line))
@@ -208,7 +209,7 @@ class _Recovery:
         return self._write(line, head.format(names[0])) or self._write(line, head.format("A"))
 
     def _mend(self, cause: OpenBlock | None, line: int, *, is_at_end: bool) -> bool:
-        """Leave out a line; or close a block before it, or leave out what opens that."""
+        """Remove a line; or close a block before it; or remove the line that opens the block."""
         if cause is None:
             return self._write(line, "")
         if is_at_end:
@@ -217,11 +218,14 @@ class _Recovery:
             return True
         if cause.word in _ROUTINES:
             return False
-        self._exchanged.pop(cause.line, None)  # also what it was read as in place of what it is
+        self._exchanged.pop(cause.line, None)  # the line may have been replaced before
         return self._write(cause.line, "")
 
     def _close_all(self, block: OpenBlock | None) -> bool:
-        """Close the blocks that are open at the end, which may lie within a line or a name."""
+        """Close the blocks that are open at the end of the text.
+
+        A text that was cut off may end within a line or a name.
+        """
         self._is_cut = True
         if self._is_open_ended:
             last = len(self._written.lines) - 1
@@ -239,14 +243,20 @@ class _Recovery:
         return True
 
     def _free_lines(self, first: int, end: int) -> Iterator[int]:
-        """Lines for a closer: those left out, blank ones, then comments, the last first each."""
+        """Yield lines that can take a closing word: removed, then blank, then comment lines.
+
+        Of each kind the last one comes first.
+        """
         lines = range(end - 1, first - 1, -1)
         yield from (line for line in lines if line in self._dropped)
         yield from (line for line in lines if not self._written.line(line).strip())
         yield from (line for line in lines if self._written.line(line).lstrip()[:1] == ";")
 
     def _write(self, line: int, text: str) -> bool:
-        """Exchange a line for a text that is no longer; once only."""
+        """Replace a line by a text that is not longer; return whether that was possible.
+
+        No line is replaced twice.
+        """
         written = self._written.line(line)
         is_blank = not written.strip()
         if len(text) > len(written) or (is_blank and not text):
@@ -264,7 +274,7 @@ class _Recovery:
 
 
 def _is_like_structure(line: str) -> bool:
-    """Whether a line has a word of a block, or one a slip away, or is a single word."""
+    """Return whether a line has a structural word or a misspelt one, or is a single word."""
     code = line.partition(";")[0].strip()
     names = _NAME.findall(code)
     return names in ([], [code]) or any(
@@ -273,7 +283,7 @@ def _is_like_structure(line: str) -> bool:
 
 
 def _unclosed(line: str, token: str, block: OpenBlock | None) -> OpenBlock | None:
-    """The block that is to be closed before a line that fails can be read, if it is that."""
+    """Return the block that has to be closed before a failing line, or ``None``."""
     if block is None:
         return None
     word = lead(line)

@@ -1,4 +1,4 @@
-"""A line that cannot be read: its tokens, its block, and edits of it."""
+"""The site of a syntax error: the tokens of its line, its block, and edits of the line."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from grammar.syntax.build import SyntaxFailure
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
-# Of a longer line only what is near the failure is looked at.
+# Of a longer line only the part up to this many characters after the failure is examined.
 _LONGEST_LINE = 2_000
 _TOKEN = re.compile(r'"[^"]*"|[$#]?\w+|:=|==|<>|!=|<=|>=|=<|=>|&&|\|\||//|\S')
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorSite:
-    """A failure, and what stands around it."""
+    """A failure with its source and the block in which it lies."""
 
     failure: SyntaxFailure
     source: Source
@@ -26,7 +26,7 @@ class ErrorSite:
 
     @cached_property
     def code(self) -> str:
-        """The line without its comment, so far as it is near the failure."""
+        """The line without its comment, up to a limit after the failure."""
         line = self.source.line(self.failure.line)
         comment = self.source.comment(self.failure.line)
         line = line if comment is None else line[: comment.column - 1]
@@ -39,12 +39,12 @@ class ErrorSite:
 
     @cached_property
     def words(self) -> list[str]:
-        """Their texts in upper case."""
+        """The texts of the tokens in upper case."""
         return [token[0].upper() for token in self.tokens]
 
     @cached_property
     def place(self) -> int:
-        """The number of the offending token among them; that of the end where there is none."""
+        """The index of the offending token, or the number of tokens if the line ends too early."""
         column = self.failure.column - 1
         for number, token in enumerate(self.tokens):
             if token.end() > column:
@@ -57,7 +57,7 @@ class ErrorSite:
         return self.word(self.place)
 
     def word(self, place: int) -> str:
-        """A token of the line in upper case, empty where there is none."""
+        """Return a token of the line in upper case; empty if there is none with this index."""
         return self.words[place] if 0 <= place < len(self.words) else ""
 
     @property
@@ -66,18 +66,18 @@ class ErrorSite:
         return self.place == len(self.tokens)
 
     def expects(self, *tokens: str) -> bool:
-        """Whether all of some tokens could have come."""
+        """Return whether all of these tokens were expected at the failure."""
         return all(token in self.failure.expected for token in tokens)
 
     def region(self, first: int, last: int | None = None) -> Region:
-        """The region of a token, or from one to another."""
+        """Return the region of a token, or of the tokens from ``first`` to ``last``."""
         line = self.failure.line
         start = self.tokens[first].start()
         end = self.tokens[first if last is None else last].end()
         return Region(line, start + 1, line, end + 1)
 
     def swap(self, replacement: str, first: int, last: int | None = None) -> Fix:
-        """A fix that writes something else in place of some tokens."""
+        """Return a fix that replaces some tokens."""
         region = self.region(first, last)
         if replacement:
             return Fix(f"write {replacement.strip()}", region, replacement)
@@ -86,6 +86,6 @@ class ErrorSite:
         return Fix(f"leave {self.tokens[first][0]} out", region, gap)
 
     def append(self, replacement: str) -> Fix:
-        """A fix that writes something at the end of the line."""
+        """Return a fix that appends a text to the line."""
         line, column = self.failure.line, len(self.code) + 1
         return Fix(f"write {replacement.strip()}", Region(line, column, line, column), replacement)

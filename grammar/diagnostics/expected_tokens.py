@@ -1,7 +1,8 @@
 """Expected tokens in words: forty tokens become "a value".
 
-The expected set of the recogniser is exact and long. What people call by one word gets that word;
-what is left is listed. Which words begin what follows from the grammar.
+The expected set of the recogniser is exact and long. Groups of tokens with a common name are
+replaced by it, and the rest is listed. The members of a group are the FIRST sets of rules of the
+grammar.
 """
 
 from __future__ import annotations
@@ -16,25 +17,25 @@ _Words = frozenset[str]
 
 @cache
 def _first(rule: str) -> _Words:
-    """What a rule of the grammar can begin with, as expected sets have it."""
+    """Return the tokens with which a rule can begin, as they appear in expected sets."""
     recognizer = builder().parser.recognizer
     network, display = recognizer.network, recognizer.lexer.display
     return frozenset(display[kind] for kind in network.reach(network.entry[rule]).first)
 
 
 def names() -> _Words:
-    """NAME, and keywords that mean something in one place only."""
+    """Return NAME and the keywords that can also be names."""
     return _first("name")
 
 
 def statements() -> _Words:
-    """The words that open a statement of a routine and no declaration."""
+    """Return the keywords that begin a statement but no declaration."""
     return _first("statement") - _first("declaration") - names()
 
 
 @cache
 def _groups() -> tuple[tuple[_Words, _Words, str], ...]:
-    """Which words say that a group is meant, what belongs to it, and its name, in this order."""
+    """Return triples of the tokens that indicate a group, its members, and its name."""
     criteria = _first("approximation")
     declarations = (_first("declaration") | _first("initialisation")) - names() | {"CONST"}
     line = names() | {"NEWLINE"}
@@ -67,13 +68,13 @@ _WORDS = {
     "AT_LEAST": '">="',
 }
 _LAST = ("NEWLINE", "EOF")
-# Longer lists are of no help.
+# Longer lists do not help and are cut.
 _MOST = 8
 
 
 @cache
 def in_words(expected: tuple[str, ...]) -> str:
-    """The tokens that could have come, as people say it; empty where there are none."""
+    """Return the expected tokens as people say it; empty if there are none."""
     left = dict.fromkeys(expected)
     left.pop("HEADER", None)
     words = []
@@ -87,7 +88,7 @@ def in_words(expected: tuple[str, ...]) -> str:
 
 
 def _is_member(token: str, members: frozenset[str]) -> bool:
-    """Whether a token belongs to a group; one without members has all words."""
+    """Return whether a token belongs to a group; a group without members has all words."""
     return token in members if members else token[0].isalpha()
 
 

@@ -1,9 +1,9 @@
-"""Full explanation of a code: its sentences, a wrong program, and the corrected one.
+"""The full explanation of a code: sentences, a wrong program, and the corrected one.
 
-``codes.tsv`` has the sentences, as every check needs them; ``examples.toml`` the programs, which
-only an explanation needs. An example is one file or several: each begins with a line
-``-- NAME --``, which one alone may lack: it is ``work.src`` or ``work.dat`` then. A test checks
-every example, so that ``wrong`` has a finding of the code and ``right`` has none.
+The sentences are in ``codes.tsv``, which every check loads; the programs are in ``examples.toml``,
+which only an explanation loads. An example is one file or several, each after a line ``-- NAME
+--``. A single file may lack that line; its name is then ``work.src`` or ``work.dat``. A test checks
+that ``wrong`` has a finding of the code and ``right`` has none.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from grammar.diagnostics.codes import DiagnosticCode, by_code, by_slug
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """A code, and what helps to understand it.
+    """A code with its examples.
 
-    ``wrong`` and ``right`` are programs, empty where none can show it; with ``is_whole`` their
-    files are all there are of a project. ``message`` is the number of the controller's own message,
-    ``source`` what the rules of the code do not say.
+    ``wrong`` and ``right`` are programs, empty if no program can show it; ``is_whole`` says that
+    their files are the complete project. ``message`` is the number of the controller's own message,
+    and ``source`` is the evidence besides the rules of the code.
     """
 
     code: DiagnosticCode
@@ -36,9 +36,9 @@ class Explanation:
 
 
 def explanation(name: str) -> Explanation | None:
-    """The explanation of a code or slug in any letter case; ``None`` where there is no such one.
+    """Return the explanation of a code or slug in any letter case, or ``None`` if it is unknown.
 
-    The number of a message of the controller is enough.
+    A message number of the controller is accepted as well.
     """
     code = f"KSS{name}" if name.isdecimal() else name.upper()
     entry = by_code().get(code) or by_slug().get(name.lower())

@@ -1,7 +1,7 @@
-"""The smallest edit after which a line can be read: what somebody probably meant.
+"""The smallest edit with which a failing line becomes valid: what was probably meant.
 
-A line that cannot be read is tried with one token exchanged, left out or written in, alone, in a
-routine or data list that is right otherwise. The edit that makes it readable is reported.
+One token of the line is replaced, removed or inserted, and the line is parsed alone in a routine or
+data list that is otherwise valid. The first edit with which it can be parsed is reported.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from grammar.parser.tree import Tree
 from grammar.syntax.build import builder
 from support.lazy_dataclass import dataclass
 
-# Longer lines are data, and trying takes as long as reading them.
+# Longer lines are data, and every attempt parses the whole line.
 _LONGEST = 1_000
 #: The opening bracket of each closing one.
 BRACKETS = {")": "(", "]": "[", "}": "{"}
-#: What is written between two words or behind one, the likeliest first.
+#: Signs to insert before the failure, the likeliest first.
 _SIGNS = ("=", ",", ".", "(", "[")
 _SHORTEST_WORD = 3
 
 
 @dataclass(frozen=True, slots=True)
 class LineEdit:
-    """An edit of a line: ``text`` in place of its tokens from ``first`` up to before ``stop``."""
+    """An edit of a line: ``text`` replaces its tokens from ``first`` up to before ``stop``."""
 
     first: int
     stop: int
@@ -36,7 +36,7 @@ class LineEdit:
 
 
 def keyword(site: ErrorSite) -> LineEdit | None:
-    """A word near the failure that is a keyword but for one letter."""
+    """Return the edit that corrects one misspelt keyword near the failure, or ``None``."""
     closer = site.block.closer if site.block else ""
     for place in (site.place, site.place - 1, site.place - 2, 0):
         word = site.word(place)
@@ -50,7 +50,7 @@ def keyword(site: ErrorSite) -> LineEdit | None:
 
 
 def doubled(site: ErrorSite) -> LineEdit | None:
-    """A token that stands twice, one behind the other, near the failure."""
+    """Return the edit that removes a token repeated near the failure, or ``None``."""
     for place in (site.place, site.place - 1):
         if place > 0 and site.word(place) and site.word(place) == site.word(place - 1):
             edit = LineEdit(place, place + 1, "")
@@ -60,7 +60,7 @@ def doubled(site: ErrorSite) -> LineEdit | None:
 
 
 def bracket(site: ErrorSite) -> LineEdit | None:
-    """A bracket that is not closed or not opened."""
+    """Return the edit that inserts a missing closing bracket, or ``None``."""
     missing = [
         closer
         for closer, opener in BRACKETS.items()
@@ -77,13 +77,13 @@ def bracket(site: ErrorSite) -> LineEdit | None:
 
 
 def left_out(site: ErrorSite) -> LineEdit | None:
-    """A sign that was left out before the failure."""
+    """Return the edit that inserts a missing sign before the failure, or ``None``."""
     if site.is_at_end:
         return None
     tokens = site.tokens
     is_apart = site.place > 0 and tokens[site.place - 1].end() < tokens[site.place].start()
     for sign in _SIGNS:
-        if sign == "." and is_apart:  # two words: what is missing is an operator
+        if sign == "." and is_apart:  # two separate words lack an operator, not a dot
             continue
         edit = LineEdit(site.place, site.place, sign)
         if _reads(site, edit):
@@ -92,7 +92,7 @@ def left_out(site: ErrorSite) -> LineEdit | None:
 
 
 def is_one_slip(word: str, meant: str) -> bool:
-    """Whether two words differ in a letter, have one more, or two changed places."""
+    """Return whether two words differ by one letter (changed, added or missing) or by a swap."""
     if abs(len(word) - len(meant)) > 1:
         return False
     if len(word) != len(meant):
@@ -117,7 +117,7 @@ def _keywords() -> tuple[str, ...]:
 
 
 def _reads(site: ErrorSite, edit: LineEdit) -> bool:
-    """Whether a line can be read with an edit."""
+    """Return whether the line can be parsed after the edit."""
     if len(site.code) > _LONGEST:
         return False
     line = _edited(site, edit)
@@ -132,7 +132,7 @@ def _edited(site: ErrorSite, edit: LineEdit) -> str:
 
 
 def _programs(site: ErrorSite, line: str) -> Iterator[str]:
-    """The shortest files that the line can stand in."""
+    """Yield the shortest files in which the line can stand."""
     word = lead(line)
     if word in ("DEF", "DEFFCT", "DEFDAT"):
         yield _lines(line, BLOCKS[word].closer)
@@ -147,7 +147,7 @@ def _programs(site: ErrorSite, line: str) -> Iterator[str]:
 
 
 def _block(word: str, line: str) -> Sequence[str]:
-    """A statement with what it needs around it."""
+    """Return the line with the lines around it that its kind of statement needs."""
     opener = CLOSERS.get(word, (BRANCHES.get(word, ""),))[0]
     if opener:
         head = _HEADS[opener]

@@ -1,7 +1,7 @@
-"""Blocks open at a line, derived from the words that lines begin with.
+"""Blocks that are open at a line, found from the first words of the lines.
 
-A failing program has no tree, and what people have to know about it is often the place of a block
-that was never closed.
+A program with syntax errors has no tree, and the place of a block that was never closed is often
+what its author needs to know.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.AS
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OpenBlock:
-    """A block that is open: its word, its line from 1, and the block around it."""
+    """An open block: its first word, its line from 1, and the block around it."""
 
     word: str
     line: int
@@ -27,18 +27,18 @@ class OpenBlock:
 
     @property
     def closer(self) -> str:
-        """What would close it."""
+        """The word that closes the block."""
         return BLOCKS[self.word].closer
 
 
 def lead(line: str) -> str:
-    """The word that says what a line is, in upper case; empty where there is none."""
+    """Return the word that tells the kind of a line, in upper case; empty if there is none."""
     found = _LEAD.match(line)
     return found[1].upper() if found else ""
 
 
 def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, OpenBlock | None]:
-    """The innermost block that is open before each of some lines, from 1."""
+    """Return the innermost block that is open before each of these lines, which count from 1."""
     wanted = set(lines)
     last = max(wanted, default=0)
     found: dict[int, OpenBlock | None] = {}
@@ -53,7 +53,7 @@ def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, OpenBlock | N
             opened[word] += 1
         elif any(opened[opener] for opener in CLOSERS.get(word, ())):
             is_closed = False
-            while block is not None and not is_closed:  # what is not closed by itself as well
+            while block is not None and not is_closed:  # also ends unclosed blocks inside it
                 is_closed = block.word in CLOSERS[word]
                 opened[block.word] -= 1
                 block = block.outer
@@ -61,10 +61,11 @@ def open_blocks(source: Source, lines: Iterable[int]) -> dict[int, OpenBlock | N
 
 
 def most_likely(source: Source, block: OpenBlock, end: int) -> tuple[OpenBlock, int]:
-    """The block that was meant to be closed before line ``end``, and the line before which.
+    """Return the block that should have been closed before line ``end``, and the line for it.
 
-    Words alone show that a block like this one is open. Where closers are indented as what they
-    close, that shows which one, and the lines in it are indented more than the block itself.
+    The first words only show that a block of this kind is open. If closing words are indented like
+    the lines that they close, indentation shows which block it is. The block then ends before the
+    first line that is indented less than its body.
     """
     inside = source.lines[block.line - 1 : end - 1]
     opened: list[tuple[str, int]] = []
@@ -89,7 +90,7 @@ def most_likely(source: Source, block: OpenBlock, end: int) -> tuple[OpenBlock, 
 
 
 def _end_by_indent(source: Source, block: OpenBlock, end: int) -> int:
-    """The first line in a block that is indented as the block is, if those before are more."""
+    """Return the first line after the body of a block, judged by indentation; else ``end``."""
     indent = _indent(source, block.line)
     is_indented = False
     for number in range(block.line + 1, end):
@@ -110,7 +111,7 @@ def _indent(source: Source, line: int) -> int:
 
 
 def innermost(block: OpenBlock | None, words: Iterable[str]) -> OpenBlock | None:
-    """The innermost open block of one of some kinds."""
+    """Return the innermost open block whose first word is one of ``words``."""
     wanted = set(words)
     while block is not None and block.word not in wanted:
         block = block.outer

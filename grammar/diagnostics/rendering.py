@@ -1,4 +1,4 @@
-"""Findings as text: the source line with a caret below, the reason, what would mend it.
+"""Diagnostics as text: the source line with a caret below, the reason, and the fix.
 
     R1/main.src:12:15: error KSS2296: ORI_TYPE has no constant #CONST
       12 |   $ORI_TYPE = #CONST
@@ -6,7 +6,7 @@
          = a constant is looked up in the enumeration of its place
          = did you mean #CONSTANT?
 
-Files are written by others: whatever a terminal would obey instead of showing is made visible.
+The files come from others, so control characters are made visible and cannot steer a terminal.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _AHEAD_OF_CARET = 40
 def rendered(
     diagnostics: Iterable[Diagnostic], line_of: Callable[[str, int], str], is_verbose: bool = False
 ) -> Iterator[str]:
-    """The lines of text for findings, in order, each finding followed by an empty line.
+    """Yield the lines of text for the findings, sorted, each finding followed by an empty line.
 
-    ``line_of`` gives a line of a file by path and number, empty where there is none; with
-    ``is_verbose`` the rules that say so are named.
+    ``line_of`` returns a line of a file by path and number, empty if there is none. ``is_verbose``
+    adds the rule IDs.
     """
     for diagnostic in in_order(diagnostics):
         line = line_of(diagnostic.path, diagnostic.region.line)
@@ -36,7 +36,7 @@ def rendered(
 
 
 def summary(diagnostics: Iterable[Diagnostic]) -> str:
-    """How many there are of each severity: ``2 errors, 1 note``."""
+    """Return the number of findings of each severity: ``2 errors, 1 note``."""
     found = [diagnostic.severity for diagnostic in diagnostics]
     counts = ((found.count(severity), severity) for severity in ("error", "warning", "note"))
     parts = [f"{count} {word}{'s' * (count != 1)}" for count, word in counts if count]
@@ -62,7 +62,7 @@ def _lines(diagnostic: Diagnostic, source: str, is_verbose: bool) -> Iterator[st
 
 
 def _window(diagnostic: Diagnostic, source: str) -> tuple[str, int, int]:
-    """The part of a line to show, and where in it the caret begins and ends."""
+    """Return the part of a line to show, and the range of the caret in it."""
     region = diagnostic.region
     start = min(region.column - 1, len(source))
     end = region.end_column - 1 if region.end_line == region.line else len(source)
@@ -77,7 +77,7 @@ def _window(diagnostic: Diagnostic, source: str) -> tuple[str, int, int]:
 
 
 def _visible(text: str) -> str:
-    """A text that a terminal shows and does not obey; every character keeps its place."""
+    """Return a text without control characters; every character keeps its column."""
     if text.isprintable():
         return text
     return "".join(
@@ -87,7 +87,7 @@ def _visible(text: str) -> str:
 
 
 def _width(text: str) -> int:
-    """How many columns a terminal needs for a text."""
+    """Return the number of terminal columns that a text needs."""
     if text.isascii():
         return len(text)
     return sum(

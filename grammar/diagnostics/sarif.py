@@ -1,7 +1,7 @@
-"""Findings as SARIF 2.1.0, which editors and code hosts read.
+"""Diagnostics as SARIF 2.1.0, the format that editors and code hosts read.
 
-One run, with every code that a finding has as a rule. Columns count characters, as ours do. Files
-are named by relative URIs where they were named relatively.
+There is one run, whose rules are the codes that occur. Columns count characters. A file that was
+given by a relative path has a relative URI.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def sarif(diagnostics: Iterable[Diagnostic], version: str) -> dict[str, Any]:
-    """A SARIF log of findings; ``version`` is that of the tool."""
+    """Return a SARIF log of findings; ``version`` is that of the tool."""
     found = in_order(diagnostics)
     rules = [by_code()[name] for name in sorted({diagnostic.code for diagnostic in found})]
     indices = {rule.code: index for index, rule in enumerate(rules)}
@@ -81,7 +81,7 @@ def _region(region: Region) -> dict[str, int]:
 
 
 def _artifact(path: str) -> dict[str, str]:
-    """A file by its URI; a relative one is relative to where the tool was called."""
+    """Return the location of a file by its URI; relative ones are relative to ``%SRCROOT%``."""
     drive = path[:2] if re.match(r"[A-Za-z]:/", path) else ""
     # A name that is no Unicode, which some systems have, must not end in a traceback.
     uri = quote(path[len(drive) :], errors="replace")

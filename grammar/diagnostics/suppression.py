@@ -1,7 +1,7 @@
 """Selection of findings: by code for a whole run, or suppressed by a comment.
 
-``; krl: ignore[KSS2296,KRL2] reason`` silences findings of its own line, ``; krl:
-ignore-file[KRL601]`` those of its file. Codes are given whole or by their beginning.
+``; krl: ignore[KSS2296,KRL2] reason`` suppresses findings on its own line, ``; krl:
+ignore-file[KRL601]`` those in its file. A code can be shortened to its first characters.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _COMMENT = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Suppression:
-    """A comment that silences: the beginnings of codes, and why.
+    """A comment that suppresses findings: prefixes of codes, and the reason.
 
-    It acts on its own ``line``, from 1, or on the whole file.
+    It applies to its own ``line``, from 1, or to the whole file.
     """
 
     line: int
@@ -32,21 +32,21 @@ class Suppression:
     reason: str
 
     def covers(self, diagnostic: Diagnostic) -> bool:
-        """Whether it silences a finding of its file."""
+        """Return whether it suppresses a finding of its file."""
         is_here = self.is_file or self.line == diagnostic.region.line
         return is_here and diagnostic.code.startswith(self.codes)
 
 
 @dataclass(frozen=True, slots=True)
 class Malformed:
-    """A comment that is meant to silence something and does not; ``problem`` says why."""
+    """A comment that looks like a suppression but is not valid; ``problem`` says why."""
 
     line: int
     problem: str
 
 
 def suppression(comment: str, line: int) -> Suppression | Malformed | None:
-    """What a comment, from its semicolon on, silences; ``None`` for any other comment."""
+    """Return the suppression in a comment, given with its semicolon; ``None`` if it is none."""
     found = _COMMENT.match(comment)
     if found is None:
         return None
@@ -63,7 +63,7 @@ def suppression(comment: str, line: int) -> Suppression | Malformed | None:
 def unsuppressed(
     diagnostics: Iterable[Diagnostic], suppressions: Sequence[Suppression]
 ) -> tuple[list[Diagnostic], list[Suppression]]:
-    """The findings of one file that no comment silences, and the comments that silence none."""
+    """Return the findings of a file that are not suppressed, and the comments without effect."""
     kept: list[Diagnostic] = []
     idle = dict.fromkeys(suppressions)
     for diagnostic in diagnostics:
@@ -77,9 +77,9 @@ def unsuppressed(
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Findings chosen by the beginnings of their codes; the longest beginning that fits decides.
+    """Findings chosen by prefixes of their codes; the longest prefix that fits decides.
 
-    Nothing selected means everything. Where a code is selected and ignored alike it is ignored.
+    If ``select`` is empty, everything is selected. On a tie ``ignore`` wins.
     """
 
     select: tuple[str, ...] = ()
@@ -87,14 +87,14 @@ class Selection:
 
     @staticmethod
     def of(select: Iterable[str] = (), ignore: Iterable[str] = ()) -> Selection:
-        """From words of a command line, each one or several codes joined by commas.
+        """Return a selection from words of a command line, each one or more codes with commas.
 
-        Raises `ValueError` for a word that no code begins with.
+        Raises `ValueError` for a word that is no prefix of a code.
         """
         return Selection(_codes(select), _codes(ignore))
 
     def keeps(self, code: str) -> bool:
-        """Whether findings of a code are wanted."""
+        """Return whether findings of a code are selected."""
         chosen = _longest(code, self.select) if self.select else 0
         return chosen > _longest(code, self.ignore)
 

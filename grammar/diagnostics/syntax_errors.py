@@ -1,9 +1,9 @@
-"""Syntax failures as findings, with the probable mistake and a fix.
+"""Syntax failures as diagnostics, with the probable mistake and a fix.
 
-The recogniser finds the first token that no program could have, and all that could have come. Here
-that becomes a sentence. The mistakes that people make again and again are known by their tokens:
-``=`` in a condition, END IF, ELSEIF, THEN left out, operators of C, a block that is not closed. All
-others are reported with what was expected.
+The recogniser finds the first token that no program can have there, and all tokens that could come
+instead. This module turns that into a sentence. Frequent mistakes are recognised by their tokens:
+``=`` in a condition, END IF, ELSEIF, a missing THEN, operators of C, a block that is not closed.
+For any other failure the expected tokens are reported.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from grammar.syntax.build import SyntaxFailure, builder
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
-#: Who has more lines that cannot be read has a file that is no KRL.
+#: A file with more failing lines is probably no KRL; only so many are listed.
 MOST_LISTED = 1_000
 _LONGEST_TOKEN = 60
-# Real lines are never this long, and examining one takes long.
+# Beyond this column a failure is not examined: that takes long, and real lines are shorter.
 _FARTHEST = 20_000
-# So many words at the beginning of a line, and none of KRL, are prose.
+# A line that begins with this many words, none of them KRL, is taken for prose.
 _PROSE = 3
 _HEADS = ("DEF", "DEFFCT", "DEFDAT")
 _TYPES = frozenset("INT REAL BOOL CHAR AXIS E6AXIS FRAME POS E6POS".split())
@@ -37,7 +37,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[Diagnostic]:
-    """Findings for the failures of a text; those that only follow from others are left out."""
+    """Return the findings for the failures of a text, without those that follow from others."""
     reported = [failure for failure in failures if not failure.follows] or list(failures)
     reported = [
         failure
@@ -54,7 +54,7 @@ def syntax_findings(failures: Sequence[SyntaxFailure], source: Source) -> list[D
 
 
 def _is_same_gap(before: SyntaxFailure, failure: SyntaxFailure, source: Source) -> bool:
-    """Whether two lines stand outside all routines for want of one and the same beginning."""
+    """Return whether two lines are outside all routines because of the same missing first line."""
     lines = source.lines[before.line - 1 : failure.line]
     is_outside = before.rule == failure.rule == "module"
     return is_outside and not any(lead(line) in _HEADS for line in lines)
@@ -62,10 +62,10 @@ def _is_same_gap(before: SyntaxFailure, failure: SyntaxFailure, source: Source) 
 
 @dataclass(frozen=True, slots=True)
 class _Mistake:
-    """What is wrong: the words for it, and where, if not at the offending token.
+    """A recognised mistake: its message, and its region if that is not the offending token.
 
-    ``is_unconfirmed``: somebody's program has it, which proves neither that it is KRL nor that it
-    is not.
+    ``is_unconfirmed`` marks code that occurs in real programs; that proves neither that it is KRL
+    nor that it is not.
     """
 
     message: str
@@ -98,7 +98,7 @@ def _finding(site: ErrorSite) -> Diagnostic:
 
 
 def _offending(site: ErrorSite) -> Region:
-    """The offending token; at the end of a text, its last line that says something."""
+    """Return the region of the offending token, or the end of the last line that is not blank."""
     failure, source = site.failure, site.source
     if failure.text:
         shown = source.line(failure.line)[failure.column - 1 :]
@@ -139,7 +139,7 @@ def _unexpected(site: ErrorSite) -> _Mistake:
 
 
 def _misplaced(site: ErrorSite, words: str) -> _Mistake:
-    """What is wrong with a token in its place, ``words`` being what could have stood there."""
+    """Return the mistake of a token in the wrong place; ``words`` are the expected tokens."""
     shown, text, reason = _shown(site), site.text, f"expected: {words}" if words else ""
     before = site.tokens[site.place - 1][0] if site.place else ""
     ahead = site.words[: site.place]
@@ -165,13 +165,13 @@ def _misplaced(site: ErrorSite, words: str) -> _Mistake:
     return _Mistake(f"{shown} cannot stand here", reason=reason)
 
 
-# Where more tokens could stand, none of them is named.
+# If more tokens are expected, the message names none of them.
 _FEW = 12
 _ENDS_VALUE = re.compile(r"[\w\])]$")
 
 
 def _shown(site: ErrorSite) -> str:
-    """The offending token as written, as far as it fits into a message."""
+    """Return the offending token as a message shows it, cut if it is long."""
     text = site.failure.text.strip()
     cut = f"{text[:_LONGEST_TOKEN]}…" if len(text) > _LONGEST_TOKEN else text
     return cut if cut[:1].isalnum() or cut[:1] in '"$#_' else f'"{cut}"'
@@ -181,7 +181,7 @@ def _shown(site: ErrorSite) -> str:
 
 
 def _blocks(site: ErrorSite) -> _Mistake | None:
-    """A block that is not closed, or closed and never opened."""
+    """Return the mistake of a block that is not closed, or closed without being open."""
     if not site.failure.text:
         return None if site.block is None else _not_closed(site, site.block)
     word = lead(site.code)
@@ -258,7 +258,7 @@ _FOREIGN = {
 
 
 def _foreign(site: ErrorSite) -> _Mistake | None:
-    """A word of another language in place of one of KRL."""
+    """Return the mistake of a keyword from another language."""
     word = site.word(0)
     if site.place > 1 or site.expects("INTEGER"):
         return None
@@ -280,7 +280,7 @@ def _foreign(site: ErrorSite) -> _Mistake | None:
 
 
 def _signs(site: ErrorSite) -> _Mistake | None:
-    """Signs that mean something else in KRL, or nothing."""
+    """Return the mistake of a sign that means something else in KRL, or nothing."""
     text, place = site.text, site.place
     if text == "=" and site.expects("=="):
         last = place + 1 if site.word(place + 1) == "=" else None
@@ -313,7 +313,7 @@ def _signs(site: ErrorSite) -> _Mistake | None:
 
 
 def _decimal_points(site: ErrorSite) -> _Mistake | None:
-    """A decimal point without digits on both sides, or a comma in its place."""
+    """Return the mistake of a decimal comma, or of a number that begins or ends with a point."""
     at = site.place if site.text == "," else site.place - 1
     if site.word(at) == "," and site.word(at - 1).isdigit() and site.word(at + 1).isdigit():
         number = f"{site.word(at - 1)}.{site.word(at + 1)}"
@@ -338,7 +338,7 @@ _OF_C = {
 
 
 def _words(site: ErrorSite) -> _Mistake | None:
-    """A word too many, too few, or in the wrong order."""
+    """Return the mistake of a keyword that is missing, superfluous or in the wrong order."""
     text, place = site.text, site.place
     if site.failure.rule == "ifStatement" and site.expects("THEN"):
         if site.is_at_end:
@@ -363,7 +363,7 @@ def _words(site: ErrorSite) -> _Mistake | None:
 
 
 def _ends(site: ErrorSite) -> _Mistake | None:
-    """A line that ends too early."""
+    """Return the mistake of a line that ends too early."""
     if not site.is_at_end:
         return None
     if len(site.words) == 1 and site.expects("(", "="):
@@ -378,7 +378,7 @@ def _ends(site: ErrorSite) -> _Mistake | None:
 
 
 def _declarations(site: ErrorSite) -> _Mistake | None:
-    """Declarations with what belongs elsewhere, or without what they need."""
+    """Return the mistake of a declaration with something misplaced or missing."""
     text, rule, is_data = site.text, site.failure.rule, _is_data(site)
     if not is_data and text == "=" and rule == "declaration":
         message = "a routine has no initial values"
@@ -405,7 +405,7 @@ def _declarations(site: ErrorSite) -> _Mistake | None:
 
 
 def _constants(site: ErrorSite) -> _Mistake | None:
-    """Values in a data list that a program would have to work out."""
+    """Return the mistake of a value in a data list that is not a constant."""
     if not _is_data(site) or "=" not in site.words[: site.place]:
         return None
     if _is_name(site, site.place) and site.expects("INTEGER"):
@@ -420,7 +420,7 @@ def _constants(site: ErrorSite) -> _Mistake | None:
 
 
 def _names(site: ErrorSite) -> _Mistake | None:
-    """Names that are none, and statements where none can be."""
+    """Return the mistake of an invalid name, or of a statement where none can be."""
     text, place = site.text, site.place
     is_name = site.expects("NAME") and not site.expects("INTEGER") and not site.expects("HALT")
     if is_name and _is_keyword(text):
@@ -457,7 +457,7 @@ def _is_data(site: ErrorSite) -> bool:
 
 
 def _is_keyword(word: str) -> bool:
-    """Whether a word cannot be a name."""
+    """Return whether a word is a keyword that cannot be a name."""
     if not _WORD.fullmatch(word):
         return False
     lexer = builder().parser.recognizer.lexer
@@ -469,7 +469,7 @@ def _is_keyword(word: str) -> bool:
 
 
 def _motions(site: ErrorSite) -> _Mistake | None:
-    """A motion without its points."""
+    """Return the mistake of a motion without its points."""
     word = lead(site.code)
     need = _POINTS.get(word)
     if need is None or site.expects("HALT"):
@@ -491,7 +491,7 @@ _POINTS = {
 
 
 def _commas(words: Sequence[str]) -> int:
-    """How many commas stand outside brackets."""
+    """Return the number of commas outside brackets."""
     depth = found = 0
     for word in words:
         depth += (word in "([{") - (word in ")]}") if len(word) == 1 else 0
@@ -500,7 +500,7 @@ def _commas(words: Sequence[str]) -> int:
 
 
 def _edits(site: ErrorSite) -> _Mistake | None:
-    """One token that is misspelt, stands twice, or is a bracket that is missing."""
+    """Return the mistake of one token that is misspelt, repeated, or a missing bracket."""
     edit = keyword(site)
     if edit is not None:
         wrong = site.tokens[edit.first][0]
@@ -518,13 +518,13 @@ def _edits(site: ErrorSite) -> _Mistake | None:
 
 
 def _gaps(site: ErrorSite) -> _Mistake | None:
-    """A sign that is missing between two tokens."""
+    """Return the mistake of a missing sign between two tokens."""
     edit = left_out(site)
     return None if edit is None else _written(site, edit)
 
 
 def _written(site: ErrorSite, edit: LineEdit) -> _Mistake:
-    """A sign is to be written before a token, or at the end of the line."""
+    """Return the mistake of a missing sign, inserted before a token or at the end of the line."""
     if edit.first >= len(site.tokens):
         return _Mistake(f"{edit.text} is missing", site.append(edit.text))
     if edit.first > 0:
@@ -543,7 +543,7 @@ _CLOSING = ")]}.,([{"
 
 
 def _folds(site: ErrorSite) -> _Mistake | None:
-    """A fold without its semicolon."""
+    """Return the mistake of FOLD or ENDFOLD without its semicolon."""
     if site.word(0) not in ("FOLD", "ENDFOLD"):
         return None
     word = site.tokens[0][0]
@@ -551,7 +551,7 @@ def _folds(site: ErrorSite) -> _Mistake | None:
 
 
 def _prose(site: ErrorSite) -> _Mistake | None:
-    """A line of words, none of which KRL knows; what was meant is for a person to say."""
+    """Return the mistake of a comment without its semicolon: a line of words unknown to KRL."""
     words = [token[0] for token in site.tokens]
     begin = words[:_PROSE]
     if len(begin) < _PROSE or not all(word.isalpha() and not _is_keyword(word) for word in begin):
@@ -560,7 +560,7 @@ def _prose(site: ErrorSite) -> _Mistake | None:
     return _Mistake("a comment begins with a semicolon", fix, region=site.region(0))
 
 
-#: In this order: the first that knows the mistake reports it.
+#: The detectors in order; the first that returns a mistake decides.
 _KNOWN: tuple[Callable[[ErrorSite], _Mistake | None], ...] = (
     _blocks,
     _folds,

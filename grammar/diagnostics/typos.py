@@ -1,11 +1,12 @@
-"""Typing errors: whether a name is a slip of another, among many names at once.
+"""Typing errors: whether a name is a misspelling of one among many others.
 
-Stricter than `grammar.diagnostics.did_you_mean`, which only words a hint: here a finding rests on
-it. One slip is a letter too many, too few or wrong, or two that changed places. Names that people
-make in series are no slips of one another: those that differ in a digit, in the last letter of a
-word (``PICKA``, ``PICKB``), in a prefix (``XHOME`` of ``HOME``), or as GET and SET. Where all of
-a series would be known, only digits tell names apart: `Series` says so for each name. Small letters
-before a capital (``gnPart``) are a prefix only where other names have it too.
+This is stricter than `grammar.diagnostics.did_you_mean`, which only words a hint, because a finding
+rests on it. A slip is one letter that is missing, added or replaced, or two neighbours that are
+swapped. Names that belong to a series are not slips of one another: those that differ in a digit,
+in the last letter of a word (``PICKA``, ``PICKB``), in a prefix (``XHOME`` and ``HOME``), or as GET
+and SET. If all names of a series are known, only digits tell its members apart; `Series` says so
+for each name. Small letters before a capital (``gnPart``) are a prefix only if other names have the
+same prefix.
 """
 
 from __future__ import annotations
@@ -14,41 +15,42 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 
-# Shorter names are near too many others.
+# Shorter names are similar to too many others.
 _SHORTEST = 4
 _LONGEST = 64
-# A word of a name: letters, or what is no letter.
+# Part of a name: a run of letters, or of other characters.
 _WORD = re.compile(r"[A-Z]+|[^A-Z]+", re.IGNORECASE)
 _NUMBER = re.compile(r"[\d_]+")
-# Both are there in every library.
+# Every library has functions in such pairs.
 _PAIR = {"GET", "SET"}
-# A letter and the digit that looks like it.
+# Letters and the digits that look like them.
 _ALIKE = ({"O", "0"}, {"I", "1"}, {"L", "1"})
-# A letter behind a shorter word may number it: POSX, POSY.
+# A final letter can number a word that is shorter than this: POSX, POSY.
 _SHORTEST_TO_END = 6
-# What inline forms put before the name of a point to name its data: XP1, FP1, PPDAT1, LCPDAT1.
+# Prefixes with which inline forms name the data of a point: XP1, FP1, PPDAT1, LCPDAT1.
 _PREFIXES = frozenset("XFPL")
-# Small letters that say what a name is: gnPart, a number that is global.
+# A prefix of small letters that tells the kind of a name: gnPart, a global number.
 _SMALL_PREFIX = re.compile(r"[a-z]+(?=[A-Z])")
 
 
 class Series(Enum):
-    """What may distinguish a name from others on purpose."""
+    """What may distinguish names of a series from one another."""
 
-    #: Nothing: what is near a word of the language is a slip.
+    #: Nothing: a name that is near a word of the language is a slip.
     NONE = 0
-    #: Digits: names of the controller, and of a file that is there, of which all are known.
+    #: Digits: names of the controller or of a file at hand, where the whole series is known.
     DIGITS = 1
     #: Digits and letters: others of the series may be declared elsewhere.
     LETTERS = 2
 
 
 class Typos:
-    """Names that can be meant, indexed so that a look-up costs the length of the name.
+    """An index of correctly spelled names; a look-up costs time proportional to the name's length.
 
-    Each name is entered under itself without each of its letters, as SymSpell does: names that are
-    one slip apart meet in such a key. Names of fewer than ``shortest`` letters are left out. Those
-    of ``known`` are there too, and are not entered again; nothing is added to it any more.
+    Each name is entered under itself and under itself without each one of its letters (SymSpell,
+    symmetric delete), so names that are one slip apart share a key. Names with fewer than
+    ``shortest`` letters are left out. The names of ``known`` are shared without being entered
+    again; it must not be changed afterwards.
     """
 
     def __init__(
@@ -67,7 +69,7 @@ class Typos:
         self.add(names, series)
 
     def add(self, names: Iterable[str], series: Series) -> None:
-        """Enter names; letter case makes no difference, the first spelling counts."""
+        """Add names. Letter case is ignored; the first spelling of a name is kept."""
         for name in names:
             key = name.upper()
             self.prefixes.add(small_prefix(name))
@@ -77,9 +79,9 @@ class Typos:
                     self._keys.setdefault(shorter, []).append(key)
 
     def meant(self, name: str, *, has_slipped: bool = False) -> tuple[str, ...]:
-        """The names that ``name`` may be a slip of, in the order of the alphabet.
+        """Return the names of which ``name`` may be a misspelling, in alphabetical order.
 
-        ``has_slipped``: its `small_prefix` is that of no other name.
+        ``has_slipped`` says that no other name has its `small_prefix`.
         """
         wrong = name.upper()
         if not self._shortest <= len(wrong) + 1 <= _LONGEST:
@@ -100,13 +102,13 @@ def _shortened(key: str) -> Iterator[str]:
 
 
 def small_prefix(name: str) -> str:
-    """The small letters before the first capital of a name; ``""`` where it begins with one."""
+    """Return the small letters before the first capital of a name; ``""`` if there are none."""
     found = _SMALL_PREFIX.match(name)
     return found[0] if found else ""
 
 
 def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> bool:
-    """Whether two names that share a key are one slip apart, and in no series."""
+    """Return whether two names with a common key are one slip apart and not in a series."""
     has_slipped = has_slipped and bool(small_prefix(name))
     wrong, right = misspelt.upper(), name.upper()
     pairs = enumerate(zip(wrong, right, strict=False))
@@ -124,9 +126,9 @@ def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> boo
             and (longer is wrong or start > 1)
             and {letter} != set(_word(longer, start))
         ):
-            return True  # a letter doubled, or one of two lost
+            return True  # a letter was doubled, or one of two equal letters lost
         if longer is wrong and letter == "S" and start == len(shorter) and name[0] != "$":
-            return False  # one of several, and all of them
+            return False  # singular and plural
         if start == 0:
             return has_slipped or (longer is right and _loses_its_first(name, series))
         spelt = misspelt if longer is wrong else name
@@ -150,7 +152,7 @@ def _is_capitalised(name: str) -> bool:
 
 
 def _is_prefix(misspelt: str, name: str, index: int) -> bool:
-    """Whether a letter of a name says what it is: xHome and fHome, I_START and O_START."""
+    """Return whether a letter of a name is a prefix that tells its kind: xHome, I_START."""
     if name[0] == "$" and index == 0:
         return misspelt[1:] != name[1:] and misspelt[0].islower() and misspelt[1:2].isupper()
     if index == 0:
@@ -159,17 +161,17 @@ def _is_prefix(misspelt: str, name: str, index: int) -> bool:
 
 
 def _loses_its_first(name: str, series: Series) -> bool:
-    """Whether a name without its first letter is no name of its own: that is no prefix."""
+    """Return whether a name is not plausible without its first letter, which is no prefix then."""
     if series is not Series.DIGITS or name[0].islower() or len(name) <= _SHORTEST_TO_END:
         return _is_capitalised(name)
     return name[0] not in _PREFIXES
 
 
 def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) -> bool:
-    """Whether the character at an index numbers the name: a digit, or the last of a word.
+    """Return whether the character at an index numbers the name: a digit, or a last letter.
 
-    The last letter of a word with so many letters numbers nothing, nor does a small one behind
-    another in a name that has capitals too.
+    The last letter of a word with ``shortest`` or more letters numbers nothing. Nor does a small
+    letter after another one, in a name that has capitals too.
     """
     if series is Series.DIGITS or name[index] == "_":
         return name[index].isdigit()
@@ -184,5 +186,5 @@ def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) ->
 
 
 def _word(name: str, index: int) -> str:
-    """The letters, or other characters, among which an index stands."""
+    """Return the run of letters, or of other characters, that contains an index."""
     return next(word[0] for word in _WORD.finditer(name) if index < word.end())

@@ -1,1 +1,1 @@
-"""Meaning of names and types: symbols, scopes, linking, types, predefined names."""
+"""Semantic analysis: symbol tables, scopes, linking, name resolution, types, predefined names."""

@@ -1,8 +1,8 @@
-"""Assignability: what may be assigned, passed and compared in SWITCH.
+"""Assignability: which values can be assigned, passed, or compared in SWITCH.
 
-Numbers are converted, texts fit into arrays of CHAR, positions of one family into one another; all
-else must be of the same type [ARI-03, ARI-11, TYP-12]. A parameter :IN converts alike, one :OUT
-does not [ARI-04].
+Numbers are converted to one another, texts fit into arrays of CHAR, and positions of one family fit
+into one another; everything else must have the same type [ARI-03, ARI-11, TYP-12]. An argument for
+a parameter :IN is converted in the same way, one for :OUT is not [ARI-04].
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _ROUNDED = Verdict(True, ("ARI-03",), "this REAL value is rounded to an INT", is
 
 
 def assignable(to: Type, value: Type) -> Verdict:
-    """Whether a variable of type ``to`` can receive a value."""
+    """Return whether a variable of type ``to`` can receive a value."""
     if isinstance(to, Unknown) or isinstance(value, Unknown):
         return FINE
     match to:
@@ -56,7 +56,7 @@ def assignable(to: Type, value: Type) -> Verdict:
 
 
 def initial(to: Type, value: Type) -> Verdict:
-    """Whether ``value`` can be the initial value of a variable [TYP-12]."""
+    """Return whether ``value`` can be the initial value of a variable [TYP-12]."""
     verdict = assignable(to, value)
     return verdict if verdict else replace(verdict, rules=("TYP-12", *verdict.rules))
 
@@ -66,7 +66,7 @@ def _refused(to: Type, value: Type) -> Verdict:
 
 
 def misfit(to: Type, value: Type, where: str = "here") -> str:
-    """The sentence on a value of another type than its place has."""
+    """Return the sentence about a value whose type differs from what its place needs."""
     return f"{to} is expected {where}, and this is {value}"
 
 
@@ -140,9 +140,10 @@ def _to_array(to: Array, value: Type) -> Verdict:
 
 
 def declarable(parameter: Type, *, is_out: bool) -> Verdict:
-    """Whether a routine can have such a parameter: arrays are passed :OUT only [SCO-07].
+    """Return whether a routine can have such a parameter: arrays are passed :OUT only [SCO-07].
 
-    Texts may be passed :IN all the same: predefined functions and KUKA's own programs do so.
+    Texts are accepted :IN all the same, because predefined functions and KUKA's own programs have
+    such parameters.
     """
     if isinstance(parameter, Array) and not is_out and parameter.element not in (CHAR, UNKNOWN):
         return Verdict(False, ("SCO-07",), "an array that is not a text can only be passed :OUT")
@@ -150,11 +151,11 @@ def declarable(parameter: Type, *, is_out: bool) -> Verdict:
 
 
 def passable(parameter: Type, argument: Type, *, is_out: bool, is_variable: bool) -> Verdict:
-    """Whether an argument fits a parameter [ARI-04].
+    """Return whether an argument fits a parameter [ARI-04].
 
-    A variable passed :OUT must have the parameter's type, only the sizes of arrays may differ; all
-    else is converted. What is passed :OUT and is no variable has nothing to be changed, so it is
-    judged as if passed :IN.
+    A variable passed :OUT must have the parameter's type, except for the sizes of arrays. All other
+    arguments are converted: an expression passed :OUT has nothing that could be changed, so it is
+    treated like one passed :IN.
     """
     if isinstance(parameter, Unknown) or isinstance(argument, Unknown):
         return FINE
@@ -178,27 +179,27 @@ def passable(parameter: Type, argument: Type, *, is_out: bool, is_variable: bool
 
 
 def condition(value: Type, *rules: str) -> Verdict:
-    """Whether a value is a truth value; ``rules`` are those of the statement."""
+    """Return whether a value is a BOOL; ``rules`` are those of the statement."""
     return _one_of(value, (BOOL,), "a truth value", rules)
 
 
 def number(value: Type, *rules: str) -> Verdict:
-    """Whether a value is a number."""
+    """Return whether a value is a number."""
     return _one_of(value, (INT, REAL), "a number", rules)
 
 
 def integer(value: Type, *rules: str) -> Verdict:
-    """Whether a value is an INT."""
+    """Return whether a value is an INT."""
     return _one_of(value, (INT,), "an INT", rules)
 
 
 def index(value: Type) -> Verdict:
-    """Whether a value can be an index of an array."""
+    """Return whether a value can be an index of an array."""
     return _one_of(value, (INT, REAL, CHAR), "a number", ())
 
 
 def target(value: Type) -> Verdict:
-    """Whether a motion can go there."""
+    """Return whether a motion can go to a value."""
     if isinstance(value, Unknown | Aggregate) or is_position(value):
         return FINE
     if isinstance(value, Array):
@@ -215,7 +216,7 @@ def _one_of(value: Type, allowed: tuple[Scalar, ...], what: str, rules: tuple[st
 
 
 def selector(value: Type) -> Verdict:
-    """Whether SWITCH can choose by a value: CHAR, INT or an enumeration [CTL-03]."""
+    """Return whether SWITCH can choose by a value: CHAR, INT or an enumeration [CTL-03]."""
     if isinstance(value, Unknown | Enumeration | Constant) or value in (INT, CHAR):
         return FINE
     if isinstance(value, Array):
@@ -225,7 +226,7 @@ def selector(value: Type) -> Verdict:
 
 
 def case_label(chosen: Type, label: Type) -> Verdict:
-    """Whether ``label`` can stand in a CASE of a SWITCH over ``chosen`` [CTL-03]."""
+    """Return whether ``label`` can stand in a CASE of a SWITCH over ``chosen`` [CTL-03]."""
     fits = selector(label) if not isinstance(label, Text) else FINE
     if not fits or isinstance(chosen, Unknown) or not selector(chosen):
         return fits

@@ -1,7 +1,7 @@
-"""The types of what files declare, as values of `grammar.semantics.types`.
+"""The types of declared symbols, as values of `grammar.semantics.types`.
 
-The name of a type is looked up in the scope of its declaration. What is unknown, such as a type of
-a missing package or a size known only at run time, is `UNKNOWN` or ``None`` and fits everywhere.
+A type name is looked up in the scope of the declaration. If a type or a size is unknown, for
+example because a package is missing, it is `UNKNOWN` or ``None`` and fits everywhere.
 """
 
 from __future__ import annotations
@@ -13,22 +13,21 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import root_variable
 
-#: Structures of structures go no deeper on any controller; hostile files may go as deep as they are
-#: long.
+#: Structures nest less deeply than this on any controller; hostile files may nest without limit.
 _DEEPEST = 40
 
 
 class DeclaredTypes:
-    """The types of the symbols of one project; each is made once."""
+    """The types of the symbols of one project; each is built once."""
 
     def __init__(self) -> None:
         self._made: dict[tuple[Scope, Symbol], Type] = {}
         self._depth = 0
 
     def of(self, found: Found) -> Type:
-        """The type of a variable or member, of what a function gives, or what a type itself is.
+        """Return the type of a variable or member, of a function's result, or of a type itself.
 
-        `UNKNOWN` for what has none: labels, channels, routines without a result.
+        Returns `UNKNOWN` for symbols without a type: labels, channels, procedures.
         """
         symbol, scope = found.symbol, found.scope
         if symbol.given is not None:
@@ -36,7 +35,7 @@ class DeclaredTypes:
         key = scope, symbol
         made = self._made.get(key)
         if made is None:
-            self._made[key] = UNKNOWN  # as long as it is in the making: what holds itself ends here
+            self._made[key] = UNKNOWN  # until it is complete: ends the recursion of recursive types
             made = self._made[key] = self._type(symbol, scope)
         return made
 
@@ -48,7 +47,7 @@ class DeclaredTypes:
         return UNKNOWN if symbol.type is None else self.written(symbol.type, scope)
 
     def written(self, written: TypeReference, scope: Scope) -> Type:
-        """The type that is named so in a scope."""
+        """Return the type that a type name, with its sizes, means in a scope."""
         answer = scope.find(Space.TYPE, written.key)
         element = self.of(answer) if isinstance(answer, Found) else UNKNOWN
         if written.indices is None or element == UNKNOWN:
@@ -72,7 +71,7 @@ class DeclaredTypes:
         return Structure(symbol.name, members, is_open)
 
     def _signal(self, symbol: SignalSymbol, scope: Scope) -> Type:
-        """A signal of several bits is a number; another one has the type of what it stands for."""
+        """Return INT for a signal of several bits, otherwise the type of what it stands for."""
         if symbol.last is not None:
             return INT
         root = root_variable(symbol.first)
@@ -86,7 +85,7 @@ class DeclaredTypes:
 
 
 def _size(index: ast.Expression | None, scope: Scope) -> int | None:
-    """The size of a dimension, where it is a number or a constant that stands for one."""
+    """Return the size of a dimension if it is a number or a constant with a number as value."""
     if isinstance(index, ast.Variable):
         answer = scope.find(Space.VALUE, index.name.key)
         index = answer.symbol.value if isinstance(answer, Found) else None

@@ -1,18 +1,18 @@
-"""Linking: which files form a project, and which names of others each file sees.
+"""Linking: which files form a project, and which names each file sees.
 
-`link` takes the files of a call, from folders, archives or one by one, and makes a `Workspace` of
-`Project`s. A project is what one controller holds: a folder with R1 or STEU in it, as every backup
-has, and files around it are another project. Files without such a layout form one project for each
-origin, unless they hold several $CONFIG lists: then each of these begins a project. Projects see
+`link` takes the files of a call, from folders, archives or one by one, and returns a `Workspace` of
+`Project`s. A project is what one controller holds: every backup has a folder with R1 or STEU in it,
+and files around that folder are another project. Files without this layout form one project for
+each origin. If they contain several $CONFIG lists, each of these begins a project. Projects see
 nothing of one another.
 
-Within a project, a `.src` or `.sub` and the `.dat` of the same name in the same folder are one
-module [SCO-01]. Seen from everywhere are first routines and GLOBAL ones, what is GLOBAL in a PUBLIC
-data list, and all that the controller's own lists declare, those whose name begins with a dollar
-sign [SCO-04].
+Within a project, a `.src` or `.sub` file and the `.dat` file of the same name in the same folder
+are one module [SCO-01]. Visible everywhere are the first routine of a file, routines declared
+GLOBAL, GLOBAL declarations in a PUBLIC data list, and everything in the controller's own data
+lists, whose names begin with a dollar sign [SCO-04].
 
-To come by a scope: ``project.scope(module)`` for a file, ``project.scope(module, routine)`` inside
-one of ``module.table.routines``; then ``scope.find(Space.VALUE, "NAME")``.
+To get a scope: ``project.scope(module)`` for a file, ``project.scope(module, routine)`` for one of
+``module.table.routines``; then ``scope.find(Space.VALUE, "NAME")``.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ from grammar.syntax.references import Space
 from support.files.discovery import DRIVE_FOLDERS, is_drive
 from support.lazy_dataclass import dataclass
 
-#: Names with so many letters alike at the beginning belong together.
+#: Names with this many equal first letters are taken to belong together.
 SHARED = 5
 
 
@@ -57,11 +57,10 @@ SHARED = 5
 class File:
     """A file to link. ``path`` has ``/``; files of different origins never share a project.
 
-    A file that cannot be read has neither ``syntax`` nor ``table``: that it is there matters all
-    the same. ``words`` are the names that occur in what cannot be read of it (`words_of`), as it
-    may declare no others.
-    ``table`` may come from a cache, as it depends on the content alone; without ``syntax`` others
-    can refer to the file.
+    A file that cannot be read has neither ``syntax`` nor ``table``, but its presence still matters.
+    ``words`` are the names in its unreadable part (`words_of`), because it cannot declare any
+    others. ``table`` may come from a cache, since it depends on the content alone; a file with a
+    table and no ``syntax`` can be referred to.
     """
 
     path: str
@@ -73,20 +72,20 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Clash:
-    """Declarations of one name that are all seen from everywhere."""
+    """Several declarations of one name, all of which are visible everywhere."""
 
     space: Space
     declarations: tuple[Found, ...]
 
 
 class Project:
-    """The files of one controller. ``root`` is their folder, as the paths have it.
+    """The files of one controller. ``root`` is their common folder.
 
-    ``is_controller``: whether it is laid out like a controller's drive. ``is_complete``: whether
-    what is declared nowhere is certain to be missing. ``clashes`` are names that several modules
-    declare for everybody; outside a controller's drive these may just be copies. ``types`` are the
-    types of what is declared. ``has_config``: whether its $CONFIG list is at hand, can be read to
-    its end, and more than the folder it lies in.
+    ``is_controller`` says that the files are laid out like a controller's drive. ``is_complete``
+    says that a name without a declaration is certainly undeclared. ``clashes`` are names with
+    several global declarations; outside a controller's drive these may just be copies. ``types``
+    are the types of the symbols. ``has_config`` says that the $CONFIG list is present and readable
+    to its end, and that there are files outside its folder.
     """
 
     def __init__(
@@ -132,7 +131,7 @@ class Project:
         )
 
     def scope(self, module: Module, routine: RoutineTable | None = None) -> Scope:
-        """What is known in a file that can be read, or in one of its routines."""
+        """Return the scope of a readable file, or of one of its routines."""
         assert module.table is not None, "nothing is known of a file that cannot be read"
         scope = self._scopes.get(module.table)
         if scope is None:
@@ -141,26 +140,26 @@ class Project:
             return scope
         inner = self._inner.get(routine)
         if inner is None:
-            # of the module as it was linked: the tree that a module may have is not to be kept
+            # scope.module, because the argument may hold a tree, which must not be kept alive
             inner = self._inner[routine] = Scope(scope.module, routine, routine.table, scope)
         return inner
 
     def forget(self) -> None:
-        """Give up all that was looked up: scopes and what they found refer to one another.
+        """Clear scopes and look-up results, which form reference cycles.
 
-        Otherwise they stay until garbage is collected, which has to go through them.
+        Otherwise they stay in memory until a garbage collection, which has to visit all of them.
         """
         for scope in (*self._scopes.values(), *self._inner.values()):
             scope.forget()
         self._globals.forget()
 
     def data_of(self, module: Module) -> Module | None:
-        """The data list that belongs to a program, readable or not."""
+        """Return the data list that belongs to a program, whether it is readable or not."""
         return None if module.suffix == ".dat" else self._data.get(_place(module))
 
     @cached_property
     def typos(self) -> Mapping[Space, Typos]:
-        """What names may be slips of, by space: all that is seen from everywhere."""
+        """The names that are visible everywhere, by space, as an index for misspellings."""
         made = {}
         for space, names in self._names.items():
             known = [found[0] for found in names.values()]
@@ -172,12 +171,12 @@ class Project:
 
     @cached_property
     def without_data(self) -> Set[str]:
-        """How the names of programs without a data list begin, with up to `SHARED` letters."""
+        """Prefixes, up to `SHARED` letters, of the names of programs that have no data list."""
         lacking = (one for one in self.modules if one.suffix != ".dat" and not self.data_of(one))
         return {one.name[:length] for one in lacking for length in range(1, SHARED + 1)}
 
     def imported(self, found: Found) -> Answer:
-        """What an IMPORT stands for: data of another list, which has to be PUBLIC [ADV-05]."""
+        """Return the variable that an IMPORT refers to; its data list has to be PUBLIC [ADV-05]."""
         symbol, module = found.symbol, found.module
         assert isinstance(symbol, ImportSymbol), "only an IMPORT stands for something else"
         assert module is not None, "the controller imports nothing"
@@ -205,26 +204,26 @@ class Project:
         return Scope(module, None, table.table, outer, table.externals)
 
     def _misses(self, module: Module) -> bool:
-        """Whether a module calls what nothing declares or announces."""
+        """Return whether a module calls a routine that nothing declares or announces."""
         if module.table is None:
             return False
         find = self.scope(module).find
         return any(not isinstance(find(Space.ROUTINE, key), Found) for key in module.table.calls)
 
     def _undeclared_calls(self) -> Iterator[str]:
-        """The routines that are called and that no file declares for everybody."""
+        """Yield the called routines that no file declares globally."""
         names = self._names[Space.ROUTINE]
         for module in self.modules:
             if module.table is not None:
                 yield from (key for key in module.table.calls if key not in names)
 
     def _add_packages(self, packages: frozenset[str]) -> None:
-        """Take what option packages declare as seen from everywhere, unless a file declares it."""
+        """Add the declarations of option packages as global ones, where no file has the name."""
         for space, found in PackageScope(packages, self._globals.near("")).all():
             self._names[space].setdefault(found.symbol.key, [found])
 
     def _collect(self) -> None:
-        """Sort what the modules declare by whether it is seen from everywhere."""
+        """Sort the declarations of all modules into those visible everywhere and all others."""
         announced: list[Found] = []
         for module in self.modules:
             if module.table is None:
@@ -240,7 +239,7 @@ class Project:
                     announced.append(found)
                 else:
                     self._names[space].setdefault(symbol.key, []).append(found)
-        for found in announced:  # EXT, EXTP in a data list; the routine itself says more
+        for found in announced:  # EXT and EXTP in a data list: a declaration elsewhere has priority
             key = found.symbol.key
             if not isinstance(self._globals.system.find(Space.ROUTINE, key), Found):
                 self._names[Space.ROUTINE].setdefault(key, [found])
@@ -248,12 +247,12 @@ class Project:
 
 @dataclass(frozen=True, slots=True)
 class Workspace:
-    """All projects of a call, in the order of their roots; every file is in one of them."""
+    """All projects of a call, sorted by their roots; every file belongs to exactly one."""
 
     projects: tuple[Project, ...]
 
     def modules(self) -> Iterator[tuple[Project, Module]]:
-        """All files with their projects."""
+        """Yield all files with their projects."""
         for project in self.projects:
             for module in project.modules:
                 yield project, module
@@ -266,14 +265,15 @@ def link(
     packages: frozenset[str] | None = None,
     before: Workspace | None = None,
 ) -> Workspace:
-    """Group files to projects. Linear in the number of files and of what they declare.
+    """Return the files grouped into projects. Linear in the number of files and declarations.
 
-    ``system`` is what the controller brings along, by default that of any release, and the same for
-    all projects. ``is_complete`` says whether no file is missing; where it is not given, a project
-    counts as complete when it has what every backup has and calls nothing that is not there: a
-    package that is missing may bring data as well as routines. ``packages`` are option packages
-    that are there besides those whose routines are called; by default none is. Of
-    what was linked ``before`` in the same way, projects whose files are the same are taken over.
+    ``system`` is what the controller declares, the same for all projects; by default the
+    declarations of all releases. ``is_complete`` says whether all files are present. If it is
+    ``None``, a project counts as complete when it has the files that every backup has and calls no
+    unknown routine: a missing package may declare data as well as routines. ``packages`` are option
+    packages that are installed besides those whose routines are called; with ``None``, package
+    names are not declared at all. Projects whose files did not change are taken over from
+    ``before``, which must have been linked with the same options.
     """
     projects, scope = [], SystemScope(system or System.load())
     known = {one.modules[0].path: one for one in before.projects} if before else {}
@@ -287,7 +287,7 @@ def link(
 
 
 def _is_of(files: Sequence[File], project: Project) -> bool:
-    """Whether these are the files of a project, read no more than once."""
+    """Return whether a project consists of exactly these files with the same content."""
     return len(files) == len(project.modules) and all(
         file.path == one.path and file.table is one.table and file.words is one.words
         for file, one in zip(files, project.modules, strict=True)
@@ -295,7 +295,7 @@ def _is_of(files: Sequence[File], project: Project) -> bool:
 
 
 def extended(project: Project, files: Iterable[File]) -> Project:
-    """A project with more files, wherever these lie; one of the same path takes another's place."""
+    """Return the project with more files; a file replaces the one with the same path."""
     by_path = {module.path: module for module in project.modules}
     by_path |= {file.path: _module(file) for file in files}
     modules = list(by_path.values())
@@ -315,7 +315,7 @@ _WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)", re.IGNORECASE)
 
 
 def words_of(text: str) -> frozenset[str]:
-    """The names that occur in a text outside comments, in upper case: it declares no other."""
+    """Return the names in a text outside comments, in upper case; it can declare no others."""
     return frozenset([word.upper() for word in set(_WORD.findall(text)) if word])
 
 
@@ -329,14 +329,14 @@ def _module(file: File) -> Module:
 
 
 def _place(module: Module) -> tuple[str, str]:
-    """What a program and its data list have in common."""
+    """Return a key that is the same for a program and its data list."""
     return module.folder.casefold(), module.name
 
 
 def _is_exported(symbol: Symbol, module: Module) -> bool:
-    """Whether a symbol of the first level is seen from everywhere.
+    """Return whether a top-level symbol is visible everywhere.
 
-    The routine that carries the name of the file is, even where it wrongly is not the first one.
+    The routine with the name of the file is, even if it wrongly is not the first one.
     """
     return symbol.access is Access.GLOBAL or (
         symbol.kind is Kind.ROUTINE and symbol.key == module.name and module.suffix != ".dat"
@@ -348,7 +348,7 @@ def _is_config(module: Module) -> bool:
 
 
 def _has_read(module: Module) -> bool:
-    """Whether a file is the $CONFIG list and can be read to its end."""
+    """Return whether a file is the $CONFIG list and can be read to its end."""
     return _is_config(module) and module.table is not None and not module.is_cut
 
 
@@ -367,7 +367,7 @@ def _is_public(found: Found) -> bool:
 
 
 def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
-    """Why a name that is found nowhere may be right all the same."""
+    """Return for each space why a name without a declaration may be declared all the same."""
     everything = [Space.VALUE, Space.ROUTINE, Space.TYPE, Space.CHANNEL]
     gap = {} if is_complete else dict.fromkeys(everything, Reason.MODULES_MISSING)
     for module in modules:
@@ -378,7 +378,7 @@ def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
 
 
 def _words_in_unread(modules: Sequence[Module], space: Space) -> frozenset[str]:
-    """The words of files that cannot be read and may declare names of a space for everybody."""
+    """Return the words of unreadable files that may declare global names of a space."""
     is_data = space is not Space.ROUTINE
     some = [one for one in modules if one.words and (not is_data or one.suffix == ".dat")]
     words = frozenset[str]().union(*(one.words or () for one in some)) - {REST}
@@ -392,7 +392,7 @@ def _may_be_public(module: Module) -> bool:
 
 
 def _has_all(modules: Sequence[Module]) -> bool:
-    """Whether the files are those that every backup of a controller has."""
+    """Return whether the files that every backup of a controller has are present."""
     lists = {module.table.key for module in modules if module.table and module.table.is_system}
     return {"$CONFIG", "$MACHINE"} <= lists and any(module.name == "BAS" for module in modules)
 
@@ -407,7 +407,7 @@ _Folder = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class _Placed:
-    """A file and the folders it lies in, as written and with letter case left aside."""
+    """A file and its folders, as written and with letter case folded."""
 
     file: File
     folders: _Folder
@@ -421,7 +421,7 @@ def _placed(file: File) -> _Placed:
 
 
 def _grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
-    """The files of each project with its root, and whether that is a controller's drive."""
+    """Yield the files of each project with its root, and whether the root holds a drive."""
     by_origin: dict[str, list[_Placed]] = defaultdict(list)
     for file in files:
         by_origin[file.origin].append(_placed(file))
@@ -450,7 +450,7 @@ def _grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
 
 
 def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
-    """The folders on a path that are certain to hold the drives of a controller."""
+    """Yield the folders on a path that certainly hold the drives of a controller."""
     for depth, name in enumerate(folders):
         if name in _DRIVES:
             is_below_krc = depth > 0 and folders[depth - 1] == "krc"
@@ -459,9 +459,9 @@ def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
 
 
 def _renamed_drives(files: Iterable[_Placed]) -> dict[_Folder, _Folder]:
-    """The drives that are not called R1, each with the root of its project.
+    """Return the drives that are not called R1, each with the root of its project.
 
-    That is the folder around it where STEU lies beside it, else itself.
+    The root is the parent folder if it also has STEU, otherwise the drive itself.
     """
     inside: dict[_Folder, set[str]] = defaultdict(set)
     for placed in files:
@@ -475,7 +475,7 @@ def _renamed_drives(files: Iterable[_Placed]) -> dict[_Folder, _Folder]:
 
 
 def _last(roots: Set[_Folder], folders: _Folder, inside: Set[str] | None = None) -> _Folder | None:
-    """The innermost root that a path leads through, into a folder of one of those names."""
+    """Return the innermost root on a path, if the next folder is one of ``inside``."""
     for depth in range(len(folders), -1, -1):
         if folders[:depth] in roots and (
             inside is None or (depth < len(folders) and folders[depth] in inside)
@@ -489,7 +489,7 @@ def _config_root(folders: _Folder) -> _Folder:
 
 
 def _shared(members: Sequence[_Placed]) -> int:
-    """How many folders all files have in common."""
+    """Return the number of leading folders that all files have in common."""
     first, last = min(placed.folded for placed in members), max(p.folded for p in members)
     return next(
         (depth for depth, (a, b) in enumerate(zip(first, last, strict=False)) if a != b),

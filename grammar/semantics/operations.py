@@ -1,7 +1,7 @@
 """Result types of operators, indices and components, by the rules of ARI and TYP.
 
-Every function returns a `Typed`: the type of the result and the verdict on the operands. Where a
-verdict is bad the type is `UNKNOWN`, so that one fault is reported once.
+Every function returns a `Typed`: the type of the result and the verdict on the operands. If the
+verdict is bad, the type is `UNKNOWN`, so that one mistake is reported once.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ ORDER = frozenset({"<", ">", "<=", ">="})
 
 
 def unary(operator: str, operand: Type) -> Typed:
-    """The type of ``operator operand`` for ``+``, ``-``, NOT and B_NOT.
+    """Return the type of ``operator operand`` for ``+``, ``-``, NOT and B_NOT.
 
     Raises `ValueError` for any other operator.
     """
@@ -56,7 +56,7 @@ def unary(operator: str, operand: Type) -> Typed:
 
 
 def binary(operator: str, left: Type, right: Type) -> Typed:
-    """The type of ``left operator right``; raises `ValueError` for what is no such operator."""
+    """Return the type of ``left operator right``; raises `ValueError` for an unknown operator."""
     if operator in ARITHMETIC:
         bad = _first(_not_number(operator, left), _not_number(operator, right))
         return _typed(_wider(left, right), bad, "ARI-01")
@@ -73,7 +73,7 @@ def binary(operator: str, left: Type, right: Type) -> Typed:
 
 
 def _first(*bad: Verdict | None) -> Verdict | None:
-    """The first fault; verdicts are no operands of ``or``, as a bad one is false."""
+    """Return the first fault. A plain ``or`` would not do, because a bad verdict is false."""
     return next((verdict for verdict in bad if verdict is not None), None)
 
 
@@ -84,7 +84,7 @@ def _typed(type_: Type, bad: Verdict | None, *rules: str) -> Typed:
 
 
 def _wider(left: Type, right: Type) -> Type:
-    """INT op INT is INT, with a REAL it is REAL [ARI-01]."""
+    """Return the type of INT op INT, which is INT; with a REAL it is REAL [ARI-01]."""
     if REAL in (left, right):
         return REAL
     return UNKNOWN if UNKNOWN in (left, right) else INT
@@ -111,12 +111,15 @@ def _not(wanted: Type, operator: str, operand: Type, rule: str) -> Verdict | Non
 
 
 def _no_bits(operator: str, operand: Type) -> Verdict | None:
-    """Bits are those of an INT; that letters have none is written nowhere [ARI-07]."""
+    """Return the fault of an operand that is not an INT.
+
+    No source says that a CHAR has no bits, so it is accepted [ARI-07].
+    """
     return None if operand in (CHAR, Text(1)) else _not(INT, operator, operand, "ARI-07")
 
 
 def _not_pose(operand: Type) -> Verdict | None:
-    """The geometric operator joins poses [ARI-08]."""
+    """Return the fault of an operand that is no pose; the geometric operator needs two [ARI-08]."""
     if is_cartesian(operand) or isinstance(operand, Unknown):
         return None
     if isinstance(operand, Aggregate) and (
@@ -132,7 +135,10 @@ def _not_pose(operand: Type) -> Verdict | None:
 
 
 def _not_comparable(operator: str, left: Type, right: Type) -> Verdict | None:
-    """INT, REAL and CHAR have an order; BOOL and enumerations are equal or not [ARI-10]."""
+    """Return the fault of operands that cannot be compared.
+
+    INT, REAL and CHAR have an order; BOOL and enumerations are only equal or not [ARI-10].
+    """
     for operand in (left, right):
         if isinstance(operand, Array) and not operand.is_text:
             return without_index(operand)
@@ -187,7 +193,7 @@ _INDICES = {
 
 
 def subscript(type_: Type, given: Sequence[bool]) -> Typed:
-    """The type of ``x[…]``: for each index whether it is given or left out.
+    """Return the type of ``x[…]``; ``given`` says for each index whether it is present.
 
     ``A[2]`` is an element, ``TEXT[]`` the whole array, ``NAMES[3,]`` a row [TYP-08, TYP-11].
     """
@@ -204,7 +210,7 @@ def subscript(type_: Type, given: Sequence[bool]) -> Typed:
 
 
 def component(type_: Type, name: str) -> Typed:
-    """The type of ``x.name`` [TYP-14, TYP-15, TYP-20]."""
+    """Return the type of ``x.name`` [TYP-14, TYP-15, TYP-20]."""
     if isinstance(type_, Unknown):
         return Typed(UNKNOWN)
     if isinstance(type_, Array):

@@ -1,9 +1,9 @@
-"""Declarations of option packages as a scope: names that no file has to declare.
+"""The declarations of option packages as a scope: names that no file has to declare.
 
-A package is there where it is named, or where a project calls one of its routines. What a file
-declares itself always counts more. Signatures come from `grammar.semantics.packages`. With them
-come the routines that inline forms call on every controller, BAS before all, as repositories seldom
-have the files that they stand in.
+A package is available if it is named in a setting, or if a project calls one of its routines. A
+file's own declaration always has priority. The signatures come from `grammar.semantics.packages`.
+The scope also has the routines that inline forms call on every controller, such as BAS, because
+repositories rarely contain the files that define them.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 
 _NO_SPAN = (0, 0)
-#: What takes anything, by whether it has a value; of the parameters nothing certain is known.
+#: Routines of inline forms with unknown parameters, with whether each returns a value.
 _OF_INLINE_FORMS = {
     **dict.fromkeys("SVEL_CP SVEL_JOINT SACC_JOINT SJERK SGEAR_JERK".split(), True),
     **dict.fromkeys("STOOL STOOL2 SBASE SLOAD SIPO_MODE SAPO SAPO_PTP".split(), True),
@@ -36,13 +36,13 @@ _OF_INLINE_FORMS = {
 
 
 def called_packages(calls: Iterable[str]) -> frozenset[str]:
-    """The packages that some of the called routines belong to."""
+    """Return the packages to which any of the called routines belong."""
     routines = load_packages().routines
     return frozenset(routines[name].package for name in calls if name in routines)
 
 
 class PackageScope(Scope):
-    """All that some packages declare, for everybody; types are looked up outside of it."""
+    """The global declarations of some packages; their types are looked up in the outer scope."""
 
     __slots__ = ()
 
@@ -50,7 +50,7 @@ class PackageScope(Scope):
         super().__init__(None, None, _table(packages), outer)
 
     def all(self) -> Iterator[tuple[Space, Found]]:
-        """Each declaration with its name space."""
+        """Yield each declaration with its name space."""
         for space, symbol in self._table.symbols():
             found = self.own(space, symbol.key)
             assert found is not None, "a scope has what its table has"
@@ -80,7 +80,10 @@ def _table(packages: frozenset[str]) -> Table:
 
 
 def _of_every_controller() -> Iterator[RoutineSymbol]:
-    """BAS takes a command and a number, IR_STOPM nothing [MOT-03, INT-16]."""
+    """Yield the routines of every controller.
+
+    BAS takes a command and a number, IR_STOPM no argument [MOT-03, INT-16].
+    """
     command = PackageParameter("COMMAND", "?", False, False, False)
     number = PackageParameter("VALUE", "REAL", False, False, True)
     yield _symbol("BAS", False, (command, number), has_more=False)

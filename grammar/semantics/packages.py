@@ -1,12 +1,12 @@
 """Signatures of option packages: ``system/packages.tsv``.
 
-A backup that calls a package often lacks its files. `load_packages` gives its routines, types and
-data by name in upper case, with the package that each belongs to; types are written as in KRL, as
-a project may declare them itself. A run makes stand-ins of them (`interp.standins`). A check may
-take such a name as declared where the package is said to be there, or where the project calls
-another routine of the same package: ``load_packages().routines["EKI_OPEN"].package`` is ``"EKI"``,
-``parameters`` says what it takes. What rests on source R alone is unconfirmed: its name is likely,
-its parameters are not given.
+A backup that calls a package often lacks its files. `load_packages` returns the routines, types and
+data of all packages by name in upper case, each with its package; types are written in KRL, because
+a project may declare them itself. A run makes stand-ins from them (`interp.standins`). A check
+treats such a name as declared if the package is installed, or if the project calls another routine
+of the same package: ``load_packages().routines["EKI_OPEN"].package`` is ``"EKI"`` and
+``parameters`` are its parameters. An entry that rests on source R alone is unconfirmed: its name is
+likely, its parameters are unknown.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class PackageParameter:
-    """A parameter; ``type`` is ``?`` where it is not known.
+    """A parameter; ``type`` is ``?`` if it is unknown.
 
-    One that ``is_optional`` can be left out of a call.
+    ``is_optional`` says that a call can leave it out.
     """
 
     name: str
@@ -34,10 +34,10 @@ class PackageParameter:
 
 @dataclass(frozen=True, slots=True)
 class PackageRoutine:
-    """A routine; ``result`` is the name of a type, "" for a procedure.
+    """A routine; ``result`` is the name of its type, "" for a procedure.
 
-    ``default`` is the result of a stand-in, "" for that of its type. ``has_more``: what it takes is
-    not known, or further arguments of any type may follow.
+    ``default`` is the value that a stand-in returns, "" for the default of the type. ``has_more``
+    says that its parameters are unknown, or that more arguments of any type can follow.
     """
 
     package: str
@@ -52,7 +52,7 @@ class PackageRoutine:
 
 @dataclass(frozen=True, slots=True)
 class PackageType:
-    """A structure or enumeration, as the text of its declaration; ``default`` is a value of it."""
+    """A structure or enumeration as the text of its declaration; ``default`` is a value of it."""
 
     package: str
     name: str
@@ -72,7 +72,7 @@ class PackageVariable:
 
 @dataclass(frozen=True, slots=True)
 class Packages:
-    """All that packages bring along, by name in upper case."""
+    """The declarations of all packages, by name in upper case."""
 
     routines: Mapping[str, PackageRoutine]
     types: Mapping[str, PackageType]
@@ -80,7 +80,7 @@ class Packages:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The packages in the order of the alphabet."""
+        """The names of the packages in alphabetical order."""
         parts: tuple[PackageRoutine | PackageType | PackageVariable, ...] = (
             *self.routines.values(),
             *self.types.values(),
@@ -91,7 +91,7 @@ class Packages:
 
 @cache
 def load_packages() -> Packages:
-    """The packages that the table knows."""
+    """Return the packages in the table."""
     file = resources.files("grammar").joinpath("system", "packages.tsv")
     columns, *rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
     routines: dict[str, PackageRoutine] = {}
@@ -132,7 +132,7 @@ def _parameter(text: str) -> PackageParameter:
 
 
 def _declaration(kind: str, name: str, content: str) -> str:
-    """As a line of a data list; ``INT A B; BOOL C`` becomes ``INT A,B,BOOL C``."""
+    """Return a declaration as KRL; ``INT A B; BOOL C`` becomes ``INT A,B,BOOL C``."""
     if kind == "enum":
         return f"GLOBAL ENUM {name} {','.join(content.split())}"
     groups = (group.split() for group in content.split(";"))

@@ -1,8 +1,8 @@
-"""Predefined by the controller: system variables, types, functions, messages, as data.
+"""What the controller predefines: system variables, types, functions and messages, as data.
 
-The tables in ``system/`` say each with its source and, where known, the releases that have it;
-``system/README.md`` says how to read and extend them. A newer release is a change of the tables
-only. They are read when first asked for, and an entry is made when it is looked up.
+The tables are in ``system/``. Each entry has its source and, if known, the releases that have it;
+``system/README.md`` says how to read and extend them. Supporting a newer release only needs changes
+to the tables. A table is read on its first use, and an entry is built when it is looked up.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ _T = TypeVar("_T")
 class SystemVariable:
     """A variable of the controller.
 
-    ``type`` is `UNKNOWN` where no controller-written declaration was at hand; sizes of arrays are
-    the largest documented. A ``signal`` says whether it refers to inputs or outputs, or
-    "unconnected", and is INT when it is a group. ``access``: "read" is write-protected, "write"
-    may be written; ``access_unconfirmed`` where only recollection says so. ``limits`` are the
-    lowest and highest value. Reading or writing it stops the advance run where ``stops_on_read``
-    or ``stops_on_write`` name the rules that say so. ``twin`` has its value in the main run.
-    ``file`` is the name of the file that declares it in a delivered controller, which another one
-    may declare otherwise: "" for the controller itself.
+    ``type`` is `UNKNOWN` if no declaration written by the controller was available; array sizes are
+    the largest documented ones. ``signal`` says whether it refers to inputs or outputs or is
+    "unconnected"; the type is INT if it is a group. ``access`` is "read" if the variable is
+    write-protected, "write" if it can be written; ``access_unconfirmed`` if that is recollection
+    only. ``limits`` are the least and greatest value. ``stops_on_read`` and ``stops_on_write`` are
+    the rules by which reading or writing it stops the advance run; empty if it does not. ``twin``
+    is the variable with its value in the main run. ``file`` is the file that declares it in a
+    delivered controller and may differ in another one; "" if the controller itself declares it.
     """
 
     name: str
@@ -62,7 +62,7 @@ class SystemVariable:
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """The rules among the sources."""
+        """The sources that are rule IDs."""
         return tuple(key for key in self.source if key in tiers())
 
 
@@ -77,10 +77,10 @@ class PredefinedParameter:
 
 @dataclass(frozen=True, slots=True)
 class PredefinedFunction:
-    """A predefined routine; ``result`` is ``None`` where it has no value.
+    """A predefined routine; ``result`` is ``None`` if it returns no value.
 
-    ``has_more`` says that further arguments of any type may follow. ``stops`` are the rules that
-    say that it stops the advance run.
+    ``has_more`` says that more arguments of any type can follow. ``stops`` are the rules by which
+    it stops the advance run.
     """
 
     name: str
@@ -93,7 +93,7 @@ class PredefinedFunction:
 
     @property
     def is_unconfirmed(self) -> bool:
-        """Whether its parameters are known from recollection only: no reason for an error."""
+        """Whether its parameters rest on recollection only, which cannot support an error."""
         rules = [key for key in self.source if key in tiers()]
         return "R" in self.source or (len(rules) == len(self.source) and not is_confirmed(rules))
 
@@ -102,8 +102,8 @@ class PredefinedFunction:
 class Message:
     """A message of the controller, in our words.
 
-    ``phase`` is "check" where it comes before a program runs, else "run"; ``kind`` says how it is
-    to be treated (state, acknowledgement, notification) where that is known, else it is empty.
+    ``phase`` is "check" if it is issued before a program runs, otherwise "run". ``kind`` is its
+    class (state, acknowledgement, notification), empty if that is unknown.
     """
 
     number: int
@@ -114,9 +114,9 @@ class Message:
 
 
 class _Entries(Mapping[str, _T]):
-    """The entries of a table that a release has, by name in any letter case; made when asked for.
+    """The rows of a table for one release, by name in any letter case; built on demand.
 
-    Of several rows with the same name the first counts, which is the newest.
+    If several rows have the same name, the first one counts, which is the newest.
     """
 
     def __init__(self, table: str, release: Release | None, make: Callable[[_Row], _T]) -> None:
@@ -140,7 +140,7 @@ class _Entries(Mapping[str, _T]):
         return isinstance(name, str) and name.upper() in self._rows
 
     def cell(self, name: str, column: str) -> str:
-        """What a row of the table has in a column, as written."""
+        """Return the text in a column of a row."""
         return self._rows[name.upper()][self._columns.index(column)]
 
     def __iter__(self) -> Iterator[str]:
@@ -151,7 +151,7 @@ class _Entries(Mapping[str, _T]):
 
 
 class System:
-    """What a controller of one release has predefined. `System.load` makes and remembers it.
+    """What a controller of one release predefines. `System.load` builds and caches it.
 
     Names are looked up in any letter case and listed in upper case.
     """
@@ -166,10 +166,10 @@ class System:
     @staticmethod
     @cache
     def load(release: str | None = None) -> System:
-        """What is predefined in a release, "8.6" or "KSS 8.6.2".
+        """Return what is predefined in a release, given as "8.6" or "KSS 8.6.2".
 
-        Without a release it is all that any release has, as the newest one has it. Raises
-        `ValueError` where no release can be read from the text.
+        Without a release it is everything that any release has, in its newest form. Raises
+        `ValueError` if the text contains no release.
         """
         if release is None:
             return System(None)
@@ -180,21 +180,21 @@ class System:
 
     @property
     def variables(self) -> Mapping[str, SystemVariable]:
-        """Variables, those of a delivered ``$config.dat`` included (`Variable.file`)."""
+        """Variables, including those of a delivered ``$config.dat`` (`SystemVariable.file`)."""
         return self._variables
 
     @property
     def types(self) -> Mapping[str, Type]:
-        """Structures and enumerations; `UNKNOWN` where only the name is known.
+        """Structures and enumerations; `UNKNOWN` if only the name is known.
 
-        Those that a delivered ``$config.dat`` declares are open: another one may have more.
+        Those declared in a delivered ``$config.dat`` are open: another file may add members.
         """
         return self._types
 
     def is_described(self, type_: Type) -> bool:
-        """Whether a rule defines the parts of a type, not only the tables of one release.
+        """Return whether the members of a type rest on a rule, not only on one release's tables.
 
-        Types that files declare are described by these.
+        Types that files declare are described by their declarations.
         """
         if (
             not isinstance(type_, Structure | Enumeration)
@@ -209,7 +209,7 @@ class System:
         return self._functions
 
     def message(self, number: int) -> Message | None:
-        """The message of a number, where it is known."""
+        """Return the message with a number, or ``None`` if it is unknown."""
         return self._messages.get(str(number))
 
     @property
@@ -220,7 +220,7 @@ class System:
     # ----------------------------------------------------------------------- from the tables
 
     def _named(self, name: str) -> Type:
-        """The type of a name in a table; a question mark means that it is uncertain."""
+        """Return the type with a name in a table; a question mark means that it is uncertain."""
         if name.startswith("?"):
             return UNKNOWN
         return SCALARS[name] if name in SCALARS else self._types[name]
@@ -308,14 +308,14 @@ def _message(row: _Row) -> Message:
 
 @cache
 def _table(name: str) -> tuple[list[str], list[list[str]]]:
-    """The names of the columns of a table, and its rows."""
+    """Return the names of the columns of a table, and its rows."""
     file = resources.files("grammar").joinpath("system", f"{name}.tsv")
     columns, *rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
     return columns, rows
 
 
 def _is_in(release: Release | None, releases: str) -> bool:
-    """Whether a release lies in a range such as ``8.6..``, ``..4.1``; an empty one has all."""
+    """Return whether a release lies in a range such as ``8.6..`` or ``..4.1``; "" means all."""
     if release is None or not releases:
         return True
     low, _, high = releases.partition("..")
@@ -332,6 +332,6 @@ def _split(text: str, separator: str = ",") -> list[str]:
 
 
 def _indexed(word: str) -> tuple[str, str]:
-    """``NAME[32]`` as name and sizes; no sizes where it is no array, ``?`` for an unknown one."""
+    """Return the name and the sizes of ``NAME[32]``; "" for no sizes, ``?`` for an unknown one."""
     name, _, sizes = word.partition("[")
     return name, sizes.rstrip("]")

@@ -1,12 +1,12 @@
 """Name resolution: `resolve` looks up all names of a file.
 
-The answers are keyed by the `ast.Name` nodes, by identity: of variables, calls, types, labels and
-channels, used or declared, and of members wherever the structure is known. Names that are not there
-follow from a type that is not known here: constants of enumerations, which their target decides
-[TYP-16], components of an aggregate whose target only the type checker knows, members of what a
-function or an operator gives.
+The answers are keyed by the identity of the `ast.Name` nodes: variables, calls, types, labels and
+channels, whether used or declared, and members if the structure is known. Some names have no
+answer, because they depend on a type that is not known here: enumeration constants, which their
+target determines [TYP-16], components of an aggregate whose target only the type checker knows, and
+members of the result of a function or an operator.
 
-Linear in the size of the file, and without recursion: depth of nesting meets no limit.
+Linear in the size of the file and without recursion, so the depth of nesting has no limit.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from support.lazy_dataclass import dataclass, node
 
 @node
 class Use:
-    """A name that has no declaration in the project, where it stands, and what is known of it.
+    """A use of a name that has no declaration in the project, with the answer of the look-up.
 
     ``space`` is ``None`` for a member that a known structure does not have.
     """
@@ -37,11 +37,11 @@ class Use:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Resolution:
-    """The answers for one file, and those of its uses that lead to no declaration in the project.
+    """The answers for one file, and its uses of names without a declaration in the project.
 
-    ``open_uses`` are in the order of the file. Calls of routines that only EXT announces are there
-    too: their answer is `Found`, but what they do is unknown. ``unknown_members`` are
-    the components of structures that nothing at hand declares.
+    ``open_uses`` are in the order of the file. They include calls of routines that are only
+    announced by EXT; their answer is `Found`, but nothing is known of what they do.
+    ``unknown_members`` are components of structures that no file at hand declares.
     """
 
     module: Module
@@ -50,13 +50,13 @@ class Resolution:
     unknown_members: tuple[ast.Name, ...] = ()
 
     def found(self, name: ast.Name) -> Found | None:
-        """What a name means, if that is known."""
+        """Return the symbol that a name means, or ``None`` if it is not known."""
         answer = self.answers.get(name)
         return answer if isinstance(answer, Found) else None
 
 
 def resolve(project: Project, module: Module) -> Resolution:
-    """Look all names of a file up; one without a tree has none."""
+    """Return the answers for all names of a file; none if the file has no tree."""
     if module.syntax is None or module.table is None:
         return Resolution(module, {}, ())
     content, scope = module.syntax.content, project.scope(module)
@@ -84,7 +84,7 @@ class _Walk:
         self._members: dict[Found, dict[str, Answer]] = {}
 
     def resolve(self, scope: Scope, nodes: Iterable[ast.Node]) -> None:
-        """Look up what stands below some nodes, in that scope."""
+        """Look up all names below some nodes in a scope."""
         todo: list[ast.Node | None] = list(nodes)
         while todo:
             node = todo.pop()
@@ -109,21 +109,21 @@ class _Walk:
                     todo.append(value)
 
     def name(self, scope: Scope, name: ast.Name, space: Space) -> Answer:
-        """Look one name up."""
+        """Look up one name and record the answer."""
         answer = self.answers[name] = scope.find(space, name.text.upper())
         if type(answer) is not Found:
             self._open.append((space, name))
         return answer
 
     def open_uses(self, module: Module) -> Iterator[Use]:
-        """Uses without a declaration, in the order of the text."""
+        """Yield the uses without a declaration, in the order of the text."""
         for space, name in sorted(self._open, key=lambda use: use[1].span):
             yield Use(space, name, module, self.answers[name])
 
     # ------------------------------------------------------------------------ members
 
     def member(self, structure: Found, name: ast.Name) -> Answer:
-        """Look a member of a structure up."""
+        """Look up a member of a structure and record the answer."""
         assert isinstance(structure.symbol, TypeSymbol), "only types have members"
         known, key = self._members.setdefault(structure, {}), name.text.upper()
         answer = known.get(key)
@@ -137,7 +137,7 @@ class _Walk:
         return answer
 
     def chain(self, scope: Scope, node: ast.Node, todo: list[ast.Node | None]) -> Found | None:
-        """Look up ``a.b[1].c``; gives the structure of what it names, if that has a known one."""
+        """Look up ``a.b[1].c``; returns the structure that is its type, or ``None``."""
         links: list[ast.Member | ast.Subscript] = []
         while isinstance(node, ast.Member | ast.Subscript):
             links.append(node)
@@ -164,7 +164,7 @@ class _Walk:
         structure: Found | None,
         todo: list[ast.Node | None],
     ) -> None:
-        """Look up what an aggregate for a value of that structure names."""
+        """Look up the names in an aggregate whose value has this structure."""
         inner: list[tuple[ast.Aggregate, Found | None]] = [(node, structure)]
         while inner:
             node, structure = inner.pop()
@@ -183,12 +183,12 @@ class _Walk:
 
 
 def _is_announced(answer: Answer) -> bool:
-    """Whether all that is known of a routine is its EXT."""
+    """Return whether a routine is only known by its EXT."""
     return isinstance(answer, Found) and answer.symbol.kind is Kind.EXTERNAL
 
 
 def _structure(answer: Answer | None) -> Found | None:
-    """The structure of a variable, a member, or the result of a function."""
+    """Return the structure that is the type of a variable, a member or a function's result."""
     return _as_structure(answer.type_symbol()) if isinstance(answer, Found) else None
 
 

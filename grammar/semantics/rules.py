@@ -1,9 +1,9 @@
-"""The rules of KRL by their IDs, and how well each is known.
+"""The rules of KRL by their IDs, with how well each is known.
 
 ``system/rules.tsv`` lists them with their tiers: P a manual page or a file written by KUKA, T a
 transcription of one, F practitioners, D measured on real controller files, R recollection of a
-manual, X a page of unknown origin. What rests on R or X alone is *unconfirmed*: it may be
-reported, but not as an error.
+manual, X a page of unknown origin. A statement that rests on R or X alone is *unconfirmed*: it may
+be reported, but not as an error.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ _UNCONFIRMED = frozenset("RX")
 
 @cache
 def tiers() -> Mapping[str, str]:
-    """The tier of each rule: a letter, or letters joined by ``+``."""
+    """Return the tier of each rule: a letter, or letters joined by ``+``."""
     table = resources.files("grammar").joinpath("system", "rules.tsv")
     rows = table.read_text(encoding="utf-8").splitlines()[1:]
     return dict(row.split("\t") for row in rows)
 
 
 def is_confirmed(rules: Iterable[str]) -> bool:
-    """Whether one of the rules rests on more than recollection.
+    """Return whether at least one of the rules rests on more than tiers R and X.
 
-    No rule at all is confirmed: what no rule speaks of is plain from the grammar. Raises `KeyError`
-    for an ID that is no rule.
+    Returns ``True`` if there are no rules: the finding then follows from the grammar. Raises
+    `KeyError` for an unknown rule ID.
     """
     ways = [tiers()[rule] for rule in rules]
     return not ways or any(not _UNCONFIRMED.issuperset(way.split("+")) for way in ways)

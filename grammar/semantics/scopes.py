@@ -1,13 +1,13 @@
-"""Scopes: where a name is looked up, and the answers of a look-up.
+"""Scopes, and the possible answers of a look-up.
 
-Scopes lie within one another: a routine (parameters, local data), its program (the routines of
-the file), the data list of the same name [SCO-05], all that is GLOBAL in the project [SCO-04], the
-controller itself. The innermost declaration counts, so a local one shadows a global one.
+Scopes are nested: a routine (parameters, local data), its program (the routines of the file), the
+data list of the same name [SCO-05], everything GLOBAL in the project [SCO-04], the controller
+itself. The innermost declaration counts, so a local name shadows a global one.
 
-A look-up answers `Found`, `NotFound` or `MaybeElsewhere`. The last is the answer wherever the files
-at hand cannot show: a loose file without its $CONFIG, a module that does not parse, a call of a
-package that was not handed in. Who checks may be sure of `Found` and `NotFound` and has to keep
-silent about the rest; `Reason` says why.
+A look-up answers `Found`, `NotFound` or `MaybeElsewhere`. The last one is the answer if the files
+at hand cannot decide it: a single file without its $CONFIG, a module with syntax errors, a call of
+a missing package; `Reason` says which. A check may rely on `Found` and `NotFound` and must report
+nothing for `MaybeElsewhere`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from support.lazy_dataclass import dataclass, node
 
-#: Among the words of a file: its end is missing, so that it may have declared any name.
+#: A marker among the words of a file: its end is missing, so it may declare any name.
 REST = "*"
 
 
@@ -42,10 +42,10 @@ REST = "*"
 class Module:
     """A file of a project.
 
-    ``path`` as it was handed in, with ``/``. ``name`` is that of the file without its ending, in
-    upper case, and ``suffix`` its ending in lower case. ``table`` is ``None`` where the file cannot
-    be read; ``syntax`` also where only its tables are at hand, so that it can be referred to.
-    ``words`` are the names in what cannot be read of it, if these are known.
+    ``path`` is as it was given, with ``/``. ``name`` is the file name without its suffix, in upper
+    case; ``suffix`` is in lower case. ``table`` is ``None`` if the file cannot be read. ``syntax``
+    is also ``None`` for a file that is only referred to, whose table is enough. ``words`` are the
+    names in its unreadable part, if these are known.
     """
 
     path: str
@@ -62,9 +62,9 @@ class Module:
         return self.words is not None and REST in self.words
 
     def is_head_unread(self, key: str) -> bool:
-        """Whether the line is not read that begins a routine, the data list or a type of the file.
+        """Return whether the line that begins this routine, data list or type cannot be read.
 
-        It may say PUBLIC then, or name other parameters or members.
+        That line may contain PUBLIC, or other parameters or members.
         """
         return self.words is not None and key in self.words
 
@@ -72,7 +72,7 @@ class Module:
     def is_misnamed(self) -> bool:
         """Whether the first routine or data list has another name than the file [SCO-01].
 
-        Tools that copy files leave out the dollar sign of a list of the controller.
+        A missing dollar sign does not count: tools that copy files of the controller drop it.
         """
         if self.table is None or self.table.key == self.name:
             return False
@@ -80,7 +80,7 @@ class Module:
 
 
 class Reason(Enum):
-    """Why a look-up has no certain answer."""
+    """Why a look-up has no definite answer."""
 
     MODULES_MISSING = "not every module of the controller is here"
     UNREADABLE = "a module that may declare it cannot be read"
@@ -92,7 +92,7 @@ class Reason(Enum):
 class Found:
     """The symbol that a name means, and the scope that declares it.
 
-    Names in its declaration, that of its type above all, have to be looked up in that scope.
+    Names in the declaration, such as that of its type, have to be looked up in that scope.
     """
 
     symbol: Symbol
@@ -100,18 +100,21 @@ class Found:
 
     @property
     def module(self) -> Module | None:
-        """The file that declares it; ``None`` for what the controller itself brings."""
+        """The file that declares the symbol; ``None`` if the controller predefines it."""
         return self.scope.module
 
     @property
     def is_open(self) -> bool:
-        """Whether a type may have other members than are known, as its line is read in part."""
+        """Whether a type may have members that are not known, as part of its line is unreadable."""
         if isinstance(self.symbol, TypeSymbol) and self.symbol.is_open:
             return True
         return self.module is not None and self.module.is_head_unread(self.symbol.key)
 
     def type_symbol(self) -> Answer | None:
-        """The type that the declaration names, of an array its elements'; ``None`` without one."""
+        """Return the answer for the symbol's type name; ``None`` if it has none.
+
+        For an array it is the type of its elements.
+        """
         written, given = self.symbol.type, self.symbol.given
         if written is not None:
             return self.scope.find(Space.TYPE, written.key)
@@ -124,14 +127,14 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class NotFound:
-    """Nothing has that name. ``hidden`` is a declaration of it that cannot be seen from here."""
+    """Nothing has that name. ``hidden`` is a declaration that is not visible from here."""
 
     hidden: Found | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class MaybeElsewhere:
-    """Nothing at hand has that name, or several things have; it may well be right."""
+    """No declaration at hand is the right one for certain; one may exist elsewhere."""
 
     reason: Reason
     candidates: tuple[Found, ...] = ()
@@ -141,14 +144,14 @@ Answer = Found | NotFound | MaybeElsewhere
 
 
 class Outer(Protocol):
-    """What a scope asks for names that it does not have."""
+    """The enclosing scope, which is asked for names that a scope does not declare."""
 
     def find(self, space: Space, key: str) -> Answer:
-        """Look a name in upper case up."""
+        """Look up a name, given in upper case."""
 
 
 class Scope:
-    """The names that can be seen in one place.
+    """The names that are visible in one place.
 
     ``module`` is ``None`` for the controller itself, ``routine`` is ``None`` outside a routine.
     """
@@ -171,7 +174,7 @@ class Scope:
         self._memory: dict[tuple[Space, str], Found] = {}
 
     def find(self, space: Space, key: str) -> Answer:
-        """What a name in upper case means here; what is found is the same object each time."""
+        """Return the meaning of a name in upper case; the same `Found` object each time."""
         known = self._memory.get((space, key))
         if known is not None:
             return known
@@ -181,16 +184,16 @@ class Scope:
         return answer
 
     def forget(self) -> None:
-        """Give up what was found, which refers to this scope in turn."""
+        """Clear the cached answers, which refer back to this scope."""
         self._memory.clear()
 
     def own(self, space: Space, key: str) -> Found | None:
-        """The symbol of that name if this very scope declares it."""
+        """Return the symbol with that name if this scope itself declares it."""
         symbol = self._table.find(space, key)
         return self._here(space, key, symbol) if symbol else None
 
     def shadowed(self) -> Iterator[tuple[Found, Found]]:
-        """Each symbol of this scope beside the one further out that it hides."""
+        """Yield each symbol of this scope that hides one of an outer scope, with that one."""
         for space, symbol in self._table.symbols():
             if space is not Space.LABEL and symbol.kind is not Kind.EXTERNAL:
                 outer = self._outer.find(space, symbol.key)
@@ -214,7 +217,7 @@ class Scope:
             return NotFound()
         outer = self._outer.find(space, key)
         if space is Space.ROUTINE:
-            # EXT announces a routine of another module: the routine itself says more.
+            # EXT announces a routine of another module; its own declaration has priority.
             announced = symbol or self._externals.get(key)
             if announced is not None and not isinstance(outer, Found):
                 return Found(announced, self)
@@ -222,9 +225,9 @@ class Scope:
 
 
 class SystemScope(Scope):
-    """What the controller brings along, without any file; symbols are made when they are asked for.
+    """What the controller predefines; symbols are created on demand.
 
-    The entry behind a symbol has the same name in `System.variables`, `System.functions` or
+    The entry for a symbol has the same name in `System.variables`, `System.functions` or
     `System.types`.
     """
 
@@ -235,7 +238,7 @@ class SystemScope(Scope):
         self.system = system
 
     def names(self, space: Space) -> Iterable[str]:
-        """All names that the controller knows, those of its values included."""
+        """Return all names that the controller predefines in a space."""
         match space:
             case Space.VALUE:
                 return ("TRUE", "FALSE", *self.system.variables)
@@ -246,7 +249,7 @@ class SystemScope(Scope):
         return ()
 
     def own(self, space: Space, key: str) -> Found | None:
-        """The symbol of that name if the controller has it."""
+        """Return the symbol with that name if the controller predefines it."""
         answer = self.find(space, key)
         return answer if isinstance(answer, Found) else None
 
@@ -316,11 +319,11 @@ _NO_SPAN = (0, 0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Globals:
-    """What can be seen in a whole project, and beyond it the controller.
+    """The names that are visible in a whole project, and beyond it the controller's.
 
-    ``names`` may hold several declarations of a name. ``hidden`` are declarations that are not
-    GLOBAL. ``gap`` is why a name that is not here may be declared all the same, by space; a space
-    without a reason is known completely. ``unread`` are the words of files that cannot be read.
+    ``names`` can have several declarations of a name. ``hidden`` are declarations that are not
+    GLOBAL. ``gap`` says by space why a name without a declaration may still be declared; a space
+    without a reason is completely known. ``unread`` are the words of unreadable files.
     """
 
     names: Mapping[Space, dict[str, list[Found]]]
@@ -331,7 +334,7 @@ class Globals:
     _copies: dict[tuple[Space, str], Mapping[str, Answer]] = field(default_factory=dict)
 
     def forget(self) -> None:
-        """Give up all names, whose scopes refer to these in turn."""
+        """Clear all names, whose scopes refer back to this object."""
         for names in self.names.values():
             names.clear()
         for hidden in self.hidden.values():
@@ -339,11 +342,11 @@ class Globals:
         self._copies.clear()
 
     def near(self, folder: str) -> Outer:
-        """These names as the files of a folder see them."""
+        """Return these names as the files in a folder see them."""
         return _Near(self, folder)
 
     def find(self, space: Space, key: str, folder: str) -> Answer:
-        """What a name in upper case means in the files of a folder."""
+        """Return the meaning of a name in upper case in the files of a folder."""
         found = self.names[space].get(key, ())
         if len(found) == 1:
             return found[0]
@@ -369,7 +372,7 @@ class Globals:
 
 @dataclass(frozen=True, slots=True)
 class _Near:
-    """All that is GLOBAL, as seen from one folder."""
+    """The global names as seen from one folder."""
 
     names: Globals
     folder: str
@@ -380,19 +383,19 @@ class _Near:
 
 @dataclass(frozen=True, slots=True)
 class PartlyRead:
-    """What is seen through a file that cannot be read whole: the rest may declare its words."""
+    """An outer scope seen through a partly unreadable file, which may declare its ``words``."""
 
     outer: Outer
     words: frozenset[str] | None
 
     def find(self, space: Space, key: str) -> Answer:
-        """Look a name in upper case up."""
+        """Look up a name, given in upper case."""
         answer = self.outer.find(space, key)
         if space is Space.ROUTINE or key.startswith("$"):
             return answer
         if self.words is not None and key not in self.words and REST not in self.words:
             return answer
-        if isinstance(answer, Found) and answer.module is None:  # what every program is made of
+        if isinstance(answer, Found) and answer.module is None:  # predefined by the controller
             return answer
         if isinstance(answer, Found):
             return MaybeElsewhere(Reason.AMBIGUOUS, (answer,))
@@ -400,15 +403,19 @@ class PartlyRead:
 
 
 def nearest(found: Sequence[Found], folder: str) -> Answer:
-    """The declaration whose file shares most folders with this one, if there is such a one.
+    """Return the declaration whose file shares most folders with ``folder``, if it is unique.
 
-    A controller refuses two of a name; folders that people collect programs in are full of copies.
+    A controller rejects two global declarations of a name, but folders in which people collect
+    programs are full of copies.
     """
     return _seen_from(_by_folder(found), folder)
 
 
 def _by_folder(found: Sequence[Found]) -> dict[str, Answer]:
-    """What is declared below each folder, so that many copies are no more work than one."""
+    """Return the answer for each folder above a declaration.
+
+    With this index many copies cost no more than one.
+    """
     below: dict[str, list[Found]] = {}
     for one in found:
         for folder in _upwards(one.module.folder if one.module else ""):
@@ -424,7 +431,7 @@ def _seen_from(below: Mapping[str, Answer], folder: str) -> Answer:
 
 
 def _upwards(folder: str) -> Iterator[str]:
-    """A folder and all that it lies in, up to the one that has no name."""
+    """Yield a folder and its parents, up to the root, whose name is empty."""
     yield folder
     while folder:
         folder = folder.rpartition("/")[0]

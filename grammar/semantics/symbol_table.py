@@ -1,6 +1,6 @@
-"""Symbol table of one file: from its tree to its `ModuleTable`.
+"""Building the symbol table of one file: from its tree to its `ModuleTable`.
 
-Linear in the size of the file and without recursion. Nothing that a file can say is an error here.
+Linear in the size of the file and without recursion. No content of a file is an error here.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space, calls_in
 from grammar.syntax.walk import BODIES, bodies
 
-#: Machine data that limit what programs set; their values are kept.
+#: Machine data that are upper limits of what programs set; their values are stored.
 MAXIMA = frozenset({"$VEL_MA", "$ACC_MA"})
 
 
 def table_of(module: ast.Module) -> ModuleTable:
-    """The tables of one file."""
+    """Return the symbol tables of one file."""
     content = module.content
     if isinstance(content, ast.DataList):
         scope = _Scope(_access_in(content))
@@ -54,7 +54,7 @@ def table_of(module: ast.Module) -> ModuleTable:
 
 
 def _access_in(content: ast.DataList) -> Mapping[bool, Access]:
-    """How far a declaration of a data list is seen, with the word GLOBAL and without it."""
+    """Return the visibility of a data list's declarations, with GLOBAL and without it."""
     if content.name.text.startswith("$"):
         return {True: Access.GLOBAL, False: Access.GLOBAL}
     return {True: Access.GLOBAL if content.is_public else Access.MODULE, False: Access.MODULE}
@@ -76,7 +76,7 @@ def _routine_table(routine: ast.Routine, is_main: bool) -> RoutineTable:
     awaited = {parameter.key for parameter in parameters}
     for declaration in declarations:
         for declarator in declaration.declarators:
-            if declarator.name.key in awaited:  # gives the parameter its type and is no second name
+            if declarator.name.key in awaited:  # declares the type of a parameter
                 awaited.remove(declarator.name.key)
             else:
                 scope.variable(declaration, declarator)
@@ -96,7 +96,7 @@ def _routine_table(routine: ast.Routine, is_main: bool) -> RoutineTable:
 def _declared_in(
     body: tuple[ast.Statement, ...],
 ) -> Iterator[ast.Definition | ast.Label]:
-    """Declarations and labels of a routine, misplaced ones in blocks too, in their order."""
+    """Yield the declarations and labels of a routine in order, also misplaced ones in blocks."""
     todo = [iter(body)]
     while todo:
         for statement in todo[-1]:
@@ -124,7 +124,7 @@ _DECLARING = (
 def _parameters(
     routine: ast.Routine, declarations: list[ast.VariableDeclaration]
 ) -> tuple[ParameterSymbol, ...]:
-    """The parameters of a routine, with the types that the declarations in its body give them."""
+    """Return the parameters of a routine, with the types declared for them in its body."""
     types: dict[str, TypeReference] = {}
     if routine.parameters:
         for declaration in declarations:
@@ -150,7 +150,7 @@ def _parameters(
 
 
 class _Scope:
-    """Collects the symbols of one table; ``access`` by whether the word GLOBAL is written."""
+    """Collects the symbols of one table; ``access`` is the visibility with GLOBAL and without."""
 
     def __init__(self, access: Mapping[bool, Access]) -> None:
         self._access = access
@@ -169,7 +169,7 @@ class _Scope:
             self._duplicates.append(Duplicate(first, symbol))
 
     def name(self, space: Space, kind: Kind, name: ast.Name) -> None:
-        """Add what has nothing but a name."""
+        """Add a symbol that has only a name."""
         self.add(space, Symbol(kind, name.text, name.span, self._access[False]))
 
     def variable(self, declaration: ast.VariableDeclaration, declarator: ast.Declarator) -> None:
@@ -188,7 +188,7 @@ class _Scope:
         )
 
     def declare(self, node: ast.Definition) -> None:
-        """Add what a declaration introduces."""
+        """Add the symbols that a declaration introduces."""
         if isinstance(node, ast.VariableDeclaration):
             for declarator in node.declarators:
                 self.variable(node, declarator)

@@ -1,16 +1,16 @@
-"""Symbols that a file declares and their tables, made from the content of the file alone.
+"""Symbols and symbol tables, built from the content of one file alone.
 
-A table has five spaces of names that do not meet: values (variables, constants, parameters,
-signals, imports), routines, types, channels and labels. Keys are names in upper case [TYP-05].
-Constants of an enumeration are in no table: they are found by the type of their target [TYP-16],
-as members of a structure are by the type of their base.
+A table has five separate name spaces: values (variables, constants, parameters, signals, imports),
+routines, types, channels and labels. Keys are names in upper case [TYP-05]. Enumeration constants
+are in no table: they are found by the type of their target [TYP-16], as members of a structure are
+found by the type of their base.
 
-A `ModuleTable` is one file, as `grammar.semantics.symbol_table` makes it: one table for what its
-data list or its first level holds, and one for each routine. Nothing in it knows the name of the
-file, other files or the controller, and nothing refers to the tree of statements, so that it can be
-pickled, kept by the digest of the content, and shared by files that say the same. Where names lead
-to from there is the affair of `grammar.semantics.link` and `grammar.semantics.resolve`. What is
-declared twice is data here: the first declaration counts.
+A `ModuleTable` is one file, as `grammar.semantics.symbol_table` builds it: one table for its data
+list or its top level, and one for each routine. It depends neither on the file's name nor on other
+files or the controller, and it does not refer to statements. So it can be pickled, cached by the
+digest of the content, and shared by equal files. What the names refer to in other files is found by
+`grammar.semantics.link` and `grammar.semantics.resolve`. A duplicate declaration is recorded as
+data; the first one counts.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Indices = tuple[ast.Expression | None, ...]
 
 
 class Kind(Enum):
-    """What a symbol is; the value is a word for messages."""
+    """The kind of a symbol; the value is a word for messages."""
 
     VARIABLE = "variable"
     CONSTANT = "constant"
@@ -40,7 +40,7 @@ class Kind(Enum):
     EXTERNAL = "external routine"
     STRUCTURE = "structure"
     ENUMERATION = "enumeration"
-    #: Of which no parts are known: INT, REAL, BOOL, CHAR, and what is known by its name only.
+    #: A type without known parts: INT, REAL, BOOL, CHAR, and types of which only the name is known.
     PLAIN_TYPE = "type"
     MEMBER = "member"
     ENUM_CONSTANT = "enumeration constant"
@@ -49,7 +49,7 @@ class Kind(Enum):
 
 
 class Access(Enum):
-    """From where a symbol can be seen."""
+    """Where a symbol is visible."""
 
     #: In its own routine.
     ROUTINE = "routine"
@@ -61,7 +61,7 @@ class Access(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TypeReference:
-    """A type as a declaration names it; ``indices`` of an array, with its sizes as written."""
+    """A type as a declaration names it; ``indices`` are the sizes of an array as written."""
 
     name: str
     indices: Indices | None = None
@@ -74,12 +74,12 @@ class TypeReference:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Symbol:
-    """Something with a name. ``span`` is that of the name in the declaration.
+    """A named entity. ``span`` is that of the name in the declaration.
 
-    ``type`` is ``None`` for what has no type, and for a parameter that is declared nowhere.
-    ``value`` is the initial value of a constant, which array sizes may be made of, and of machine
-    data that limit what programs set. What the
-    controller brings along stands in no file: its type is ``given``, its span is empty.
+    ``type`` is ``None`` for symbols without a type and for parameters without a declaration.
+    ``value`` is the initial value of a constant, which array sizes may refer to, or of machine data
+    that are upper limits. Predefined symbols are in no file: their type is ``given`` and their span
+    is empty.
     """
 
     kind: Kind
@@ -98,14 +98,14 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ParameterSymbol(Symbol):
-    """A parameter. ``mode`` is IN or OUT, which it is where nothing is written [SCO-06]."""
+    """A parameter. ``mode`` is IN or OUT; the default is OUT [SCO-06]."""
 
     mode: str = "OUT"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SignalSymbol(Symbol):
-    """A signal: what it stands for, ``first`` alone or up to ``last`` [IOT-03]."""
+    """A signal: the input or output ``first``, or the range from ``first`` to ``last`` [IOT-03]."""
 
     first: ast.Expression = field(kw_only=True)
     last: ast.Expression | None = field(kw_only=True)
@@ -124,11 +124,11 @@ class ImportSymbol(Symbol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoutineSymbol(Symbol):
-    """A routine; ``type`` is that of its result, ``None`` where it has no value.
+    """A routine; ``type`` is that of its result, ``None`` if it returns no value.
 
-    Routines of other modules are announced by EXT and EXTFCT; EXTP and EXTFCTP are the controller's
-    own way to write routines that need no file [SCO-10]. ``has_more``: arguments of any type may
-    follow, as in some that the controller brings along.
+    EXT and EXTFCT announce routines of other modules; EXTP and EXTFCTP declare routines of the
+    controller that need no file [SCO-10]. ``has_more`` says that more arguments of any type can
+    follow, as in some predefined routines.
     """
 
     parameters: tuple[ParameterSymbol, ...] = field(kw_only=True)
@@ -139,7 +139,7 @@ class RoutineSymbol(Symbol):
 class TypeSymbol(Symbol):
     """A structure or an enumeration, with its members or constants by key, in their order.
 
-    ``is_open``: there may be more of them than are known, which no declaration in a file is.
+    ``is_open`` says that it may have others. A declaration in a file never is.
     """
 
     members: Mapping[str, Symbol] = field(kw_only=True)
@@ -148,7 +148,7 @@ class TypeSymbol(Symbol):
 
 @dataclass(frozen=True, slots=True)
 class Duplicate:
-    """A name that is declared where it has been declared already; the first one counts."""
+    """A name that is declared again in the same scope; the first declaration counts."""
 
     first: Symbol
     second: Symbol
@@ -156,17 +156,17 @@ class Duplicate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
-    """The symbols of one scope by space and key, and what is declared in it more than once."""
+    """The symbols of one scope by space and key, and its duplicate declarations."""
 
     spaces: Mapping[Space, Mapping[str, Symbol]]
     duplicates: tuple[Duplicate, ...]
 
     def find(self, space: Space, key: str) -> Symbol | None:
-        """The symbol of a name in upper case, if this very scope has it."""
+        """Return the symbol with a name in upper case, if this scope declares it."""
         return self.spaces[space].get(key)
 
     def symbols(self) -> Iterator[tuple[Space, Symbol]]:
-        """All symbols with their spaces, in the order of declaration within each space."""
+        """Yield all symbols with their spaces, in the order of declaration within each space."""
         for space, names in self.spaces.items():
             for symbol in names.values():
                 yield space, symbol
@@ -174,7 +174,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoutineTable:
-    """What is known inside one routine: parameters, local data and types, labels."""
+    """The symbols of one routine: parameters, local data and types, labels."""
 
     routine: RoutineSymbol
     table: Table
@@ -182,13 +182,12 @@ class RoutineTable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModuleTable:
-    """What one file declares.
+    """The symbols of one file.
 
-    ``name`` is what the file calls itself: that of its first routine or of its data list.
-    ``table`` holds what is declared at its first level. ``routines`` are in the order of the file
-    and empty for a data list; routines of the same name are all there. ``is_system``: a data list
-    of the controller, which needs neither PUBLIC nor GLOBAL to be seen everywhere [SCO-04].
-    ``calls`` are the names of all routines that are called in the file.
+    ``name`` is the name of its first routine or of its data list. ``table`` holds its top-level
+    declarations. ``routines`` are in the order of the file, with duplicates; empty for a data list.
+    ``is_system`` says that it is a data list of the controller, which needs neither PUBLIC nor
+    GLOBAL to be visible everywhere [SCO-04]. ``calls`` are the names of all called routines.
     """
 
     name: str
@@ -206,12 +205,12 @@ class ModuleTable:
 
     @property
     def is_system(self) -> bool:
-        """Whether this is a data list of the controller: $CONFIG, $MACHINE …"""
+        """Whether this is a data list of the controller, such as $CONFIG or $MACHINE."""
         return self.is_data and self.name.startswith("$")
 
     @property
     def externals(self) -> Mapping[str, Symbol]:
-        """What EXT announces in any routine of the file, by key; the first one counts."""
+        """The routines that EXT announces anywhere in the file, by key; the first one counts."""
         found: dict[str, Symbol] = {}
         for routine in self.routines:
             for symbol in routine.table.spaces[Space.ROUTINE].values():

@@ -1,13 +1,15 @@
 """The types of KRL as values.
 
-Four scalar types, arrays of them, structures and enumerations; then what only a literal has: a text
-and an enumeration constant take their type from where they are used, an aggregate from what it is
-assigned to. `Unknown` is the type of all that comes from packages not at hand. It fits everywhere,
-so that a missing package makes a check weaker and never wrong.
+There are four scalar types, arrays of them, structures and enumerations. Three more types occur
+only in expressions: a text and an enumeration constant, whose types follow from where they are
+used, and an aggregate, whose type follows from its target. `Unknown` is the type of everything that
+comes from missing packages. It fits everywhere, so a missing package makes a check weaker, never
+wrong.
 
-Types are equal when they say the same; letter case does not tell names apart [TYP-05]. What may be
-assigned to what is decided by `grammar.semantics.assignability`, what operators make of operands by
-`grammar.semantics.operations`. Nothing here knows of syntax trees.
+Types are compared structurally, with letter case of names ignored [TYP-05].
+`grammar.semantics.assignability` decides what can be assigned to what, and
+`grammar.semantics.operations` the result types of operators. This module does not depend on syntax
+trees.
 """
 
 from __future__ import annotations
@@ -21,20 +23,20 @@ from support.lazy_dataclass import dataclass
 #: What an INT holds [TYP-01].
 INT_MIN, INT_MAX = -(2**31), 2**31 - 1
 
-#: The names of the predefined structures that are a pose, and of those that are axis positions.
+#: Names of the predefined structures for poses, and of those for axis positions.
 CARTESIAN = frozenset({"FRAME", "POS", "E3POS", "E6POS"})
 AXES = frozenset({"AXIS", "E3AXIS", "E6AXIS"})
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """Nothing is known: fits everywhere, has every component and index."""
+    """The unknown type: it fits everywhere and has every component and index."""
 
     def __str__(self) -> str:
         return "an unknown type"
 
     def __reduce__(self) -> str:
-        """There is one, in every process and in what is read from a file."""
+        """Pickle by name, so that there is one instance in every process."""
         return "UNKNOWN"
 
 
@@ -48,13 +50,13 @@ class Scalar:
         return self.name
 
     def __reduce__(self) -> str:
-        """There is one of each, as there is one `UNKNOWN`."""
+        """Pickle by name, so that there is one instance of each in every process."""
         return self.name
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A text in quotation marks, of ``length`` characters; of one it is a CHAR as well [TYP-11]."""
+    """A text literal of ``length`` characters; with one character it is a CHAR as well [TYP-11]."""
 
     length: int
 
@@ -64,7 +66,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """``#NAME``; which enumeration it belongs to follows from where it is used [TYP-16]."""
+    """``#NAME``; its enumeration follows from where it is used [TYP-16]."""
 
     name: str
 
@@ -74,7 +76,7 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Aggregate:
-    """``{X 1,Y 2}``: the names of its components, and the structure where it names one [TYP-19]."""
+    """``{X 1,Y 2}``: the names of its components, and its structure if it names one [TYP-19]."""
 
     names: tuple[str, ...]
     structure: Structure | None = None
@@ -85,9 +87,9 @@ class Aggregate:
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """An array: one to three sizes, ``None`` where a size is not known [TYP-08].
+    """An array with one to three sizes; a size is ``None`` if it is unknown [TYP-08].
 
-    ``element`` is no array itself. The parameter ``X[,]`` is an array of two unknown sizes.
+    ``element`` is never an array. The parameter ``X[,]`` is an array of two unknown sizes.
     """
 
     element: Type
@@ -99,7 +101,7 @@ class Array:
 
     @property
     def is_text(self) -> bool:
-        """Whether a text in quotation marks can be its value: a row of CHAR [TYP-11]."""
+        """Whether it can hold a text: a one-dimensional array of CHAR [TYP-11]."""
         return self.element in (CHAR, UNKNOWN) and len(self.sizes) == 1
 
 
@@ -113,7 +115,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """A structure and its components in order; an open one may have others that are not known."""
+    """A structure with its components in order; an open one may have others."""
 
     name: str
     members: tuple[Member, ...]
@@ -139,13 +141,13 @@ class Structure:
         return self.is_open or name.upper() in self._types
 
     def member(self, name: str) -> Type | None:
-        """The type of a component; ``None`` where there is none of that name."""
+        """Return the type of a component, or ``None`` if there is none with that name."""
         found = self._types.get(name.upper())
         return UNKNOWN if found is None and self.is_open else found
 
 
 def _is_equal(one: Structure, other: Structure) -> bool:
-    """Whether two structures say the same; each pair of structures within them is compared once."""
+    """Return whether two structures are equal; each inner pair is compared only once."""
     todo: list[tuple[Type, Type]] = [(one, other)]
     seen: set[tuple[int, int]] = set()
     while todo:
@@ -203,27 +205,27 @@ UNKNOWN = Unknown()
 
 
 def is_number(type_: Type) -> bool:
-    """INT or REAL."""
+    """Return whether a type is INT or REAL."""
     return type_ in (INT, REAL)
 
 
 def is_cartesian(type_: Type) -> bool:
-    """FRAME, POS, E3POS or E6POS."""
+    """Return whether a type is a pose: FRAME, POS, E3POS or E6POS."""
     return isinstance(type_, Structure) and type_.name.upper() in CARTESIAN
 
 
 def is_axes(type_: Type) -> bool:
-    """AXIS, E3AXIS or E6AXIS."""
+    """Return whether a type is an axis position: AXIS, E3AXIS or E6AXIS."""
     return isinstance(type_, Structure) and type_.name.upper() in AXES
 
 
 def is_position(type_: Type) -> bool:
-    """What a motion can go to: a pose or axis positions."""
+    """Return whether a motion can go to a value of this type: a pose or axis positions."""
     return is_cartesian(type_) or is_axes(type_)
 
 
 def is_same(one: Type, other: Type) -> bool:
-    """Whether two types are the same as far as is known; sizes of arrays may differ."""
+    """Return whether two types are the same as far as is known; array sizes may differ."""
     match one, other:
         case Array(), Array():
             return len(one.sizes) == len(other.sizes) and is_same(one.element, other.element)
@@ -238,10 +240,10 @@ def is_same(one: Type, other: Type) -> bool:
 class Verdict:
     """Whether something is allowed, and the rules that say so.
 
-    ``reason`` is a sentence without an end, empty where all is plain; ``message`` the number of the
-    controller's own message where one fits. What is allowed and not ``is_lossless`` changes the
-    value: a REAL is rounded, a component dropped. It ``is_misfit`` where nothing but the two types
-    is the reason. A verdict is true when it ``is_fine``.
+    ``reason`` is a sentence without a full stop, empty if none is needed; ``message`` is the number
+    of the controller's own message, if there is one. If something is allowed but not
+    ``is_lossless``, the value changes: a REAL is rounded, a component dropped. ``is_misfit`` says
+    that the two types alone are the reason. A verdict is true if it ``is_fine``.
     """
 
     is_fine: bool
@@ -256,22 +258,22 @@ class Verdict:
 
     @property
     def is_unconfirmed(self) -> bool:
-        """Whether it rests on nothing but recollection: no reason for an error."""
+        """Whether it rests on unconfirmed rules only, which cannot support an error."""
         return not is_confirmed(self.rules)
 
 
-#: Allowed, and nothing to say about it.
+#: Allowed, without a remark.
 FINE = Verdict(True)
 
 
 def without_index(array: Array) -> Verdict:
-    """The refusal of an array where one of its elements is needed [TYP-20]."""
+    """Return the verdict on an array where one of its elements is needed [TYP-20]."""
     return Verdict(False, ("TYP-20", "MSG-21"), f"{array} needs an index here", 2052)
 
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """The type of an expression; `UNKNOWN` where the verdict is bad, so that nothing follows."""
+    """The type of an expression; `UNKNOWN` if the verdict is bad, to avoid follow-up errors."""
 
     type: Type
     verdict: Verdict = FINE

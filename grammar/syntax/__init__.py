@@ -1,1 +1,1 @@
-"""The syntax tree of KRL: built from parse trees, walked, printed, formatted."""
+"""The abstract syntax tree of KRL: built from parse trees, walked, printed, formatted."""

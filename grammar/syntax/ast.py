@@ -1,17 +1,17 @@
-"""The abstract syntax tree: one node a concept of KRL, made by `grammar.syntax.build`.
+"""The abstract syntax tree: one node for each concept of KRL, built by `grammar.syntax.build`.
 
-Nodes are frozen and compare by identity, so that side tables (types, symbols) can be keyed by them;
-`grammar.syntax.walk.same` compares by what they say. Every node has a span: offsets of its first
-character and of the one behind its last in the text it was read from. Comments and folds are no
-nodes: they are the text between the tokens, and `grammar.syntax.source` has them by line.
+Nodes are frozen and compare by identity, so side tables (types, symbols) can be keyed by them;
+`grammar.syntax.walk.same` compares their content. Every node has a span: the offset of its first
+character and the exclusive end offset in its source text. Comments and folds are no nodes. They lie
+between the tokens, and `grammar.syntax.source` finds them by line.
 
-A node says beside its fields how it is written (`template`): printing, and what lies within a
-block, follow from that.
+Beside its fields a node declares how it is written (`template`). The printer and the list of a
+block's bodies follow from that.
 
-Sequences are tuples. What a program may leave out is ``None``. Blocks nest without a limit, so
-walks over statements must not recurse; within a line nodes lie at most
-`grammar.syntax.node_plans.MAX_DEPTH` deep, but for the left operands of operators: a sum may have
-any number of terms (`grammar.syntax.walk.left_chain`).
+Sequences are tuples. An optional part that is missing is ``None``. Blocks nest without a limit, so
+walks over statements must not recurse. Within a line, nodes are at most
+`grammar.syntax.node_plans.MAX_DEPTH` deep, except along the left operands of operators: a sum may
+have any number of terms (`grammar.syntax.walk.left_chain`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Span = tuple[int, int]
 
 @node
 class Node:
-    """What every node has: where it stands, as offsets into its text."""
+    """The base of all nodes: its span, as offsets into the source text."""
 
     span: Span
 
@@ -38,12 +38,12 @@ TEMPLATES: dict[type[Node], tuple[str, ...]] = {}
 
 
 def template(*lines: str) -> Callable[[_Node], _Node]:
-    """How a node is written, keywords as they are and fields in angles.
+    """Return a decorator that declares how a node is written, one argument for each line.
 
-    ``<field>`` is the text of a field: a list is separated by commas, ``indices`` stand in
-    brackets, a ``path`` has slashes. ``<field|text>`` is ``text`` where the field has a value,
-    which is written for a ``*``. ``<<field>>`` are the nodes of a field, each on lines of its own:
-    a node that has such a field is a block.
+    ``<field>`` is the text of a field: lists are separated by commas, ``indices`` are put in
+    brackets, a ``path`` has slashes. ``<field|text>`` is ``text`` if the field has a value, with
+    ``*`` replaced by that value. ``<<field>>`` are the nodes of a field, each on lines of its own;
+    a node with such a field is a block.
     """
 
     def add(kind: _Node) -> _Node:
@@ -56,7 +56,7 @@ def template(*lines: str) -> Callable[[_Node], _Node]:
 @template("<text>")
 @node
 class Name(Node):
-    """A name as written. Letter case does not tell names apart: compare ``key``.
+    """A name as written. Compare names by ``key``, because letter case does not matter.
 
     Types whose names are keywords (INT, FRAME, E6POS …) are in upper case, as all keywords are.
     """
@@ -72,7 +72,7 @@ class Name(Node):
 @template("<name><indices>")
 @node
 class TypeName(Node):
-    """A type by its name; ``indices`` where it is an array: CHAR[128] [TYP-17]."""
+    """The name of a type, with ``indices`` if it is an array: CHAR[128] [TYP-17]."""
 
     name: Name
     indices: tuple[Expression | None, ...] | None
@@ -84,11 +84,10 @@ class TypeName(Node):
 @template("<value>")
 @node
 class IntegerLiteral(Node):
-    """Digits. Whether they fit into 32 bits is the checker's affair [TYP-01].
+    """A decimal integer; the type checker tests whether it fits into 32 bits [TYP-01].
 
-    Only the smallest INT has its sign here.
-
-    A number of more than 1,000 digits is read as ten to the power of 1,000.
+    Only the least INT includes its sign. A number with more than 1,000 digits becomes ten to the
+    power of 1,000.
     """
 
     value: int
@@ -127,7 +126,7 @@ class BitLiteral(Node):
 @template('"<text>"')
 @node
 class StringLiteral(Node):
-    """A text without its quotation marks; of one letter it is a CHAR as well [TYP-03, TYP-11]."""
+    """A text without its quotation marks; with one letter it is a CHAR as well [TYP-03, TYP-11]."""
 
     text: str
 
@@ -154,7 +153,7 @@ class Variable(Node):
 @template("<base><indices>")
 @node
 class Subscript(Node):
-    """``base[indices]``; an index left out means all of that dimension [TYP-08, TYP-11]."""
+    """``base[indices]``; a missing index means all of that dimension [TYP-08, TYP-11]."""
 
     base: Expression
     indices: tuple[Expression | None, ...]
@@ -180,7 +179,7 @@ class ChannelName(Node):
 @template("<name>(<arguments>)")
 @node
 class Call(Node):
-    """A routine called; an argument left out is ``None`` [SCO-13]. ``F()`` has no arguments."""
+    """A call of a routine; a missing argument is ``None`` [SCO-13]. ``F()`` has no arguments."""
 
     name: Name
     arguments: tuple[Expression | None, ...]
@@ -196,10 +195,10 @@ class Unary(Node):
 
 @node
 class Binary(Node):
-    """Two operands and what joins them [ARI-05].
+    """An operation with two operands [ARI-05].
 
-    ``operator`` is one of ``+ - * / : == <> < > <= >=``, AND, OR, EXOR, B_AND, B_OR, B_EXOR; ``=>``
-    and ``=<`` become the usual spelling.
+    ``operator`` is one of ``+ - * / : == <> < > <= >=``, AND, OR, EXOR, B_AND, B_OR, B_EXOR; the
+    spellings ``=>`` and ``=<`` are normalised.
     """
 
     operator: str
@@ -218,7 +217,7 @@ class Parenthesised(Node):
 @template("<name><indices> <value>")
 @node
 class Component(Node):
-    """A component in an aggregate: its name, an index for arrays, and its value."""
+    """A component of an aggregate: its name, an index if it is an array, and its value."""
 
     name: Name
     indices: tuple[Expression | None, ...] | None
@@ -228,7 +227,7 @@ class Component(Node):
 @template("{<type|*: ><components>}")
 @node
 class Aggregate(Node):
-    """``{X 1, Y 2}``; components left out get no value [TYP-19]. ``type`` is the prefix."""
+    """``{X 1, Y 2}``; missing components get no value [TYP-19]. ``type`` is the prefix."""
 
     type: Name | None
     components: tuple[Component, ...]
@@ -254,7 +253,7 @@ Expression = (
 @template("<name><indices><value|=*>")
 @node
 class Declarator(Node):
-    """A name that a declaration introduces; initial values stand in data lists only [TYP-10]."""
+    """A name that a declaration introduces; only data lists have initial values [TYP-10]."""
 
     name: Name
     indices: tuple[Expression | None, ...] | None
@@ -264,7 +263,7 @@ class Declarator(Node):
 @template("<has_decl|DECL ><is_global|GLOBAL ><is_constant|CONST ><type> <declarators>")
 @node
 class VariableDeclaration(Node):
-    """Variables of one type. ``has_decl``: whether DECL was written [TYP-06]."""
+    """Variables of one type. ``has_decl`` says whether DECL was written [TYP-06]."""
 
     has_decl: bool
     is_global: bool
@@ -305,9 +304,9 @@ class Structure(Node):
 @template("<has_decl|DECL ><is_global|GLOBAL >SIGNAL <name> <first><last| TO *>")
 @node
 class Signal(Node):
-    """A name for an input or output, or for those from ``first`` to ``last`` [IOT-03].
+    """A name for an input or output, or for the range from ``first`` to ``last`` [IOT-03].
 
-    A predefined signal that is connected to nothing has FALSE as its ``first``.
+    A predefined signal that is not connected has FALSE as its ``first``.
     """
 
     has_decl: bool
@@ -387,7 +386,7 @@ class Assignment(Node):
 @template("<call>")
 @node
 class CallStatement(Node):
-    """A routine called for what it does."""
+    """A call of a routine as a statement."""
 
     call: Call
 
@@ -405,7 +404,7 @@ class If(Node):
 @template("FOR <counter> = <first> TO <last><step| STEP *>", "  <<body>>", "ENDFOR")
 @node
 class For(Node):
-    """FOR from ``first`` to ``last``, both included [CTL-05]."""
+    """FOR: a loop from ``first`` to ``last``, both included [CTL-05]."""
 
     counter: Name
     first: Expression
@@ -417,7 +416,7 @@ class For(Node):
 @template("WHILE <condition>", "  <<body>>", "ENDWHILE")
 @node
 class While(Node):
-    """WHILE: tested before each pass [CTL-01]."""
+    """WHILE: a loop that is tested before each pass [CTL-01]."""
 
     condition: Expression
     body: tuple[Statement, ...]
@@ -426,7 +425,7 @@ class While(Node):
 @template("REPEAT", "  <<body>>", "UNTIL <condition>")
 @node
 class Repeat(Node):
-    """REPEAT … UNTIL: tested after each pass, ends when TRUE [CTL-01]."""
+    """REPEAT … UNTIL: a loop that is tested after each pass and ends when TRUE [CTL-01]."""
 
     body: tuple[Statement, ...]
     condition: Expression
@@ -435,7 +434,7 @@ class Repeat(Node):
 @template("LOOP", "  <<body>>", "ENDLOOP")
 @node
 class Loop(Node):
-    """LOOP: endless, left by EXIT [CTL-01]."""
+    """LOOP: an endless loop, left by EXIT [CTL-01]."""
 
     body: tuple[Statement, ...]
 
@@ -443,7 +442,7 @@ class Loop(Node):
 @template("CASE <values>", "  <<body>>")
 @node
 class CaseBranch(Node):
-    """CASE: constants or names of constants, and what is done [CTL-04]."""
+    """CASE: its constants or names of constants, and its statements [CTL-04]."""
 
     values: tuple[Expression, ...]
     body: tuple[Statement, ...]
@@ -478,7 +477,7 @@ class Goto(Node):
 @template("<name>:")
 @node
 class Label(Node):
-    """``NAME:``, where a GOTO goes."""
+    """``NAME:``, the target of a GOTO."""
 
     name: Name
 
@@ -506,7 +505,7 @@ class Continue(Node):
 @template("ON_ERROR_PROCEED")
 @node
 class OnErrorProceed(Node):
-    """ON_ERROR_PROCEED: an error of the next statement is noted in $ERR [TYP-13]."""
+    """ON_ERROR_PROCEED: an error of the next statement is stored in $ERR [TYP-13]."""
 
 
 @template("CONFIRM <number>")
@@ -560,12 +559,12 @@ class SignalOff(Node):
 @template("<kind> <auxiliary|*, ><target><angle|, CA *><values| WITH *><criteria| *><reference| *>")
 @node
 class Motion(Node):
-    """A motion of any kind but those of option packages.
+    """A motion of any kind, except those of option packages.
 
     ``kind`` is its keyword: PTP, LIN, CIRC, SPTP, SLIN, SCIRC, SPL, their _REL forms, or ASYPTP.
-    ``auxiliary`` is the first point of a circle, ``angle`` follows CA [MOT-13].
-    ``values`` stand behind WITH [SPL-08], ``criteria`` are C_PTP, C_DIS, C_ORI, C_VEL or C_SPL
-    [BLD-06], ``reference`` is #BASE or #TOOL [MOT-14].
+    ``auxiliary`` is the auxiliary point of a circle, ``angle`` follows CA [MOT-13]. ``values``
+    follow WITH [SPL-08], ``criteria`` are C_PTP, C_DIS, C_ORI, C_VEL or C_SPL [BLD-06],
+    ``reference`` is #BASE or #TOOL [MOT-14].
     """
 
     kind: str
@@ -580,7 +579,7 @@ class Motion(Node):
 @template("MOVE_EMI <device> <action><number| FLT *>")
 @node
 class EmilyMotion(Node):
-    """MOVE_EMI: a path that an option package holds."""
+    """MOVE_EMI: a path stored by an option package."""
 
     device: Expression
     action: Expression
@@ -609,7 +608,7 @@ class TimeBlock(Node):
 @template("STOP WHEN PATH=<place><on_start| ONSTART> IF <condition>")
 @node
 class StopWhen(Node):
-    """STOP WHEN PATH, a conditional stop at a place in mm [SPL-06, SPL-07]."""
+    """STOP WHEN PATH: a conditional stop at a place in mm [SPL-06, SPL-07]."""
 
     place: Expression
     on_start: bool
@@ -733,7 +732,7 @@ class Parameter(Node):
 )
 @node
 class Routine(Node):
-    """DEF, or DEFFCT where there is a ``result``. Declarations stand in the body, as written."""
+    """DEF, or DEFFCT if there is a ``result``. The declarations are part of the body."""
 
     is_global: bool
     result: TypeName | None

@@ -1,11 +1,10 @@
-"""From text to the abstract syntax tree, or to all its syntax failures: `read_module`.
+"""Building the abstract syntax tree: from text to a module, or to all its syntax failures.
 
-What lies within a line comes from plans (`grammar.syntax.node_plans`,
-`grammar.syntax.statement_rules`), each worked out once. What spans lines is built here, from the
-innermost block outwards and without recursion: thousands of nested blocks are no harder than
-thousands in a row.
+The entry point is `read_module`. The nodes of a line come from plans (`grammar.syntax.node_plans`,
+`grammar.syntax.statement_rules`), each computed once. Nodes that span lines are built here, from
+the innermost block outwards and without recursion, so the depth of nesting has no limit.
 
-Spans never take in the line end behind a statement, nor what follows it.
+A span never includes the line end after a statement.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from grammar.syntax.node_plans import MAX_DEPTH, Plan, TooDeep, draft
 from grammar.syntax.statement_rules import CHAINS, RULES
 from support.lazy_dataclass import dataclass
 
-# Memory stays flat on corpora of any size: a plan takes some kilobytes.
+# The cache of plans is bounded; a plan takes some kilobytes.
 _MOST_REMEMBERED = 20_000
 _WIDEST_REMEMBERED = 1_000
 
@@ -36,10 +35,10 @@ class SyntaxFailure:
     """Why a text is no module of KRL: one line that cannot be read.
 
     ``line`` and ``column`` count from 1, ``offset`` from 0. ``text`` is the offending token as
-    written, empty at the end of the file; ``expected`` is every token that could have come, sorted,
-    and ``rule`` the innermost rule of the grammar that could not end there. ``follows`` marks what
-    only fails because of an earlier failure. ``reason`` is for what the grammar allows and we do
-    not: then nothing is expected.
+    written, empty at the end of the file. ``expected`` are all tokens that could have come, sorted,
+    and ``rule`` is the innermost rule of the grammar that cannot end there. ``follows`` marks a
+    failure that is only a consequence of an earlier one. ``reason`` is set if the grammar accepts
+    the text but a limit of this builder does not; then nothing is expected.
     """
 
     path: str
@@ -54,21 +53,21 @@ class SyntaxFailure:
 
 
 def read_module(text: str, path: str = "") -> ast.Module | list[SyntaxFailure]:
-    """The tree of a text under the grammar in force, or its failures in the order of the text.
+    """Return the tree of a text under the current grammar, or its failures in order.
 
-    ``path`` is where it comes from, as failures show it.
+    ``path`` is the file, as failures show it.
     """
     return builder().read(text, path)
 
 
 @cache
 def builder() -> Builder:
-    """The builder for the grammar in force; loaded once a process."""
+    """Return the builder for the current grammar; created once in each process."""
     return Builder(Recognizer(krl_grammar()))
 
 
 class Builder:
-    """Builds modules under one version of the grammar; remembers what it has worked out."""
+    """Builds modules under one version of the grammar; caches the plans of lines."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.parser = Parser(recognizer)
@@ -77,7 +76,7 @@ class Builder:
         self._plans: dict[Outline | int, Plan] = {}
 
     def read(self, text: str, path: str = "") -> ast.Module | list[SyntaxFailure]:
-        """The tree of a text, or its failures in the order of the text; see `read_module`."""
+        """Return the tree of a text, or its failures in order; see `read_module`."""
         tree = self.parser.parse(text)
         if not isinstance(tree, Tree):
             return [self._failure(found, path) for found in self.failures.find(text)]
@@ -90,16 +89,16 @@ class Builder:
             return [SyntaxFailure(path, *tree.place(offset), offset, lexeme, (), "", False, reason)]
 
     def module(self, tree: Tree) -> ast.Module:
-        """The module of a parse tree; raises `TooDeep`."""
+        """Return the module of a parse tree; raises `TooDeep`."""
         lexemes, starts = tree.lexemes, tree.offsets
         ends = list(map(add, starts, map(len, lexemes)))
         names, plans = self._names, self._plans
         frame = _Frame(tree.outline, 0)
         outer: list[_Frame] = []
-        at = end = 0  # the next token, and where the last one ended that was no line end
+        at = end = 0  # index of the next token; end offset of the last one that was no line end
         while True:
             pieces = frame.pieces
-            for child in frame.children:  # continues where it was left
+            for child in frame.children:  # an iterator: continues where it stopped
                 if not isinstance(child, Outline):
                     end = ends[at]
                     pieces.append(_Piece(names[child], lexemes[at], starts[at], end))
@@ -129,7 +128,7 @@ class Builder:
                 frame.pieces.append(piece)
 
     def _plan(self, outline: Outline | int, first: int) -> Plan | None:
-        """The plan of what lies on one line; ``None`` for what may span more."""
+        """Return the plan of a rule within a line; ``None`` if the rule can span lines."""
         if not isinstance(outline, Outline) or outline.rule in _BLOCKS:
             return None
         try:
@@ -157,7 +156,7 @@ class Builder:
 
 
 class _Piece(NamedTuple):
-    """A child of a block: a token and its text, or a rule and what it became; line ends left out.
+    """A child of a block: a token with its text, or a rule with its node. No line ends.
 
     ``start`` and ``end`` are offsets.
     """
@@ -169,7 +168,7 @@ class _Piece(NamedTuple):
 
 
 class _Frame:
-    """A block whose children are being built; ``children`` are those still to come."""
+    """A block whose children are being built; ``children`` iterates over the remaining ones."""
 
     __slots__ = ("children", "pieces", "rule", "start")
 
@@ -184,7 +183,7 @@ class _Frame:
 
 
 def _value(pieces: Sequence[_Piece], symbol: str) -> Any:
-    """What the first piece of this kind is; ``None`` where there is none."""
+    """Return the value of the first piece of this kind, or ``None`` if there is none."""
     return next((piece.value for piece in pieces if piece.symbol == symbol), None)
 
 
@@ -223,7 +222,7 @@ def _routine(span: Span, pieces: Sequence[_Piece]) -> ast.Routine:
 
 
 def _result(pieces: Sequence[_Piece]) -> ast.TypeName | None:
-    """What a function gives."""
+    """Return the result type of a function, or ``None`` for a procedure."""
     chosen = [piece for piece in pieces if piece.symbol in ("type", "index")]
     if not chosen:
         return None
@@ -237,7 +236,7 @@ def _data_list(span: Span, pieces: Sequence[_Piece]) -> ast.DataList:
 
 
 def _declaration(span: Span, pieces: Sequence[_Piece]) -> Any:
-    """A declaration with or without initial values; in a data list, an assignment as well."""
+    """Return a declaration with or without initial values; or an assignment in a data list."""
     first = pieces[0]
     if first.symbol == "definition":
         return first.value
@@ -322,5 +321,5 @@ _BLOCKS: Mapping[str, Callable[[Span, Sequence[_Piece]], Any]] = {
     "splineBlock": _spline_block,
 }
 
-#: Rules that span lines; what lies in any other ends on its line, but for ``eol``.
+#: Rules that span lines; any other rule ends on its line, except ``eol``.
 BLOCK_RULES = frozenset(_BLOCKS)

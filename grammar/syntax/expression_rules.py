@@ -1,4 +1,4 @@
-"""Tree nodes for the rules of names, types, literals and expressions (as `statement_rules`)."""
+"""AST nodes for the rules of names, types, literals and expressions (see `statement_rules`)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, separated, 
 
 # Types whose names are keywords: they are kept in upper case.
 _KEYWORD_TYPES = frozenset("INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())
-# More digits are of no use to a checker: the number is too large.
+# A number with more digits is too large in any case; converting it would take long.
 _MOST_DIGITS = 1_000
 
 
@@ -71,7 +71,7 @@ def _type(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 
 
 def type_name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    """What an external function gives, where it is one."""
+    """Return the result type of an external function, or ``None`` for a procedure."""
     chosen = [part for part in parts if part.symbol in ("type", "index")]
     if not chosen:
         return None
@@ -79,7 +79,7 @@ def type_name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 
 
 def literal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    """A literal as its node; whatever else stands there is what it came to."""
+    """Return the node of a literal; any other child is returned as it is."""
     (only,) = parts
     make = _LITERALS.get(only.symbol)
     return only.value if make is None else draft.over(make, parts, only.value)
@@ -111,7 +111,7 @@ def _relation(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
 
 
 def _infix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    """Operators of equal rank join from left to right."""
+    """Return the node of a chain of operators of equal rank, which are left-associative."""
     value, chain = parts[0].value, None
     for operator, right in zip(parts[1::2], parts[2::2], strict=True):
         operands = _operator(operator), value, right.value
@@ -126,7 +126,10 @@ def _prefix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 
 
 def _unary_of(span: Span, operator: str, operand: ast.Expression) -> ast.Unary | ast.IntegerLiteral:
-    """The smallest INT is a literal with its sign: without it, it is none [TYP-01]."""
+    """Return a unary operation; ``-`` with 2147483648 becomes the least INT [TYP-01].
+
+    Without its sign the number would be out of range.
+    """
     if operator == "-" and type(operand) is ast.IntegerLiteral and operand.value == 2**31:
         return ast.IntegerLiteral(span, -(2**31))
     return ast.Unary(span, operator, operand)

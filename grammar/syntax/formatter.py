@@ -1,19 +1,20 @@
-"""The layout of a text: `krl format`.
+"""The formatter behind `krl format`.
 
-What changes: the indentation of lines, by the depth of their block; the blanks between tokens
-(`grammar.syntax.spacing`); keywords, to upper case; blanks at the end of lines of code. What never
-does: lines, their ends and their number; comments, strings, numbers; the letters of names; header
-lines; and all lines of a fold that the teach pendant wrote, because it reads them.
+It changes the indentation of lines, by the depth of their block; the blanks between tokens
+(`grammar.syntax.spacing`); keywords, to upper case; and blanks at the end of lines of code. It
+never changes lines, line ends and their number; comments, strings, numbers; the letters of names;
+header lines; and the lines of a fold that the teach pendant wrote, because the pendant reads them.
 
-- Two blanks a block. Folds do not indent, nor do data lists. The body of a routine is indented
-  where its first statement was, for both is usual. Labels stand where the routine does.
-- A comment alone on its line is indented as the line of code that comes next; before a line that
-  ends a block or a branch, as what lies inside where it stood deeper than that line. ENDFOLD is
-  indented as its FOLD.
-- A comment behind code stays in its column, counted from where the line begins, while there is
-  room, and goes one blank behind the code where there is none.
+- A block is indented by two blanks. Folds and data lists are not indented. The body of a routine is
+  indented if its first statement was, because both styles are usual. A label has the indentation of
+  its routine.
+- A comment alone on its line is indented like the next line of code. Before a line that ends a
+  block or a branch, it is indented like the body if it was indented more than that line. ENDFOLD is
+  indented like its FOLD.
+- A comment after code keeps its column, counted from the begin of the line, if there is room;
+  otherwise it follows the code after one blank.
 
-Setting out a text that has been set out changes nothing.
+Formatting is idempotent.
 """
 
 from __future__ import annotations
@@ -42,17 +43,17 @@ _BLANKS = " \t"
 
 
 class FormatterDefect(Exception):
-    """Setting out a text would change more than its layout: a defect of ours."""
+    """Formatting would change more than the layout of a text: a defect of the formatter."""
 
 
 @cache
 def formatter() -> Formatter:
-    """The formatter for the grammar in force; loaded once a process."""
+    """Return the formatter for the current grammar; created once in each process."""
     return Formatter(builder())
 
 
 class Formatter:
-    """Sets out texts; remembers what it has worked out."""
+    """Formats texts; caches the spacing of lines."""
 
     def __init__(self, reader: Builder) -> None:
         self._reader = reader
@@ -62,9 +63,9 @@ class Formatter:
         self._spacing = Spacing(self._lexer)
 
     def layout(self, text: str, path: str = "") -> str | list[SyntaxFailure]:
-        """The text set out, or why it cannot be: its syntax failures.
+        """Return the formatted text, or its syntax failures.
 
-        Raises `FormatterDefect` rather than give a text that says something else.
+        Raises `FormatterDefect` instead of returning a text with another meaning.
         """
         tree = self._reader.parser.parse(text)
         if isinstance(tree, Tree):
@@ -80,13 +81,13 @@ class Formatter:
         return laid_out
 
     def set_out(self, tree: Tree) -> str:
-        """The text of a tree, set out; not checked."""
+        """Return the formatted text of a tree, unchecked."""
         source = Source(tree.text)
         kept = _kept(source)
         marks = self._marks(tree, source, kept)
         lines = list(source.lines)
         stops = [index for index, kind in enumerate(tree.kinds) if kind in self._ends]
-        depth = column = inside = 0  # of the next line of code, below the line looked at
+        depth = column = inside = 0  # of the next line of code below the current line
         for number in range(len(lines), 0, -1):
             written = lines[number - 1]
             start = stops[number - 2] + 1 if number > 1 else 0
@@ -104,7 +105,7 @@ class Formatter:
         return "".join(map(add, lines, [*source.line_ends, ""]))
 
     def _marks(self, tree: Tree, source: Source, kept: frozenset[int]) -> _Marks:
-        """How the tokens of a tree are set."""
+        """Return the spacing and the indentation of the tokens of a tree."""
         marks = _Marks([_PLAIN] * len(tree.kinds), [0] * len(tree.kinds), {})
         names = self._lexer.names
         todo: list[tuple[Outline, int, int]] = [(tree.outline, 0, 0)]
@@ -135,9 +136,10 @@ class Formatter:
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """How each token is set, and for the first one of a line how deep its block lies.
+    """The spacing of each token and, for the first token of a line, the depth of its block.
 
-    ``insides`` gives, for what ends a block, how much deeper the lines in the block are indented.
+    ``insides`` is, for a token that ends a block, how much more the lines in the block are
+    indented.
     """
 
     settings: list[Setting]
@@ -148,7 +150,10 @@ class _Marks:
 def _indents_body(
     routine: Outline, at: int, tree: Tree, source: Source, kept: frozenset[int]
 ) -> int:
-    """By how much the body of a routine is indented: as its first statement that may move."""
+    """Return 1 if the body of a routine is indented, else 0.
+
+    Its first statement outside the pendant's folds decides.
+    """
     for child in routine.children:
         if isinstance(child, Outline):
             if child.rule == "statement" and not _is_label(child):
@@ -167,7 +172,7 @@ def _is_label(statement: Outline) -> bool:
 
 
 def _set_code(tree: Tree, start: int, stop: int, marks: _Marks, written: str) -> str:
-    """The line of the tokens from ``start`` to before ``stop``, set out."""
+    """Return the formatted line of the tokens from ``start`` up to, not including, ``stop``."""
     gaps = [tree.gap(index) for index in range(start, stop)]
     blanks = indent(marks.depths[start])
     code = blanks + set_line(tree.lexemes[start:stop], marks.settings[start:stop], gaps)
@@ -183,7 +188,7 @@ def _set_code(tree: Tree, start: int, stop: int, marks: _Marks, written: str) ->
 
 
 def _set_ends_of_folds(source: Source, kept: frozenset[int], lines: list[str]) -> None:
-    """Indent each ENDFOLD as its FOLD."""
+    """Indent each ENDFOLD like its FOLD."""
     for fold in source.folds:
         if fold.last is not None and fold.last not in kept:
             first = lines[fold.first - 1]
@@ -192,7 +197,7 @@ def _set_ends_of_folds(source: Source, kept: frozenset[int], lines: list[str]) -
 
 
 def _kept(source: Source) -> frozenset[int]:
-    """The lines of folds that the teach pendant wrote."""
+    """Return the line numbers of folds that the teach pendant wrote."""
     kept: set[int] = set()
     for fold in source.folds:
         if fold.parameters is not None:
@@ -201,11 +206,11 @@ def _kept(source: Source) -> frozenset[int]:
 
 
 def _column(line: str) -> int:
-    """How far a line is indented, in characters of a screen."""
+    """Return the indentation of a line in columns."""
     return len(line[: len(line) - len(line.lstrip(_BLANKS))].expandtabs())
 
 
 def _rest(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What of a text its tree does not hold: comments and line ends."""
+    """Return the parts of a text that are not in its tree: comments and line ends."""
     source = Source(text)
     return tuple(comment.text for comment in source.comments), source.line_ends

@@ -1,13 +1,13 @@
-"""Plans: how the nodes of a line are made, worked out once for each `Outline`.
+"""Plans: how the nodes of a line are built, computed once for each `Outline`.
 
-Lines that are built alike share an outline, and differ only in the texts of their tokens. So the
-rules of `grammar.syntax.statement_rules` and `grammar.syntax.expression_rules` do not make nodes.
-They draft a plan, a list of steps: which node, over which tokens, from which values. `Plan.run`
-then makes the nodes of one line: a call for each.
+Lines with the same structure share an outline and differ only in the texts of their tokens. So the
+rules of `grammar.syntax.statement_rules` and `grammar.syntax.expression_rules` do not build nodes.
+They draft a plan, which is a list of steps: which node, over which tokens, from which values.
+`Plan.run` then builds the nodes of one line with one call for each.
 
-A plan works on a list of values. It begins with the texts of the tokens, then come constants, then
-the result of each step in order. Drafting goes through the outline without recursion, so depth of
-nesting meets the limit that is set here and no other.
+A plan works on a list of values: first the texts of the tokens, then constants, then the result of
+each step in order. An outline is drafted without recursion, so the only limit on nesting is the one
+set here.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from grammar.parser.tree import Outline
 from grammar.syntax.ast import Span
 from support.lazy_dataclass import dataclass
 
-#: How deep nodes may lie within a line, chains of operators counted once. Whoever walks an
-#: expression may rely on it and recurse, but for `grammar.syntax.walk.left_chain`.
+#: Greatest depth of nodes within a line; a chain of operators counts once. Code that walks an
+#: expression relies on it and recurses, except along `grammar.syntax.walk.left_chain`.
 MAX_DEPTH = 200
-# A call has three rules for its one node, nothing has more: no need to draft what is far too deep.
+# No node needs more than the three rules of a call, so deeper rules are certainly too deep.
 _MOST_FRAMES = 3 * MAX_DEPTH + 10
 
-#: What a rule comes to: a slot in the list of values, a constant, or a sequence of these.
+#: The result of a rule: a slot in the list of values, a constant, or a sequence of these.
 Value = int | str | bool | None | tuple["Value", ...]
 
 
 class TooDeep(Exception):
-    """A node lies deeper than `MAX_DEPTH`; ``first`` is the index of its first token."""
+    """A node is deeper than `MAX_DEPTH`; ``first`` is the index of its first token."""
 
     def __init__(self, first: int) -> None:
         super().__init__(first)
@@ -39,9 +39,9 @@ class TooDeep(Exception):
 
 
 class DraftPart(NamedTuple):
-    """A child of a rule: a token by its name, its value its slot, or a rule and what it came to.
+    """A child of a rule: a token, whose value is its slot, or a rule and its result.
 
-    ``first`` and ``stop`` are indices of tokens, as in a tree.
+    ``first`` and ``stop`` are token indices; ``stop`` is excluded.
     """
 
     symbol: str
@@ -51,7 +51,7 @@ class DraftPart(NamedTuple):
 
 
 class Draft:
-    """A plan in the making."""
+    """A plan that is being built."""
 
     def __init__(self, width: int) -> None:
         self._width = width
@@ -67,9 +67,10 @@ class Draft:
         *values: Value,
         chain: int | None = None,
     ) -> int:
-        """A step: ``make`` called with a span and ``values``; returns the slot of its result.
+        """Add a step that calls ``make`` with a span and ``values``; return the slot of its result.
 
-        The node at the slot ``chain`` lies no deeper for it: it is the same chain, begun before.
+        The node in the slot ``chain`` does not add to the depth: it is an earlier part of the same
+        chain of operators.
         """
         slots = tuple(map(self._slot, values))
         depth = max(
@@ -83,11 +84,11 @@ class Draft:
         return self._width + len(self._steps) - 1
 
     def over(self, make: Callable[..., object], parts: Sequence[DraftPart], *values: Value) -> int:
-        """A step whose span is that of ``parts``."""
+        """Add a step whose span is that of ``parts``; return the slot of its result."""
         return self.node(make, parts[0].first, parts[-1].stop, *values)
 
     def _slot(self, value: Value) -> int:
-        """The slot of a value; constants have negative ones while their number is not known."""
+        """Return the slot of a value; a constant has a negative one until its number is known."""
         if type(value) is int:
             return value
         if isinstance(value, tuple) and not _is_constant(value):
@@ -95,7 +96,7 @@ class Draft:
         return ~self._constants.setdefault((type(value), value), len(self._constants))
 
     def plan(self, value: Value) -> Plan:
-        """The plan, once all is drafted, whose result is ``value``."""
+        """Return the finished plan with ``value`` as its result."""
         result = self._slot(value)
         width, count = self._width, len(self._constants)
 
@@ -111,7 +112,7 @@ class Draft:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Makes the nodes of lines that share an outline; ``width`` tokens each."""
+    """Builds the nodes of all lines with one outline, which has ``width`` tokens."""
 
     width: int
     constants: tuple[object, ...]
@@ -121,7 +122,7 @@ class Plan:
     def run(
         self, lexemes: Sequence[str], starts: Sequence[int], ends: Sequence[int], first: int
     ) -> Any:
-        """What the tokens from ``first`` on become.
+        """Return the node built from the tokens from ``first`` on.
 
         ``lexemes``, ``starts`` and ``ends`` are the texts of all tokens and their offsets.
         """
@@ -132,17 +133,17 @@ class Plan:
         return values[self.result]
 
 
-#: What a rule of the grammar comes to, given what it consists of.
+#: Drafts the nodes of a rule of the grammar from its children and returns its result.
 Rule = Callable[[Draft, Sequence[DraftPart]], Value]
 
 
 def draft(
     outline: Outline, names: Sequence[str], rules: Mapping[str, Rule], chains: frozenset[str]
 ) -> Plan:
-    """The plan of an outline.
+    """Return the plan of an outline.
 
-    ``names`` are those of kinds of tokens. Rules in ``chains`` mean nothing of their own where they
-    have but one child, a rule. Raises `TooDeep`.
+    ``names`` are the token names by kind. A rule in ``chains`` is skipped if its only child is a
+    rule. Raises `TooDeep`.
     """
     plan = Draft(outline.width)
     top: list[DraftPart] = []
@@ -169,7 +170,7 @@ def draft(
 
 
 class _Frame:
-    """A rule whose children are being drafted; ``above`` is where its own part goes."""
+    """A rule whose children are being drafted; ``above`` are the parts of its parent."""
 
     __slots__ = ("above", "at", "first", "inner", "outline", "parts", "place")
 
@@ -204,7 +205,7 @@ def _sequence(_span: Span, *items: object) -> tuple[object, ...]:
 
 
 def _getter(slots: list[int]) -> Callable[[list[Any]], Any]:
-    """What takes the values in ``slots`` from a list, as a sequence."""
+    """Return a function that takes the values in ``slots`` from a list, as a sequence."""
     if len(slots) > 1:
         return itemgetter(*slots)
     only = slots[0] if slots else 0
@@ -215,22 +216,22 @@ def _getter(slots: list[int]) -> Callable[[list[Any]], Any]:
 
 
 def value_of(parts: Sequence[DraftPart], symbol: str) -> Value:
-    """What the first part of this kind came to; ``None`` where there is none."""
+    """Return the value of the first part of this kind, or ``None`` if there is none."""
     return next((part.value for part in parts if part.symbol == symbol), None)
 
 
 def values_of(parts: Sequence[DraftPart], symbol: str) -> tuple[Value, ...]:
-    """What all parts of this kind came to, in their order."""
+    """Return the values of all parts of this kind, in order."""
     return tuple(part.value for part in parts if part.symbol == symbol)
 
 
 def has(parts: Sequence[DraftPart], symbol: str) -> bool:
-    """Whether there is a part of this kind."""
+    """Return whether there is a part of this kind."""
     return any(part.symbol == symbol for part in parts)
 
 
 def after(parts: Sequence[DraftPart], symbol: str) -> Value:
-    """What the part two after a keyword came to, an equals sign between; ``None`` without it."""
+    """Return the value after a keyword and an equals sign; ``None`` without the keyword."""
     for place, part in enumerate(parts):
         if part.symbol == symbol:
             return parts[place + 2].value
@@ -238,7 +239,7 @@ def after(parts: Sequence[DraftPart], symbol: str) -> Value:
 
 
 def separated(parts: Sequence[DraftPart]) -> tuple[Value, ...]:
-    """What commas separate, ``None`` for what is left out."""
+    """Return the values between commas, with ``None`` for a missing one."""
     items: list[Value] = [None]
     for part in parts:
         if part.symbol == "COMMA":

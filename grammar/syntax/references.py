@@ -1,7 +1,7 @@
-"""Nodes that hold names with a meaning elsewhere, and references below a node.
+"""The fields of nodes that are references to names, and a walk over references.
 
-It is worked out once for each kind of node, so that walks over whole archives look at nothing in
-vain. Nothing here recurses.
+The fields are determined once for each kind of node, so that walks over whole archives visit no
+field in vain. Nothing here recurses.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from grammar.syntax import ast
 
 
 class Space(Enum):
-    """Which names can meet: a type and a variable may be called alike."""
+    """Name spaces: a type and a variable may have the same name."""
 
     VALUE = "variable"
     ROUTINE = "routine"
@@ -23,7 +23,7 @@ class Space(Enum):
     CHANNEL = "channel"
     LABEL = "label"
 
-    __hash__ = object.__hash__  # that of `Enum` is a call in Python, for each name looked up
+    __hash__ = object.__hash__  # `Enum.__hash__` is written in Python and slow
 
 
 _NAMES: dict[type[ast.Node], tuple[str, Space]] = {
@@ -45,7 +45,7 @@ _NAMES: dict[type[ast.Node], tuple[str, Space]] = {
     ast.Variable: ("name", Space.VALUE),
     ast.VariableDeclaration: ("type", Space.TYPE),
 }
-#: What is not looked at: names that are looked up elsewhere or mean nothing here.
+#: Fields that are not visited: names that are resolved elsewhere or are no references.
 _LEFT_OUT: dict[type[ast.Node], set[str]] = {
     ast.ChannelDefinition: {"interface"},
     ast.Declarator: {"name"},
@@ -58,7 +58,7 @@ _TEXTS = {"str", "str | None", "tuple[str, ...]", "int", "bool"}
 
 
 def _below(kind: type[ast.Node]) -> tuple[str, ...]:
-    """The fields of a kind of node with nodes to continue with."""
+    """Return the fields of a kind of node in which the walk continues."""
     left_out = _LEFT_OUT.get(kind, set()) | {"span", _NAMES.get(kind, ("",))[0]}
     return tuple(
         field.name
@@ -77,7 +77,7 @@ PLANS: dict[type[Any], tuple[tuple[str, Space] | None, tuple[str, ...]]] = {
 
 
 def calls_in(nodes: Iterable[ast.Node]) -> frozenset[str]:
-    """The names of all routines that are called below some nodes, in upper case."""
+    """Return the names of all routines that are called below some nodes, in upper case."""
     called = set()
     todo: list[ast.Node | None] = list(nodes)
     while todo:

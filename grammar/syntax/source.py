@@ -1,13 +1,13 @@
-"""A source text and what the syntax tree does not hold: lines, comments, folds, where it is from.
+"""A source text with what its syntax tree leaves out: lines, comments, folds, path.
 
 Comments are no tokens. They lie in the gaps between tokens, each at the end of a line, so they can
-be seen from the text alone: a semicolon opens one unless it stands in a string or behind the ``&``
-of a header line. A text that does not parse has its comments all the same.
+be found in the text alone: a semicolon begins one unless it is in a string or after the ``&`` of a
+header line. So a text with syntax errors has its comments all the same.
 
-A *fold* is a pair of comments, ``;FOLD`` and ``;ENDFOLD``, that an editor shows as one line. Folds
-nest, and mean nothing to the controller. The teach pendant writes folds of its own, for inline
-forms and for what it initialises. Their parameters stand behind ``;%{`` and, in newer releases, in
-a ``;Params`` line below; the pendant reads both.
+A *fold* is a pair of comments, ``;FOLD`` and ``;ENDFOLD``, which an editor shows as one line. Folds
+nest and mean nothing to the controller. The teach pendant writes folds of its own for inline forms
+and initialisation. Their parameters follow ``;%{`` and, in newer releases, are in a ``;Params``
+line below; the pendant reads both.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from pathlib import PurePosixPath
 from support.lazy_dataclass import dataclass
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
-# A string that is not closed ends nowhere: its quotation mark is a token alone.
+# The quotation mark of an unclosed string is a token of its own, so it hides no comment.
 _COMMENT = re.compile(r'"[^"\r\n]*"|&[^\r\n]*|(;[^\r\n]*)')
-# FOLD and the title of a fold, or ENDFOLD.
+# FOLD with the title of the fold, or ENDFOLD.
 _MARK = re.compile(
     r";[ \t]*(?:FOLD(?:[ \t]+|(?=;)|$)(.*)|ENDFOLD\b)", re.IGNORECASE | re.ASCII | re.DOTALL
 )
@@ -33,7 +33,7 @@ _PARAMETER_LINE = re.compile(r";[ \t]*PARAMS[ \t]", re.IGNORECASE | re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment with its semicolon; ``is_alone`` where nothing stands before it on its line.
+    """A comment with its semicolon; ``is_alone`` if nothing precedes it on its line.
 
     ``line`` and ``column`` count from 1, ``offset`` from 0.
     """
@@ -49,9 +49,9 @@ class Comment:
 class Fold:
     """Lines that an editor shows as one.
 
-    ``first`` is the line of FOLD, ``last`` that of ENDFOLD, ``None`` where it is missing. ``level``
-    counts from 1. ``parameters`` are what the teach pendant keeps, on the line of FOLD and in the
-    ``Params`` line below, as written; ``None`` for folds of its users.
+    ``first`` is the line of FOLD, ``last`` that of ENDFOLD, ``None`` if it is missing. ``level``
+    counts from 1. ``parameters`` are those of the teach pendant, on the line of FOLD and in the
+    ``Params`` line below, as written; ``None`` for folds of users.
     """
 
     title: str
@@ -63,26 +63,26 @@ class Fold:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Source:
-    """A text and the path it is shown with, ``/`` separated; line ends are as they were."""
+    """A text and the path with which it is shown, with ``/``; line ends are preserved."""
 
     text: str
     path: str = ""
 
     @property
     def name(self) -> str:
-        """Name of the module: that of the file without its ending."""
+        """The name of the module, which is the file name without its suffix."""
         return PurePosixPath(self.path).stem
 
     @property
     def kind(self) -> str:
-        """``src``, ``dat``, ``sub``, or whatever the name of the file ends in, in lower case."""
+        """``src``, ``dat``, ``sub`` or any other suffix of the file, in lower case."""
         return PurePosixPath(self.path).suffix[1:].lower()
 
     # ----------------------------------------------------------------------------- lines
 
     @cached_property
     def starts(self) -> tuple[int, ...]:
-        """Where each line begins; behind a line end at the end of the text there is one more."""
+        """The offset of each line; a line end at the end of the text begins another line."""
         return (0, *(found.end() for found in _LINE_END.finditer(self.text)))
 
     @cached_property
@@ -92,20 +92,20 @@ class Source:
 
     @cached_property
     def line_ends(self) -> tuple[str, ...]:
-        """Every line end as it was; one less than there are lines."""
+        """Every line end as it was; one fewer than there are lines."""
         return tuple(_LINE_END.findall(self.text))
 
     def line(self, number: int) -> str:
-        """A line by its number, from 1, without its line end; empty where there is none."""
+        """Return a line by its number, from 1, without its line end; empty if there is none."""
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Line and column of a character, both from 1."""
+        """Return the line and column of a character, both from 1."""
         line = bisect_right(self.starts, offset)
         return line, offset - self.starts[line - 1] + 1
 
     def offset(self, line: int, column: int) -> int:
-        """The inverse of `place`."""
+        """Return the offset of a line and column: the inverse of `place`."""
         return self.starts[line - 1] + column - 1
 
     # -------------------------------------------------------------------------- comments
@@ -128,19 +128,19 @@ class Source:
         return {comment.line: comment for comment in self.comments}
 
     def comment(self, line: int) -> Comment | None:
-        """The comment of a line, alone on it or behind something; a line has one at most."""
+        """Return the comment of a line, whether after code or alone; a line has at most one."""
         return self._by_line.get(line)
 
     # ----------------------------------------------------------------------------- folds
 
     @cached_property
     def folds(self) -> tuple[Fold, ...]:
-        """All folds in the order of their first lines, those that are never closed included."""
+        """All folds in the order of their first lines, including those that are never closed."""
         return tuple(sorted(self._folds(), key=lambda fold: fold.first))
 
     @cached_property
     def unbalanced_folds(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """The lines of all ``;FOLD`` that are never closed, of all ``;ENDFOLD`` that close none."""
+        """The lines of ``;FOLD`` without an end, and of ``;ENDFOLD`` without a begin."""
         opened, stray = [], []
         for comment, title in self._fold_marks:
             if title is not None:
@@ -153,7 +153,7 @@ class Source:
 
     @cached_property
     def _fold_marks(self) -> Sequence[tuple[Comment, str | None]]:
-        """The comments that begin a fold, with its title, and those that end one."""
+        """The comments that begin or end a fold, with the title or ``None``."""
         alone = [comment for comment in self.comments if comment.is_alone]
         found = [(comment, _MARK.match(comment.text)) for comment in alone]
         return [(comment, mark[1]) for comment, mark in found if mark]
@@ -180,7 +180,7 @@ class Source:
 
 
 def _split(title: str) -> tuple[str, bool, str]:
-    """What a FOLD line shows, whether it has parameters, and these."""
+    """Return the title of a FOLD line, whether it has parameters, and the parameters."""
     found = _PARAMETERS.search(title)
     if found is None:
         return title, False, ""

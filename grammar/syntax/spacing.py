@@ -1,11 +1,11 @@
-"""Spacing of tokens: the blank before and after each, and its letter case.
+"""Spacing of tokens: the blanks before and after each, and its letter case.
 
-What the style says nothing about stays as its author wrote it, but for runs of blanks, which become
-one. In declarations, data lists and heads of routines nothing changes between tokens: they are
-often set as tables, or by the templates of the controller.
+If the style has no rule, the spacing stays as it was written, except that runs of blanks become
+one. In declarations, data lists and heads of routines nothing changes between tokens: these are
+often laid out as tables, or by templates of the controller.
 
-How real programs are written decided: in 583 public files nearly every ``DELAY=0`` is set tight and
-most comparisons are not, while parentheses, calls and products are set in both ways.
+The style follows real programs: in 583 public files nearly every ``DELAY=0`` has no blanks and most
+comparisons have them, while parentheses, calls and products occur in both ways.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from typing import NamedTuple
 from grammar.parser.lexer import Lexer
 from grammar.parser.tree import Outline
 
-# Memory stays flat on corpora of any size.
+# Bounds of the cache.
 _MOST_REMEMBERED = 200_000
 _WIDEST_REMEMBERED = 1_000
 
 
 class Gap(Enum):
-    """What a token asks for on one of its sides."""
+    """The spacing that a token needs on one of its sides."""
 
     AS_WRITTEN = "as written"
     NONE = "none"
@@ -33,7 +33,7 @@ class Gap(Enum):
 
 
 class Setting(NamedTuple):
-    """How a token is set; ``is_upper`` where it is a keyword."""
+    """The spacing of a token; ``is_upper`` if it is a keyword."""
 
     before: Gap
     after: Gap
@@ -41,7 +41,7 @@ class Setting(NamedTuple):
 
 
 _OPERATORS = frozenset("OR B_OR EXOR B_EXOR AND B_AND".split())
-# Keywords that stand for a value, a type, a way to pass a parameter, or a sign.
+# Rules whose keywords are values, types, parameter modes, signs or names.
 _OPERANDS = frozenset(
     "literal type predefinedType positionType parameterMode factor name keyword".split()
 )
@@ -49,7 +49,7 @@ _LISTED = frozenset("place trigger splineItem cyclicSignal".split())
 
 
 def _gaps(rule: str, above: str, token: str, is_keyword: bool) -> tuple[Gap, Gap]:
-    """What a token of ``rule``, itself part of the rule ``above``, asks for on either side."""
+    """Return the spacing of a token before and after; ``rule`` is its rule, ``above`` the next."""
     match token:
         case "COMMA":
             return Gap.NONE, Gap.FREE
@@ -76,7 +76,7 @@ class Spacing:
         self._known: dict[tuple[Outline, bool], tuple[Setting, ...]] = {}
 
     def line(self, outline: Outline, *, as_written: bool) -> tuple[Setting, ...]:
-        """How the tokens of a rule within a line are set; ``as_written`` for tables."""
+        """Return the spacing of the tokens of a rule within a line; ``as_written`` for tables."""
         found = self._known.get((outline, as_written))
         if found is None:
             found = tuple(self._walk(outline, as_written))
@@ -89,7 +89,7 @@ class Spacing:
     def token(
         self, kind: int, rule: str, above: str = "", beyond: str = "", *, as_written: bool = False
     ) -> Setting:
-        """How a token is set, given the rules that it lies in from the inside out."""
+        """Return the spacing of a token, given the rules around it from the innermost outwards."""
         is_keyword = self._lexer.is_keyword(kind)
         is_upper = is_keyword and rule not in ("name", "keyword")
         if rule == "positionType" and above == "name":  # a type by its place, or a plain name
@@ -109,7 +109,7 @@ class Spacing:
 
 
 def set_line(lexemes: Sequence[str], settings: Sequence[Setting], written: Sequence[str]) -> str:
-    """The tokens of a line as they are to be set; ``written`` are the blanks before each."""
+    """Return the text of a line with its spacing; ``written`` are the blanks before each token."""
     out: list[str] = []
     evened = ""
     for place, (lexeme, setting) in enumerate(zip(lexemes, settings, strict=True)):
@@ -123,7 +123,7 @@ def set_line(lexemes: Sequence[str], settings: Sequence[Setting], written: Seque
 
 
 def _gap(asked: tuple[Gap, Gap], written: str, evened: str) -> str:
-    """The blanks between two tokens; ``evened`` are those of an operator with both sides alike."""
+    """Return the blanks between two tokens; ``evened`` are those around a balanced operator."""
     if Gap.AS_WRITTEN in asked:
         return written
     if Gap.NONE in asked:

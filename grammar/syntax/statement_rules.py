@@ -1,10 +1,10 @@
-"""Drafts of tree nodes for each rule of the grammar that lies within a line.
+"""AST nodes for the rules of the grammar that lie within a line.
 
-One function a rule, or one for several that are alike. Each gets what the rule consists of, in the
-order of the text, and says which node that is (`grammar.syntax.node_plans`). Those of expressions
-stand in `grammar.syntax.expression_rules`; rules that span lines are built in
-`grammar.syntax.build`. A rule that is new to the grammar needs an entry in one of the three, unless
-it is named after its node, as ``waitFor`` would be after `WaitFor`, and has the fields in order.
+There is one function for each rule, or for several similar ones. It gets the children of the rule
+in the order of the text and drafts its node (`grammar.syntax.node_plans`). The functions for
+expressions are in `grammar.syntax.expression_rules`; rules that span lines are built in
+`grammar.syntax.build`. A new rule of the grammar needs an entry in one of the three, unless it is
+named after its node, such as ``waitFor`` for `WaitFor`, and has the fields in order.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def _with_value(span: Span, plain: ast.Declarator, value: ast.Expression) -> ast
 
 
 def _statement(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    """What can be done: a call is an expression too, and becomes a statement here."""
+    """Return the statement; a call is an expression too, and is wrapped in a statement here."""
     (only,) = parts
     if only.symbol == "call":
         return draft.over(ast.CallStatement, parts, only.value)
@@ -170,13 +170,13 @@ def _spline_item(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 
 
 def _only(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    """A rule that is a choice between others."""
+    """Return the value of the only child: the rule is a choice between rules."""
     (only,) = parts
     return only.value
 
 
 def _all(symbol: str) -> Rule:
-    """A rule that is a list."""
+    """Return a function for a rule that is a list of ``symbol``."""
 
     def rule(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
         return values_of(parts, symbol)
@@ -185,11 +185,11 @@ def _all(symbol: str) -> Rule:
 
 
 def _symbol(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    """A rule that is a choice between keywords."""
+    """Return the keyword: the rule is a choice between keywords."""
     return parts[0].symbol
 
 
-#: Rules that mean what their only child means.
+#: Rules that mean the same as their only child.
 CHAINS = frozenset(
     "expression disjunction exclusion conjunction sum product factor composition primary target "
     "frame literal constant argument caseValue initialValue definition".split()
@@ -197,7 +197,10 @@ CHAINS = frozenset(
 
 
 def _in_order(kind: type[ast.Node]) -> Rule:
-    """A rule that has the fields of its node in their order; those at the end may be left out."""
+    """Return a function for a rule that has the fields of its node in order.
+
+    Fields at the end may be missing.
+    """
     count = len(fields(kind)) - 1
 
     def rule(draft: Draft, parts: Sequence[DraftPart]) -> Value:
@@ -211,7 +214,7 @@ def _rule_name(kind: type[ast.Node]) -> str:
     return kind.__name__[0].lower() + kind.__name__[1:]
 
 
-#: Rules that are named after a node need no entry where `_in_order` makes it.
+#: Functions by rule. A rule named after its node needs no entry if `_in_order` is enough.
 RULES: Mapping[str, Rule] = {
     **{_rule_name(kind): _in_order(kind) for kind in ast.TEMPLATES},
     **EXPRESSION_RULES,

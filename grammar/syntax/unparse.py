@@ -1,9 +1,9 @@
-"""From the abstract syntax tree back to text: one statement a line, in the style of `krl format`.
+"""Printing a syntax tree: one statement on each line, in the style of `krl format`.
 
-How a node is written stands beside it (`grammar.syntax.ast.template`). Reading the text again gives
-a tree that says the same (`grammar.syntax.walk.same`). Comments, folds and blank lines are not in
-the tree and so not in the text: `grammar.syntax.formatter` keeps them. A tree made by hand may have
-operands that bind weaker than their operator; they are put in parentheses.
+How a node is written is declared beside it (`grammar.syntax.ast.template`). Parsing the text gives
+an equal tree (`grammar.syntax.walk.same`). Comments, folds and blank lines are not in the tree and
+therefore not in the text; `grammar.syntax.formatter` keeps them. In a tree that was not parsed,
+operands may bind more weakly than their operator; they are put in parentheses.
 
 Blocks are printed without recursion, expressions with it (`grammar.syntax.node_plans.MAX_DEPTH`).
 """
@@ -19,15 +19,15 @@ from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, left_chain
 
 _INDENT = "  "
-# A file of a megabyte may hold 100,000 nested blocks; indented in full it would have gigabytes.
+# A file of a megabyte may have 100,000 nested blocks; fully indented it would need gigabytes.
 _DEEPEST = 60
-#: What stands before, between and after the items of a list.
+#: Text before, between and after the items of a list.
 _LISTS = {"indices": ("[", ",", "]"), "path": ("/", "/", "")}
 _FIELD = re.compile(r"<(\w+)(?:\|([^>]*))?>")
 
 
 def unparse(module: ast.Module) -> str:
-    """The text of a module, with line feeds."""
+    """Return the text of a module, with line feeds as line ends."""
     lines = [header.text for header in module.headers]
     todo: list[tuple[int, str | ast.Node]] = [(0, module.content)]
     while todo:
@@ -43,17 +43,17 @@ def unparse(module: ast.Module) -> str:
 
 
 def indent(depth: int) -> str:
-    """The blanks before a line that lies in so many blocks."""
+    """Return the indentation of a line that lies in ``depth`` blocks."""
     return _INDENT * min(depth, _DEEPEST)
 
 
 def expression(node: ast.Expression) -> str:
-    """The text of an expression."""
+    """Return the text of an expression."""
     return _text(node)
 
 
 def _text(node: ast.Node) -> str:
-    """The text of what lies within a line."""
+    """Return the text of a node that lies within a line."""
     printer = _PRINTERS.get(type(node))
     if printer is not None:
         return printer(node)
@@ -65,7 +65,7 @@ def _text(node: ast.Node) -> str:
 
 
 class _Field(NamedTuple):
-    """A field in a template, and what is written where it has a value."""
+    """A field in a template, and the text to write if it has a value."""
 
     name: str
     text: str | None
@@ -83,7 +83,7 @@ class _Field(NamedTuple):
 
 
 class _Line(NamedTuple):
-    """A line of a template; ``body`` is the field that it holds the lines of, if any."""
+    """A line of a template; ``body`` is the field whose nodes it stands for, if any."""
 
     depth: int
     body: str | None
@@ -138,7 +138,7 @@ def _list(name: str, items: Sequence[ast.Node | str | None]) -> str:
 
 
 def _lines(node: ast.Node) -> Iterator[tuple[int, str | ast.Node]]:
-    """What a block consists of, with how much more it is indented than the block."""
+    """Yield the lines and nodes of a block, each with its additional indentation."""
     for line in _TEMPLATES[type(node)]:
         if line.body is None:
             text = line.text(node)
@@ -202,5 +202,5 @@ def _unary(node: ast.Unary) -> str:
     return f"{node.operator}{blank}{_operand(node.operand, _UNARY)}"
 
 
-#: Nodes whose text depends on what binds tighter.
+#: Nodes whose operands may need parentheses.
 _PRINTERS: Mapping[type[Any], Callable[[Any], str]] = {ast.Unary: _unary, ast.Binary: _binary}

@@ -1,4 +1,4 @@
-"""Walks over the syntax tree: what lies below a node, what an expression is made of, equality."""
+"""Walks over the syntax tree: children, statements of blocks, operands, structural equality."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NAMES: dict[type, tuple[str, ...]] = {}
 
 
 def _names(node: Node) -> tuple[str, ...]:
-    """What a node holds besides its span."""
+    """Return the fields of a node except its span."""
     kind = type(node)
     if kind not in _NAMES:
         _NAMES[kind] = tuple(field.name for field in fields(node) if field.name != "span")
@@ -20,7 +20,7 @@ def _names(node: Node) -> tuple[str, ...]:
 
 
 def children(node: Node) -> Sequence[Node]:
-    """The nodes directly below a node, in the order of the text where that has a meaning."""
+    """Return the direct children of a node, in the order of the text where that matters."""
     names = _INNER[type(node)]
     if not names:
         return ()
@@ -40,11 +40,11 @@ _INNER: Mapping[type[Node], tuple[str, ...]] = {
     kind: tuple(field.name for field in fields(kind) if field.type not in _PLAIN)
     for kind in Node.__subclasses__()
 }
-#: The kinds of node that nothing can lie below.
+#: The kinds of node that cannot have children.
 LEAVES = frozenset(kind for kind, names in _INNER.items() if not names)
 
 
-#: The fields of each kind of block that hold nodes on lines of their own, in the order of the text.
+#: For each kind of block the fields whose nodes have lines of their own, in the order of the text.
 BODIES: Mapping[type[Node], tuple[str, ...]] = {
     kind: names
     for kind, lines in ast.TEMPLATES.items()
@@ -53,7 +53,10 @@ BODIES: Mapping[type[Node], tuple[str, ...]] = {
 
 
 def bodies(node: Node) -> Iterator[tuple[ast.Statement, ...]]:
-    """The lists of statements directly in a block, in the order of the text; none of others."""
+    """Yield the statement lists directly in a block, in the order of the text.
+
+    Yields nothing for a node that is no block.
+    """
     for name in BODIES.get(type(node), ()):
         body = getattr(node, name)
         if body and type(body[0]) is ast.CaseBranch:
@@ -64,7 +67,7 @@ def bodies(node: Node) -> Iterator[tuple[ast.Statement, ...]]:
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """A node and all below it, each before what is below it; does not recurse."""
+    """Yield a node and all nodes below it, parents first; does not recurse."""
     todo = [node]
     while todo:
         here = todo.pop()
@@ -73,7 +76,7 @@ def walk(node: Node) -> Iterator[Node]:
 
 
 def same(left: Node, right: Node) -> bool:
-    """Whether two trees say the same, letter case of names included, spans left aside."""
+    """Return whether two trees are equal except for spans; letter case of names counts."""
     todo: list[tuple[object, object]] = [(left, right)]
     while todo:
         one, other = todo.pop()
@@ -88,10 +91,10 @@ def same(left: Node, right: Node) -> bool:
 
 
 def left_chain(node: ast.Binary) -> list[ast.Binary]:
-    """An operation and those that its left operands are, the innermost first; sums of any length.
+    """Return an operation and the chain of its left operands, the innermost first.
 
-    Whoever recurses into right operands and into the left one of the first goes no deeper than
-    `grammar.syntax.node_plans.MAX_DEPTH`.
+    The chain of a long sum may have any length. Code that recurses into the right operands, and
+    into the left operand of the first, goes no deeper than `grammar.syntax.node_plans.MAX_DEPTH`.
     """
     chain = [node]
     while type(left := chain[-1].left) is ast.Binary:
@@ -100,18 +103,18 @@ def left_chain(node: ast.Binary) -> list[ast.Binary]:
 
 
 def without_parentheses(node: ast.Expression) -> ast.Expression:
-    """What stands in the parentheses."""
+    """Return the expression inside parentheses."""
     while type(node) is ast.Parenthesised:
         node = node.inner
     return node
 
 
-#: The kinds of node that say a place in memory.
+#: The kinds of node that denote a place in memory.
 PLACES = frozenset({ast.Variable, ast.Subscript, ast.Member})
 
 
 def root_variable(node: ast.Expression) -> ast.Variable | None:
-    """What indices and components are taken of: the variable ``a`` of ``a.b[1].c``."""
+    """Return the variable ``a`` of ``a.b[1].c``, or ``None`` if the base is no variable."""
     while type(node) is ast.Subscript or type(node) is ast.Member:
         node = node.base
     return node if type(node) is ast.Variable else None
