@@ -179,6 +179,7 @@ class Signatures:
 
     def _number(self, use: DataUse) -> _Kind:
         begins_at_0 = use.is_assigned and not (use.is_index or use.is_part or use.indices)
+        begins_at_0 &= not use.cases or "0" in use.cases  # else it is in none of its states
         value = "0" if begins_at_0 else use.asked_for or "1"
         return _Kind("REAL", f"{value}.0") if REAL in use.types else _Kind("INT", value)
 

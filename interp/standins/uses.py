@@ -56,8 +56,8 @@ class DataUse:
     ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
     kinds of motions that go to it. ``is_pulsed``: PULSE sets it; ``is_index``: an array has it as
     an index; ``is_part``: it is a member; ``is_compared``: it is asked whether it is another value.
-    ``asked_for`` is the first number that a SWITCH or a comparison asks for, ``left_by`` the truth
-    value that ends a loop.
+    ``asked_for`` is the first number that a SWITCH or a comparison asks for, ``cases`` are all that
+    a SWITCH asks for, ``left_by`` is the truth value that ends a loop.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -75,6 +75,7 @@ class DataUse:
     is_part: bool = False
     is_compared: bool = False
     asked_for: str = ""
+    cases: set[str] = field(default_factory=set)
 
     def member(self, name: ast.Name) -> DataUse:
         """How a member of it is used."""
@@ -286,9 +287,10 @@ class Uses:
         for branch in node.branches:
             for value in branch.values:
                 self._unify(node.selector, value)
-        for branch in node.branches[:1]:
-            for value in branch.values:
                 self._meets(node.selector, value)
+                use = self._use(node.selector)
+                if use is not None:
+                    use.cases.add(_number(value))
 
     def _motion(self, node: ast.Motion) -> None:
         for point in (node.auxiliary, node.target):
@@ -328,13 +330,10 @@ class Uses:
 
     def _meets(self, node: ast.Expression, value: ast.Expression) -> None:
         """A number is asked whether it is another one: that is a value that it may have."""
-        use, sign = self._use(node), ""
-        if isinstance(value, ast.Unary) and value.operator == "-":
-            value, sign = value.operand, "-"
+        use = self._use(node)
         if use is not None:
             use.is_compared = True
-        if use is not None and isinstance(value, ast.IntegerLiteral) and not use.asked_for:
-            use.asked_for = f"{sign}{value.value}"
+            use.asked_for = use.asked_for or _number(value)
 
     def _call(self, node: ast.Call) -> None:
         is_value = node not in self._statements
@@ -450,8 +449,10 @@ class Uses:
         """An expression is of a type as it is written, which no file may declare."""
         use = self._use(node)
         type_ = self.types.get(written.key) if written is not None else None
-        if use is not None and type_ is not None:
-            self._alike.append((use, type_))
+        if type_ is not None:
+            if use is not None:
+                self._alike.append((use, type_))
+            _meet(type_, self._type(node))
 
     def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
         """Both sides are of one type; no statement has whole arrays on its sides."""
@@ -474,20 +475,7 @@ class Uses:
             if type_ in (INT, REAL):
                 self._expect_number(node, type_)
             return
-        match type_:
-            case Constant(name=name):
-                use.constants.setdefault(name.upper(), name)
-            case Text() | Array(element=Scalar(name="CHAR")):
-                use.is_text = True
-            case Array(element=element, sizes=sizes):
-                use.indices = max(use.indices, len(sizes))
-                use.types.append(element)
-            case Aggregate(structure=structure, names=names):
-                use.types += [structure] if structure is not None else ()
-                for name in names:
-                    use.members.setdefault(name.upper(), DataUse())
-            case Scalar() | Structure() | Enumeration():
-                use.types.append(type_)
+        _meet(use, type_)
 
     def _expect_number(self, node: ast.Expression, type_: Type) -> None:
         """Operands of what is a number are; those of a long sum are asked about but once."""
@@ -500,6 +488,34 @@ class Uses:
             operand = operand.left
         if operand is not node:
             self._expect(operand, type_)
+
+
+def _meet(use: DataUse, type_: Type) -> None:
+    """A use is met with a type."""
+    match type_:
+        case Constant(name=name):
+            use.constants.setdefault(name.upper(), name)
+        case Text() | Array(element=Scalar(name="CHAR")):
+            use.is_text = True
+        case Array(element=element, sizes=sizes):
+            use.indices = max(use.indices, len(sizes))
+            use.types.append(element)
+        case Aggregate(structure=structure, names=names):
+            use.types += [structure] if structure is not None else ()
+            for name in names:
+                use.members.setdefault(name.upper(), DataUse())
+        case Scalar() | Structure() | Enumeration():
+            use.types.append(type_)
+
+
+def _number(node: ast.Expression) -> str:
+    """A number as it is written; empty for what is none."""
+    match node:
+        case ast.IntegerLiteral(value=value):
+            return str(value)
+        case ast.Unary(operator="-", operand=ast.IntegerLiteral(value=value)):
+            return f"-{value}"
+    return ""
 
 
 _PLAIN = (Kind.VARIABLE, Kind.PARAMETER)

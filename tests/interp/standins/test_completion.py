@@ -448,6 +448,22 @@ def test_negative_numbers_are_asked_for() -> None:
     assert "DECL GLOBAL INT APP_NUMBER=-17" in _data_list(program)
 
 
+@pytest.mark.parametrize(("last", "value"), [("2", "1"), ("0", "0")])
+def test_states_of_a_machine(last: str, value: str) -> None:
+    """A number that selects the next step begins with a step that there is."""
+    program = _main(f"SWITCH STEP\nCASE 1\nSTEP=2\nCASE {last}\nSTEP=1\nENDSWITCH\n")
+    assert f"DECL GLOBAL INT STEP={value}" in _data_list(program)
+
+
+def test_constants_that_are_only_passed() -> None:
+    """An enumeration that no file has, has the constants that parameters of it are given."""
+    text = "DEF main ( )\nshade (#BLUE )\nEND\nDEF shade (C :IN )\nDECL COLOURS C\n"
+    program = _program({"main.src": f"{text}IF C==#RED THEN\nENDIF\n$OUT[1]=TRUE\nEND\n"})
+    run = _run(program)
+    assert ("end", "") == _outcome(run)
+    assert [1] == [event.fields["number"] for event in run.events if event.kind == "out"]
+
+
 def test_index_that_is_counted() -> None:
     """What counts the elements of an array begins with the first one."""
     run = _run(_main("BUFFER[HEAD]=5\nHEAD=HEAD+1\n$OUT[HEAD]=TRUE\n"))
