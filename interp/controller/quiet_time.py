@@ -130,7 +130,7 @@ class QuietTime:
         standing = None if task.recurrent is None else task.recurrent.standing()
         if standing is None:
             return None
-        place = (standing, repr(blocked.request), task.idle_at, task.exempt_line)
+        place = (standing, repr(blocked.request), task.exempt_line)
         if _is_timed(task):
             return place
         wake = None if blocked.wake is None else blocked.wake - now

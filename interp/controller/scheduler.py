@@ -217,7 +217,10 @@ class Scheduler:
                     if blocked.wake is None or isinstance(blocked.request, Wait):
                         task.busy_at = self.state.clock.now  # it waited, and polled nothing
                     self.state.trace.origin = task.name, blocked.request.at
+                    changes = self._changes
                     answer = blocked.finish()
+                    if self._changes != changes:
+                        self.waits.acted(task, blocked.request, has_changed=True)
                     if answer is None and isinstance(blocked.request, Slice):
                         answer = self._free_slices(task)
                 else:
@@ -234,7 +237,7 @@ class Scheduler:
         clock = self.state.clock
         if task is not self._robot or task.levels:
             return 1
-        times = [self._limit + 1, self._next_time(), self.waits.idle_time(task)]
+        times = [self._limit + 1, self._next_time()]
         end = min(time for time in times if time is not None)
         return max(-(-(end - clock.now) // clock.cycle), 1)
 
@@ -260,7 +263,7 @@ class Scheduler:
             if task.slice_end != last:
                 task.slice_end, task.spent = last, 0
             task.spent += request.count if isinstance(request, StopAdvance) else 1
-            if task.spent > self.waits.requests_left(task, request, most):
+            if task.spent > self.waits.requests_left(task, most):
                 return self.waits.until(request, last, lambda: self._answer(task, request))
         exempt = task.exempt_line
         if exempt is not None and (request.at.file, request.at.line) != exempt:
@@ -269,11 +272,19 @@ class Scheduler:
         self.state.trace.origin = task.name, request.at
         if not isinstance(request, REPEATABLE):
             self.quiet.acts += 1
+        changes = self._changes
         answer = self.requests.answer(task, request)
+        self.waits.acted(task, request, has_changed=self._changes != changes)
         is_passed = isinstance(request, StopAdvance) and answer is None
         if is_passed and most is not None and task.exempt_line is None:
             return most - task.spent  # nothing is ahead, until it makes another request
         return answer
+
+    @property
+    def _changes(self) -> int:
+        """How often a program has changed a signal, a system variable or where the arm goes."""
+        changes = self.state.variables.writes + self.state.signals_changed + len(self.queue.points)
+        return changes - self.quiet.automatic.count
 
     def _end(self, task: Task, request: End) -> Answer:
         """The program has ended once the arm has come to where it left it [ADV-07]."""

@@ -9,6 +9,9 @@ began, and the program continues to wait.
 
 Flags change too, but only after five times the delay, and after the inputs: a flag that the program
 itself does not set by then is probably set by an option package, for example when a message comes.
+
+A line that reads inputs again and again for a second counts as a WAIT FOR from then on, if the
+program has changed no output, no system variable and not the place of the arm meanwhile.
 """
 
 from __future__ import annotations
@@ -32,6 +35,8 @@ fulfil waits after 1
 
 #: The largest number of inputs that are tried: more would have too many combinations.
 _MOST: Final = 10
+#: The time in µs after which a line that reads inputs counts as a wait.
+_POLLED: Final = 1_000_000
 #: The delay of flags as a multiple of that of inputs: usually the program sets its flags itself.
 _PATIENCE: Final = 5
 
@@ -50,6 +55,9 @@ class AutomaticInputs:
         self._scripted = frozenset(place for path in paths for place in _places(path))
         self._read: dict[_Place, None] = {}
         self._since: tuple[At, int] | None = None
+        self._is_loop = False
+        #: For each line: when it first read an input since the program changed anything or waited.
+        self._polls: dict[At, int] = {}
         self._changes: deque[tuple[_Place, bool]] = deque()
         #: The number of changes that were made.
         self.count = 0
@@ -65,14 +73,12 @@ class AutomaticInputs:
 
     @property
     def wake(self) -> int | None:
-        """The time of the next change in µs, ``None`` if it is unknown."""
-        then = self.next_change
-        return then if then is not None and then > self._before else None
-
-    @property
-    def next_change(self) -> int | None:
-        """The time in µs from which on the next input changes; ``None`` if there is none."""
-        return self._since[1] + self._delay if self._since is not None and self._changes else None
+        """The time in µs of the next change or of the next wait; ``None`` if it is unknown."""
+        if self._since is not None and self._changes:
+            then = self._since[1] + self._delay
+            return then if then > self._before else None
+        now = self._state.clock.now
+        return next((due for one in self._polls.values() if (due := one + _POLLED) > now), None)
 
     @property
     def _delay(self) -> int:
@@ -80,19 +86,33 @@ class AutomaticInputs:
         assert self._after is not None, "it fulfils waits"
         return self._after * (_PATIENCE if self._changes[0][0][0] == "$FLAG" else 1)
 
-    def was_read(self, path: Path) -> None:
-        """Note that the program has read a variable, possibly an input of a WAIT FOR condition."""
-        self._read |= dict.fromkeys(_places(path))
+    def was_read(self, path: Path, at: At) -> None:
+        """Note that a line has read a variable; change an input if it has waited long enough."""
+        places = dict.fromkeys(_places(path))
+        self._read |= places
         self._names[path_text(path)] = None
+        if places:
+            now = self._state.clock.now
+            is_over = now - self._polls.setdefault(at, now) >= _POLLED
+            if is_over and (self._since is None or not self._is_loop or self._since[0] == at):
+                self._is_loop = True
+                self._go_on(at, now)
 
     def begin(self) -> None:
-        """Note that the program has come to a WAIT FOR."""
+        """Note that the program has come to a WAIT FOR, or has changed something."""
         self._read.clear()
         self._names.clear()
+        self._polls.clear()
         self._since = None
 
-    def was_false(self, at: At, now: int) -> None:
-        """Note that the condition at ``at`` was FALSE at a time in µs; change an input if due."""
+    def was_false(self, at: At) -> None:
+        """Note that the condition of a WAIT FOR was FALSE; change an input if due."""
+        self._polls.clear()
+        self._is_loop = False
+        self._go_on(at, self._state.clock.now)
+
+    def _go_on(self, at: At, now: int) -> None:
+        """Note that the program waits at a line at a time in µs; change an input if due."""
         if self._after is None:
             return
         if self._since is None or self._since[0] != at:
@@ -106,6 +126,8 @@ class AutomaticInputs:
                 if flags:
                     every = (*flags, *inputs)
                     self._changes += _combinations({place: self._has(place) for place in every})
+        elif self._before == now:
+            return  # one change a cycle
         before = self.waited.get(at, (0, ()))[0]
         self.waited[at] = before + now - self._before, tuple(self._names)
         self._before = now

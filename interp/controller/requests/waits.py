@@ -13,13 +13,28 @@ from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.clock import microseconds
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
-from interp.port.requests import Confirm, Halt, Poll, Read, Request, Slice, Wait
+from interp.port.requests import (
+    BrakeArm,
+    Confirm,
+    Halt,
+    Invoke,
+    Poll,
+    Read,
+    Request,
+    Resume,
+    Slice,
+    Wait,
+    Write,
+)
 from interp.values.json_form import to_json
 
-#: A program that has only read variables for this time, in µs, may make only so many requests in a
+#: A program that has changed nothing for this time, in µs, may make only so many requests in a
 #: slice.
 IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
+#: Requests that change nothing, and those that always do something.
+_LOOKS: Final = (Read, Slice)
+_ACTS: Final = (Invoke, Halt, Confirm, BrakeArm, Resume)
 
 
 class Waits:
@@ -81,43 +96,29 @@ class Waits:
             task.polling = request.at
             self._state.trace.record(task.name, "wait", request.at)
         if is_robot:
-            self._automatic.was_false(request.at, self._state.clock.now)
+            self._automatic.was_false(request.at)
         return self.until(request, self.next_slice(task), lambda: None)
 
-    def requests_left(self, task: Task, request: Request, most: int) -> int:
+    def requests_left(self, task: Task, most: int) -> int:
         """Return how many requests a program may make in this slice.
 
-        These are few if it has only read variables for a second: it is in a loop that waits until
-        something changes. Automatic inputs then change as they do for a WAIT FOR.
+        These are few if it has changed nothing for a second: it is in a loop that waits until
+        something changes.
         """
-        now = self._state.clock.now
-        if not isinstance(request, Read | Slice):
-            if task.busy_at != now or task.idle_at is not None:
-                self._busy(task, request)
-            return most
-        if now - task.busy_at < IDLE_AFTER or task.level is not None:
-            return most
-        if task.name == "robot" and task.spent == 1:  # once a slice
-            if task.idle_at is None:
-                task.idle_at = request.at
-            self._automatic.was_false(task.idle_at, now)
-        return min(most, _IDLE_REQUESTS)
+        is_idle = self._state.clock.now - task.busy_at >= IDLE_AFTER and task.level is None
+        return min(most, _IDLE_REQUESTS) if is_idle else most
 
-    def _busy(self, task: Task, request: Request) -> None:
-        task.busy_at, task.idle_at = self._state.clock.now, None
-        if task.name == "robot" and not isinstance(request, Poll):
+    def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
+        """A request was answered, and perhaps the answer has changed something."""
+        if has_changed or not isinstance(request, (*_LOOKS, Write)):
+            task.busy_at = self._state.clock.now
+        if task.name == "robot" and (has_changed or isinstance(request, _ACTS)):
             self._automatic.begin()
 
     def slice(self, task: Task, request: Slice) -> Answer:
         """Let a program that has used up its statements continue in the next slice."""
         more = (request.count - 1) * self._state.clock.cycle
         return self.until(request, self.next_slice(task) + more, lambda: None)
-
-    def idle_time(self, task: Task) -> int | None:
-        """Return the time in µs from which inputs change for a program that only reads, if any."""
-        if task.idle_at is not None:
-            return self._automatic.next_change
-        return task.busy_at + IDLE_AFTER if self._automatic.is_on else None
 
     # ----------------------------------------------------------------------- the operator
 

@@ -49,6 +49,8 @@ class ControllerState:
         self.variables.connect(["$TIMER", "$TIMER_STOP", "$TIMER_FLAG"], self.timers)
         self.observers: list[Callable[[Path, Value], None]] = []
         self.program_states: dict[TaskName, str] = {"robot": "P_RESET", "submit": "P_FREE"}
+        #: The number of changes of signals.
+        self.signals_changed = 0
         #: Statements that failed and were skipped, each with the reason of its first failure.
         self.skipped: dict[tuple[str, int], Exception] = {}
 
@@ -93,6 +95,7 @@ class ControllerState:
 
     def signal_changed(self, name: str, place: int, value: Value) -> None:
         """Record a change of a signal in the trace, and notify the observers."""
+        self.signals_changed += 1
         self.trace.record_change(
             _SIGNAL_KINDS[name], signal=name, number=place, value=to_json(value)
         )

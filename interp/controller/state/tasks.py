@@ -79,10 +79,9 @@ class Task:
     ``exempt_line`` is the line after a CONTINUE, whose requests do not stop the advance run.
     ``spent`` is the number of requests in the slice that ends at ``slice_end``. ``triggers`` wait
     for the next motion. ``busy_at`` is the time in µs at which the program last did more than read
-    variables; ``idle_at`` is its place when it had only read them for long. ``polling`` is the
-    place of a waiting WAIT FOR, ``last_at`` the place of the last request. ``counting`` and
-    ``recurrent`` are the executor if it has that protocol; checking each time would take longer
-    than a slice.
+    variables and write the values that they had. ``polling`` is the place of a waiting WAIT FOR,
+    ``last_at`` the place of the last request. ``counting`` and ``recurrent`` are the executor if it
+    has that protocol; checking each time would take longer than a slice.
     """
 
     name: TaskName
@@ -98,7 +97,6 @@ class Task:
     polling: At | None = None
     last_at: At = field(default_factory=lambda: At("", 0, 0))
     busy_at: int = 0
-    idle_at: At | None = None
     triggers: list[SetTrigger] = field(default_factory=list)
     signals: dict[str, SwitchSignal] = field(default_factory=dict)
     is_over: bool = False

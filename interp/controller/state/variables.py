@@ -192,20 +192,19 @@ class Variables:
             self.writes += 1
             self._loose[path] = copied(value)
             return
-        before = self._scalar(path)
+        before = self._text(path)
         if name in self._twice:  # existing snapshots keep the old value
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
-        self.writes += before is None or before != self._scalar(path)
+        self.writes += before is None or before != self._text(path)
 
-    def _scalar(self, path: Path) -> str | None:
-        """Return a scalar as text, so that 0.0 and -0.0 differ, and 1 and TRUE; else ``None``."""
+    def _text(self, path: Path) -> str | None:
+        """Return a value as text, so that 0.0 and -0.0 differ, and 1 and TRUE; else ``None``."""
         try:
-            value = part(self._root(str(path[0])), path[1:])
+            return repr(part(self._root(str(path[0])), path[1:]))
         except Fault:
             return None
-        return repr(value) if isinstance(value, int | float) else None
 
     def _is_loose(self, path: Path) -> bool:
         """Return whether a path is a part of a variable of unknown type, perhaps of an option.

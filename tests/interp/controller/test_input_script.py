@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grammar.syntax.source import Source
 from interp.controller import Script, ScriptError
 from interp.controller.inputs.input_script import (
     Answer,
@@ -22,6 +23,8 @@ from interp.controller.inputs.input_script import (
     Shown,
     Word,
 )
+from interp.program.load import load
+from interp.session import EXECUTORS, RunSetup, run_program
 
 Go = Callable[..., Any]
 
@@ -124,6 +127,7 @@ def test_any_text(text: str) -> None:
 
 
 PROGRAM = "DEF main()\nINT I\n{}END\n"
+HOME = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\n"
 
 
 def test_events_repeat(go: Go) -> None:
@@ -161,6 +165,36 @@ def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bo
     assert cycles == pytest.approx(ran.times("in"))
     assert ("time" if "FLAG" in condition else "end") == ran.outcome.ending
     assert len(changes) == ran.controller.automatic_inputs.count
+
+
+@pytest.mark.parametrize(
+    ("body", "seconds"),
+    [
+        ("WHILE NOT $IN[5]\nWAIT SEC 0.4\nENDWHILE\n", 2.448),
+        ("REPEAT\n$OUT[3]=FALSE\n$OV_PRO=100\nUNTIL $IN[5]\n", 2.0),
+        (f"LOOP\n{HOME}IF $IN[5] THEN\nEXIT\nENDIF\nENDLOOP\n", 2.0),
+        ("WAIT FOR NOT $IN[7]\nWHILE NOT $IN[5]\nENDWHILE\n", 2.0),
+        ("WAIT FOR $IN[7]\nWHILE NOT $IN[5] OR NOT $IN[7]\nENDWHILE\n", 3.06),
+        ("WAIT FOR look ( )\n", 1.0),
+    ],
+)
+def test_loops_that_look_at_inputs_wait_too(body: str, seconds: float) -> None:
+    """Waits, values that were there, and a motion to where the arm stands change nothing."""
+    text = f"DEF main ( )\n{body}$OUT[1]=TRUE\nEND\nDEFFCT BOOL look ( )\nRETURN $IN[5]\nENDFCT\n"
+    program = load([Source(text, "main.src")], "main.src")
+    script = Script.read("fulfil waits after 1")
+    setups = [RunSetup(executor=one, script=script, until=9_000_000) for one in EXECUTORS]
+    first, *others = [run_program(program, setup) for setup in setups]
+    assert "end" == first.outcome.ending
+    assert seconds == pytest.approx(first.outcome.time / 1e6, abs=0.05)
+    assert all(first.events == other.events for other in others)
+
+
+def test_loop_that_does_something_is_no_wait(go: Go) -> None:
+    """Inputs stay as they are where a program switches outputs meanwhile."""
+    body = "WHILE NOT $IN[5]\n$OUT[2]=NOT $OUT[2]\nWAIT SEC 0.5\nENDWHILE\n"
+    ran = go(f"DEF main()\n{body}END\n", "fulfil waits after 1", until=9.0)
+    assert ("time", 0) == (ran.outcome.ending, ran.controller.automatic_inputs.count)
 
 
 @pytest.mark.parametrize("condition", ["$FLAG[7]", "$IN[2] AND $FLAG[7]"])
