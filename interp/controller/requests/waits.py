@@ -109,7 +109,7 @@ class Waits:
         return min(most, _IDLE_REQUESTS) if is_idle else most
 
     def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
-        """A request was answered, and perhaps the answer has changed something."""
+        """Note that a request was answered, which may have changed something."""
         if has_changed or not isinstance(request, (*_LOOKS, Write)):
             task.busy_at = self._state.clock.now
         if task.name == "robot" and (has_changed or isinstance(request, _ACTS)):
