@@ -1,10 +1,11 @@
-"""Export for third parties who test an executor or a parser: one archive.
+"""Export of the cases as one archive, for third parties who test an executor or a parser.
 
-``expectations.json`` has the cases with all they expect, as ``expectations.schema.json`` describes
-it; ``cases/`` their files, as a controller holds them; ``reference.json`` what the tree interpreter
-and the planned arm do with them, in the form of a recording (`conformance.recording`), so that it
-can be compared with one's own and evaluated as one. A fault is identified by the number of its
-message; where none is known any fault will do, as our words for it are not binding.
+``expectations.json`` has the cases with their expectations, in the format of
+``expectations.schema.json``. ``cases/`` has their files, as a controller holds them.
+``reference.json`` is what the tree interpreter and the planned arm do with them, in the form of a
+recording (`conformance.recording`), so that it can be compared with one's own results and evaluated
+like them. A fault is identified by its message number; if none is known, any fault meets the
+expectation, because our names of faults are not binding.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ SCHEMA: Final[Mapping[str, Any]] = {
 
 
 def expectations_of(cases: Sequence[Case]) -> dict[str, Any]:
-    """The cases with what they expect, as `SCHEMA` has it."""
+    """Return the cases with their expectations, in the format of `SCHEMA`."""
     return {"format": EXPECTATIONS, "cases": [_case(case) for case in cases]}
 
 
@@ -154,7 +155,7 @@ def _moment(moment: Anchor) -> dict[str, Any]:
 
 
 def reference_of(results: Sequence[CaseResult], version: str) -> dict[str, Any]:
-    """The first result of each case as a recording of this project's own executor."""
+    """Return the first result of each case, as a recording of this project's own executor."""
     seen = [(one.case, one.results[0].observation) for one in results]
     return {
         "format": FORMAT,
@@ -174,7 +175,7 @@ def _seen(case: Case, seen: Observation) -> dict[str, Any]:
         "findings": [
             {"file": one.file, "line": one.line, "severity": one.severity, "message": one.message}
             for one in seen.findings
-            if one.severity != "note"  # no controller has notes of ours
+            if one.severity != "note"  # a controller does not report our notes
         ],
     }
     if seen.path is not None and len(seen.path.times) > 1:
@@ -186,7 +187,7 @@ def _seen(case: Case, seen: Observation) -> dict[str, Any]:
     return found
 
 
-#: What the reference has watched even where it did not happen.
+#: Kinds of events that the reference observes, even if none of them happened.
 _WATCHED: Final = (
     "advance_stop anout assign blend_apex blend_end blend_start brake call end halt "
     "interrupt_enter line "
@@ -195,7 +196,7 @@ _WATCHED: Final = (
 
 
 def write_export(path: Path, results: Sequence[CaseResult], version: str) -> None:
-    """Write the archive; the same results make the same bytes."""
+    """Write the archive; equal results produce equal bytes."""
     cases = [one.case for one in results]
     texts = {
         "expectations.json": _json(expectations_of(cases)),

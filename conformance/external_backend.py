@@ -1,13 +1,13 @@
-"""Every case on a third party's executor or robot, in one line.
+"""All cases on the executor or robot of a third party, with one call.
 
     from conformance.external_backend import prove
 
     prove(executor=MyExecutor).assert_conforms()
 
-An executor is made as ours are: ``MyExecutor(program, routine, limits, sink)`` gives an
-`interp.port.executor.Executor` for a checked program. A robot is made by ``MyRobot(machine,
-cycle)``, an `interp.robot.simulation.robot.Robot`. Each case is evaluated by what it expects, and
-compared with the reference event by event: the tree interpreter, and the kinematic robot.
+``MyExecutor(program, routine, limits, sink)`` creates an `interp.port.executor.Executor` for a
+checked program. ``MyRobot(machine, cycle)`` creates an `interp.robot.simulation.robot.Robot`. Each
+case is evaluated by its expectations, and compared event by event with the reference: the tree
+interpreter, and the kinematic robot.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class NotConforming(AssertionError):
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """What came of it."""
+    """The results of all cases."""
 
     results: tuple[CaseResult, ...]
 
@@ -57,7 +57,7 @@ class Proof:
         ]
 
     def assert_conforms(self) -> None:
-        """Raise `NotConforming` where a case failed, or where none could be evaluated."""
+        """Raise `NotConforming` if a case failed, or if no case could be evaluated."""
         every = [result for one in self.results for result in one.results]
         candidate = [one for one in every if CANDIDATE in (one.executor, one.robot)]
         if all(one.verdict == "skipped" for one in candidate):
@@ -74,9 +74,10 @@ def prove(
     select: Sequence[str] = (),
     cases: Path = CASES,
 ) -> Proof:
-    """Run all cases that run programs, or those selected, on the candidate beside the reference.
+    """Run all cases of phase run, or the selected ones, on the candidate and on the reference.
 
-    Raises `ValueError` where neither is given, `CaseError` for a selection that names nothing.
+    Raises `ValueError` if neither executor nor robot is given, and `CaseError` for a selection that
+    names nothing.
     """
     if executor is None and robot is None:
         raise ValueError("give an executor, a robot, or both")

@@ -1,4 +1,4 @@
-"""Results as JUnit XML, one test case for each case, executor and robot."""
+"""Results as JUnit XML, with one test case for each case, executor and robot."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from support.files.atomic_write import atomic_path
 
 
 def write_junit(results: Sequence[CaseResult], target: Path) -> None:
-    """Write the file whole or not at all. Failures are failures, all else but a pass is skipped."""
+    """Write the file atomically; verdicts other than pass and fail are skipped tests."""
     report = JUnitXml("conformance")
     tests: dict[str, list[TestCase]] = {}
     for one in results:
         tests.setdefault(one.case.suite, []).extend(_test(one, result) for result in one.results)
     for name, cases in tests.items():
         suite = TestSuite(name)
-        suite.add_testcases(cases)  # one by one, it counts all of them each time
+        suite.add_testcases(cases)  # adding them singly would recount all of them each time
         report.add_testsuite(suite)
     with atomic_path(target) as part:
         report.write(str(part), pretty=True)

@@ -1,6 +1,6 @@
-"""Linter of cases: defects beyond the format, and rules without a case.
+"""The linter of cases: defects beyond the format, and rules without a case.
 
-A case states one fact. It has its own title, the shortest program that shows the fact, and names
+A case states one fact. It has a unique title, the shortest program that shows the fact, and names
 that a controller accepts.
 """
 
@@ -43,7 +43,7 @@ SUITES: Final = (
 _ROBOTS: Final = ("none", "kinematic", "mujoco")
 _STEM: Final = re.compile(r"[a-z][a-z0-9_]{0,23}")
 _LONGEST: Final = 100
-#: Words of which the clause that a hard expectation rests on has one, by how it begins.
+#: For expectations with these beginnings, words of which the clause they rest on must have one.
 _SPOKEN_OF: Final = {
     "path line": "line",
     "path circle": "circle CIRC",
@@ -55,20 +55,20 @@ _SPOKEN_OF: Final = {
     "resume": "RESUME",
     "halt": "HALT",
 }
-#: An expectation of a message of the controller: its number, and numbers in rules, "3214 to 3217".
+#: An expectation of a message number, and the syntax of numbers in rules, as in "3214 to 3217".
 _MESSAGE: Final = re.compile(r"(?:fault|message|error KSS|warning KSS) ?(\d{2,})")
 _NUMBERS: Final = re.compile(r"\d{2,}(?: to \d{2,})?")
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """Which cases there are for each rule, and the rules that lack one."""
+    """The cases of each rule, and the rules that lack one."""
 
     cases: Mapping[str, tuple[str, ...]]
 
     @property
     def uncovered(self) -> list[Rule]:
-        """Rules that may fail a case and have none, though cases could show them."""
+        """Rules that may fail a case and have none, although a case could demonstrate them."""
         return [
             rule
             for rule in registry().values()
@@ -76,13 +76,13 @@ class Coverage:
         ]
 
     def count(self, *, hard: bool) -> tuple[int, int]:
-        """How many rules have a case, and how many rules there are; only hard ones, or all."""
+        """Return the number of rules with a case, and of rules; with ``hard`` only hard rules."""
         counted = [rule for rule in registry().values() if rule.may_fail or not hard]
         return sum(bool(self.cases[rule.id]) for rule in counted), len(counted)
 
 
 def coverage(cases: Iterable[Case]) -> Coverage:
-    """The cases of each rule, whether they state it or only touch it."""
+    """Return the cases of each rule that state it or depend on it."""
     found: dict[str, list[str]] = {rule: [] for rule in registry()}
     for case in cases:
         for rule in case.rules:
@@ -91,7 +91,7 @@ def coverage(cases: Iterable[Case]) -> Coverage:
 
 
 def lint(root: Path = CASES) -> list[str]:
-    """What is wrong with the cases of a folder, a line each; empty where nothing is."""
+    """Return the defects of the cases in a folder, one line each."""
     unreadable: list[CaseError] = []
     cases = find_cases(root, unreadable.append)
     found = [str(error) for error in unreadable]
@@ -172,7 +172,7 @@ def _of_expectations(case: Case) -> Iterator[str]:
 
 
 def _of_clauses(case: Case) -> Iterator[str]:
-    """What an expectation that may fail the case says, and its clause does not."""
+    """Yield what a hard expectation says and its clause does not."""
     for one in case.expectations:
         clause = basis(one.basis or case.basis or case.rules[0])
         if case.unconfirmed or not clause.may_fail:
@@ -189,7 +189,7 @@ def _of_clauses(case: Case) -> Iterator[str]:
 
 
 def _message_of(case: Case, one: Expectation) -> int:
-    """The number of the controller's message that is expected, or 0: a case may have its own."""
+    """Return the message number that is expected; 0 if none is, or if it is the program's own."""
     source = next(each.text for each in case.sources if each.path == one.file)
     line = source.splitlines()[one.line - 1]
     found = _MESSAGE.match(one.text)
@@ -201,7 +201,7 @@ def _message_of(case: Case, one: Expectation) -> int:
 
 
 def _numbers_of(case: Case) -> set[int]:
-    """The numbers of messages that the rules of a case name."""
+    """Return the message numbers that the rules of a case mention."""
     found: set[int] = set()
     for id_ in case.rules:
         for text in _NUMBERS.findall(registry()[id_].statement):
@@ -218,7 +218,7 @@ def _repeated(cases: Sequence[Case]) -> Iterator[str]:
 
 
 def _strays(cases: Sequence[Case], root: Path) -> Iterator[str]:
-    """Files that belong to no case."""
+    """Yield files that belong to no case."""
     used = {case.path for case in cases}
     used |= {case.path.with_name(source.path) for case in cases for source in case.sources}
     used |= {case.path.with_name(case.machine) for case in cases if case.machine}

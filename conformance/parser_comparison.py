@@ -1,9 +1,9 @@
-"""Comparison with other parsers: which cases each accepts and rejects correctly.
+"""Comparison with other parsers: which cases each of them accepts and rejects correctly.
 
-Of a case only its text is looked at, without the front matter, since many parsers expect a file to
-begin with its first routine. One that expects ``syntax`` has to be refused, wherever; every
-other has to be read, in all its files. Nothing of a third party lies here: its grammar is compiled
-by ANTLR when it is asked for, or its program is run as a command.
+Only the text of a case is used, without the front matter, because many parsers expect a file to
+begin with its first routine. A case that expects ``syntax`` must be rejected, at any place; every
+other case must be accepted, with all its files. This project contains nothing of third parties:
+their grammar is compiled by ANTLR on request, or their program is run as a command.
 """
 
 from __future__ import annotations
@@ -29,27 +29,27 @@ from grammar.syntax.source import Source
 
 #: The name of this project's parser.
 OWN: Final = "krl"
-#: Seconds that a command may take for a file.
+#: The longest time in s that a command may take for a file.
 _LONGEST: Final = 600
 _NAME: Final = re.compile(r"^\s*(?:parser\s+)?grammar\s+(\w+)\s*;", re.MULTILINE)
 _FRONT: Final = re.compile(r"(?:;@.*\n)+")
 _COMMENT: Final = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
-#: Why a text is refused; empty where it is read.
+#: Returns why a text is rejected; "" if it is accepted.
 Parser = Callable[[Source], str]
 
 
 class ParserError(ValueError):
-    """A parser that cannot be used; the text says why, in one line."""
+    """A parser cannot be used; the text is one line with the reason."""
 
 
 @contextmanager
 def parsers(wanted: Sequence[str]) -> Iterator[Mapping[str, Parser]]:
-    """Parsers by name, ours first, as long as the context lasts. Raises `ParserError`.
+    """Provide parsers by name, ours first, within this context. Raises `ParserError`.
 
-    Each is ``NAME=WHAT``: an ANTLR grammar (``….g4``, its first rule reads a file), or a command.
-    The name of a file is put in place of ``{}`` in a command, or behind it; status 0 means that
-    the file was read.
+    Each is given as ``NAME=WHAT``: an ANTLR grammar (``….g4``, whose first rule reads a file), or a
+    command. The file name replaces ``{}`` in a command, or is appended to it; status 0 means that
+    the file was accepted.
     """
     found: dict[str, Parser] = {OWN: _own}
     with TemporaryDirectory() as folder:
@@ -70,7 +70,7 @@ def _own(source: Source) -> str:
 
 
 def _compiled(path: Path, folder: Path) -> Parser:
-    """The parser that ANTLR makes of a grammar; its first rule reads a file."""
+    """Return the parser that ANTLR generates from a grammar, whose first rule reads a file."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -90,7 +90,7 @@ def _compiled(path: Path, folder: Path) -> Parser:
     finally:
         sys.path.remove(str(folder))
     rule = str(parser.ruleNames[0])
-    start = rule if hasattr(parser, rule) else f"{rule}_"  # Python has the name for something else
+    start = rule if hasattr(parser, rule) else f"{rule}_"  # the rule name is a keyword of Python
 
     def reads(source: Source) -> str:
         why = refusal_by(lexer, parser, start, source.text)
@@ -100,7 +100,7 @@ def _compiled(path: Path, folder: Path) -> Parser:
 
 
 def _imported(name: str) -> Any:
-    """The class of a module that has its name; another grammar may have had this name before."""
+    """Return the class of a module with the same name, even if another grammar had this name."""
     sys.modules.pop(name, None)
     invalidate_caches()
     return getattr(import_module(name), name)
@@ -134,7 +134,7 @@ def compared(
     by_name: Mapping[str, Parser],
     on_done: Callable[[int], None] = lambda _count: None,
 ) -> list[CaseResult]:
-    """What became of each case with each parser; ``on_done`` is called for each case."""
+    """Return the results of each case with each parser; ``on_done`` is called for each case."""
     found = []
     for case in cases:
         results = tuple(_result(case, name, parser) for name, parser in by_name.items())

@@ -1,8 +1,9 @@
-"""pytest plugin: case files are tests. ``pytest conformance/cases`` runs them all.
+"""pytest plug-in that makes case files tests: ``pytest conformance/cases`` runs all of them.
 
-A ``conftest.py`` beside cases takes the hook over: ``from conformance.pytest_plugin import
-pytest_collect_file``. Each executor and robot is an item of its own. The environment variable
-KRL_CONFORM_SETUPS chooses others than what is built here: ``tree/none vm/none tree/kinematic``.
+A ``conftest.py`` next to the cases activates it: ``from conformance.pytest_plugin import
+pytest_collect_file``. Each executor and robot is a separate item. By default all available
+executors run without a robot; the environment variable KRL_CONFORM_SETUPS chooses others:
+``tree/none vm/none tree/kinematic``.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _VARIABLE: Final = "KRL_CONFORM_SETUPS"
 
 
 def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> CaseFile | None:
-    """A file that begins with front matter is a case."""
+    """Return a collector for a file that begins with front matter."""
     if file_path.suffix.lower() not in ENDINGS:
         return None
     with file_path.open("rb") as file:
@@ -37,7 +38,7 @@ class CaseFile(pytest.File):
     """A case, with an item for each executor and robot."""
 
     def collect(self) -> Iterator[CaseItem]:
-        """The items; `pytest.Collector.CollectError` for a case that cannot be read."""
+        """Yield the items; raise `pytest.Collector.CollectError` for an unreadable case."""
         try:
             case = read_case(self.path, self.path.parent.parent)
         except CaseError as error:
@@ -61,7 +62,7 @@ class CaseItem(pytest.Item):
         self.setup_of_case = setup
 
     def runtest(self) -> None:
-        """Run it; what is neither pass nor fail is skipped or expected to fail, with its reason."""
+        """Run the case; verdicts other than pass and fail are skipped or expected failures."""
         (result,) = run_case(self.case, [self.setup_of_case], KnownFailures.load()).results
         match result.verdict:
             case "fail":
@@ -72,13 +73,13 @@ class CaseItem(pytest.Item):
                 pytest.xfail(f"{result.verdict}: {result.reason}")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *_: Any) -> Any:
-        """What was expected and seen, without a traceback through our own code."""
+        """Return what was expected and observed, without a traceback of our own code."""
         if isinstance(excinfo.value, _NotMet):
             return str(excinfo.value)
         return super().repr_failure(excinfo)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where it stands, and its fact."""
+        """Return the place of the case, and its fact."""
         return self.path, None, f"{self.name}: {self.case.title}"
 
 

@@ -1,6 +1,6 @@
 """The record of a conformance run: what ``krl conform --json`` writes and the page shows.
 
-CASES.md describes its fields. Others read it, so fields are added but not changed.
+CASES.md describes its fields. Other programs read it, so fields may be added but not changed.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from conformance.suite.case import Case
 from conformance.suite.registry import registry
 from interp.robot.simulation.tracking import PathRecord
 
-#: Events that are about the cell and not about each statement: these are kept for every case.
+#: Kinds of events of single statements; the record contains only the others.
 _STATEMENTS: Final = frozenset({"line", "assign", "branch", "call", "return"})
-#: So many events and points of a path are kept at most, fewer points where all is well.
+#: The largest numbers of events and of path points in the record, and of points if a case passes.
 _MOST_EVENTS: Final = 400
 _MOST_POINTS: Final = 300
 _POINTS_SHOWN: Final = 150
@@ -38,7 +38,7 @@ def record_of(
     version: str,
     seconds: float,
 ) -> dict[str, Any]:
-    """The record of a run, as `json.dumps` takes it."""
+    """Return the record of a run, ready for `json.dumps`."""
     cases = [one.case for one in results]
     covered = coverage(cases)
     counts = [covered.count(hard=hard) for hard in (False, True)]
@@ -138,7 +138,7 @@ def _case(one: CaseResult) -> dict[str, Any]:
 
 
 def _results(one: CaseResult) -> list[dict[str, Any]]:
-    """All of them; where the path is what a case is about, the first that has one keeps it."""
+    """Return all results; if the case is about the path, the first with a path includes it."""
     is_about_path = any(each.needs != "none" for each in one.case.expectations)
     found = []
     for at, result in enumerate(one.results):
@@ -180,7 +180,7 @@ def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
 
 
 def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
-    """What was seen: whole for the first executor and for failures, else what differs by robot."""
+    """Return what was observed, completely or only what differs between robots."""
     record: dict[str, Any] = {"ending": seen.ending}
     if is_whole:
         kept = [event.record() for event in seen.events if event.kind not in _STATEMENTS]
@@ -206,7 +206,7 @@ def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
 
 
 def _analytic(case: Case) -> list[list[float]]:
-    """Points of the lines, circles and arcs that the case expects, one behind the other."""
+    """Return points of the lines, circles and arcs that the case expects, one after the other."""
     found: list[list[float]] = []
     for one in case.expectations:
         if one.kind == "path" and one.arguments[0] != "joint":
@@ -217,7 +217,7 @@ def _analytic(case: Case) -> list[list[float]]:
 
 
 def _path(path: PathRecord, most: int = _MOST_POINTS) -> dict[str, Any]:
-    """Points of a path, every n-th where there are many."""
+    """Return points of a path, every n-th if there are many."""
     every = max(1, -(-len(path.times) // most))
     record: dict[str, Any] = {
         "t": path.times[::every].tolist(),

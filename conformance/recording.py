@@ -1,8 +1,8 @@
 """Recordings: what a real controller did with the cases, in one JSON file.
 
-CASES.md says how to make one, and what its fields are. A recording is evaluated as an executor is,
-except for what it says that it did not watch: such expectations stay open. It can confirm or refute
-rules that are unconfirmed, which is what it is for.
+CASES.md says how to make a recording, and describes its fields. A recording is evaluated like the
+run of an executor. Expectations about kinds of events that it did not watch stay open. Its purpose
+is to confirm or refute unconfirmed rules.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from interp.robot.simulation.tracking import PathRecord
 from support.files.untrusted import json_of, read_bytes
 
 FORMAT: Final = "krl-recording/1"
-#: Millimetres and degrees that nothing reaches.
+#: mm and degrees beyond the reach of any robot.
 _BEYOND: Final = 1e9
 _ENDINGS: Final = ("", "end", "fault", "halt", "running")
 
 
 class RecordingError(ValueError):
-    """A recording that is not in the format; the text says where, in one line."""
+    """A recording is malformed; the text is one line with the place."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A recording: whose it is, and what was seen of each case, with the digest it had then."""
+    """A recording: its controller, and for each case its digest then and what was observed."""
 
     controller: str
     seen: Mapping[str, tuple[str, Observation]]
 
     @staticmethod
     def read(path: Path) -> Recording:
-        """Read a file. Raises `RecordingError`."""
+        """Read a recording from a file. Raises `RecordingError`."""
         try:
             data = json_of(read_bytes(path).decode("utf-8"))
         except (OSError, ValueError) as error:
@@ -136,7 +136,7 @@ def _rows(
     rows = np.array(data[key], dtype=np.float64)
     if rows.shape != (len(times), 6):
         raise ValueError(f"{key} has six columns and a row for each time")
-    if not (np.abs(rows) < _BEYOND).all():  # nor is what is no number at all
+    if not (np.abs(rows) < _BEYOND).all():  # also false for NaN
         raise ValueError(f"{key} has values that no robot reaches")
     return rows
 
@@ -144,7 +144,7 @@ def _rows(
 def evaluate_recording(
     recording: Recording, cases: Sequence[Case]
 ) -> tuple[list[CaseResult], list[str]]:
-    """The results of a recording, and what is wrong with it: cases that are unknown or changed."""
+    """Return the results of a recording, and its errors: cases that are unknown or changed."""
     known = {case.name: case for case in cases}
     results, wrong = [], []
     for name, (digest, seen) in sorted(recording.seen.items()):
@@ -164,7 +164,7 @@ def evaluate_recording(
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """How many cases of an unconfirmed rule a recording meets, and which it does not."""
+    """How many cases of an unconfirmed rule a recording meets, and which it does not meet."""
 
     rule: str
     met: int
@@ -172,7 +172,7 @@ class Answer:
 
 
 def answers(results: Iterable[CaseResult]) -> list[Answer]:
-    """What a recording answers of what was open, by rule; only where something was evaluated."""
+    """Return what a recording says about unconfirmed rules, if a case of them was evaluated."""
     met: dict[str, int] = {}
     against: dict[str, list[str]] = {}
     for one in results:

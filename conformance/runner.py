@@ -1,8 +1,8 @@
-"""Runs cases: every executor with every robot, in any number of processes.
+"""The runner of cases: every executor with every robot, in any number of processes.
 
-Cases of phases parse and check have one front end and run once. Each result of phase run is
-evaluated by the case's expectations, and compared with that of the first executor on the same
-robot, and of the first robot: whatever the rule, executors that differ have failed.
+Cases of the phases parse and check have one front end and run once. Each result of phase run is
+evaluated by the expectations of the case. It is also compared with that of the first executor on
+the same robot, or else with the first result: executors that differ have failed, whatever the rule.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from conformance.suite.case import Case
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError
 
-#: So many cases go to a process at once.
+#: The number of cases that a process receives at once.
 _SHARE: Final = 8
-#: So many seconds of computing an executor may take for a case; all of them take a few at most.
+#: The limit of processor time for a case in s; all cases need at most a few seconds.
 _COMPUTING: Final = 60.0
 
 Observe = Callable[[Case, Setup], Observation]
@@ -37,7 +37,7 @@ Observe = Callable[[Case, Setup], Observation]
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What became of a case on one executor and robot; ``seconds`` are wall-clock time."""
+    """The result of a case on one executor and robot; ``seconds`` is wall-clock time."""
 
     executor: str
     robot: str
@@ -58,7 +58,7 @@ class CaseResult:
 
     @property
     def verdict(self) -> Verdict:
-        """The gravest of its verdicts."""
+        """The worst of its verdicts."""
         order: tuple[Verdict, ...] = ("fail", "known-failure", "unconfirmed", "pass", "skipped")
         return min((one.verdict for one in self.results), key=order.index)
 
@@ -71,10 +71,10 @@ def run_case(
     absent: Callable[[Setup], str] = missing,
     most: float = _COMPUTING,
 ) -> CaseResult:
-    """Run one case. ``see`` observes it, ``absent`` says why there is no such setup.
+    """Run one case. ``see`` observes it, ``absent`` says why a setup is not available.
 
-    An executor that takes more than ``most`` seconds of computing has failed, whatever the case is
-    about; only the main thread of a process of a POSIX system is measured.
+    An executor that needs more than ``most`` seconds of processor time has failed, whatever the
+    case is about. This is measured only in the main thread of a process on a POSIX system.
     """
     wanted = setups if case.phase == "run" else (Setup(FRONT, "none"),)
     results: list[Result] = []
@@ -95,12 +95,12 @@ def run_case(
 
 
 class _ComputingOver(BaseException):
-    """A case takes too long; nothing that runs cases catches it."""
+    """A case needs too much time; a ``BaseException``, so that no handler in a run catches it."""
 
 
 @contextmanager
 def _computing_at_most(seconds: float) -> Iterator[None]:
-    """Raise `_ComputingOver` when so much time of the processor is used up within the context."""
+    """Raise `_ComputingOver` if the context needs more than ``seconds`` of processor time."""
     is_main = threading.current_thread() is threading.main_thread()
     if not is_main or not hasattr(signal, "setitimer"):
         yield
@@ -108,9 +108,9 @@ def _computing_at_most(seconds: float) -> Iterator[None]:
     end = time.process_time() + seconds
     before = signal.signal(signal.SIGPROF, _end_computing)
     try:
-        signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # again where a callback swallows it
+        signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # repeats, if a callback swallows it
         yield
-        if time.process_time() > end:  # a coarse clock is late
+        if time.process_time() > end:  # the timer may be late
             raise _ComputingOver
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
@@ -124,7 +124,7 @@ def _end_computing(_signal: int, _frame: object) -> NoReturn:
 def observed_within(
     case: Case, setup: Setup, most: float = _COMPUTING, see: Observe = observe
 ) -> Observation:
-    """What was seen of a case in so many seconds of computing; an exception is a crash."""
+    """Return what was observed of a case within ``most`` seconds; an exception is a crash."""
     try:
         with _computing_at_most(most):
             return see(case, setup)
@@ -136,7 +136,7 @@ def observed_within(
 
 
 def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
-    """The checks; an exception is a defect of the evaluation, and reported as one."""
+    """Return the checks of a case; an exception is a defect of the evaluator, reported as unmet."""
     try:
         return tuple(evaluate(case, seen))
     except Exception as error:
@@ -145,7 +145,7 @@ def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
 
 
 def _compared(result: Result, before: Iterable[Result]) -> Result:
-    """Beside the first that ran on the same robot, or else beside the first of all."""
+    """Compare a result with the first one on the same robot, or else with the first of all."""
     ran = [one for one in before if one.observation is not None]
     if not ran or result.observation is None:
         return result
@@ -162,9 +162,9 @@ def _compared(result: Result, before: Iterable[Result]) -> Result:
 
 
 def repeated(run: Callable[[], CaseResult]) -> CaseResult:
-    """Run a case, and once more where it has failed: it stays failed, and is said to be flaky.
+    """Run a case, and once more if it has failed; it stays failed, and is reported as flaky.
 
-    Nothing in a run depends on time or chance, so one that then passes is a defect too.
+    A run does not depend on time or chance, so a case that passes the second time has a defect too.
     """
     first = run()
     if first.verdict != "fail":
@@ -192,12 +192,12 @@ def run_cases(
     on_done: Callable[[int], None] = lambda _count: None,
     scheduler: str | None = None,
 ) -> list[CaseResult]:
-    """Run cases in so many processes (default: one a core); the results are in their order.
+    """Run cases in ``jobs`` processes, by default one per core; return results in their order.
 
     ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is called
-    with the number of cases finished. A case that kills its process has failed, and no other with
-    it. Raises `support.parallel.workers.WorkersError`, also where a worker lacks what there is
-    here.
+    with the number of finished cases. A case that kills its process has failed, but does not affect
+    others. Raises `support.parallel.workers.WorkersError`, also if a worker lacks a setup that is
+    available here.
     """
     listed = known if known is not None else KnownFailures.load()
     setups = tuple(Setup(executor, robot) for robot in robots for executor in executors)
@@ -210,7 +210,7 @@ def run_cases(
     def lost(
         share: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
     ) -> list[CaseResult]:
-        """Each case by itself, where one of them killed its process."""
+        """Run each case by itself, because one of them killed its process."""
         singles = (([case], lacking, known) for case in share)
         found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_dead)
         return [result for results in found for result in results]
@@ -226,7 +226,7 @@ def run_cases(
 def _run_share(
     cases: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
 ) -> list[CaseResult]:
-    """Run cases with setups; ``lacking`` says why there is none of some where this was asked."""
+    """Run cases with setups; ``lacking`` says for each why the caller does not have it, or ""."""
     for setup, why in lacking.items():
         if not why and missing(setup):
             raise WorkersError(f"a worker on {node()} lacks what is here: {missing(setup)}")

@@ -1,10 +1,10 @@
-"""Metamorphic checks: programs run before and after changes that must not be observable.
+"""Metamorphic testing: programs run before and after changes that must not be observable.
 
 ==================== ===============================================================================
-`subject`            a program with all it is run with: a case, or a generated one
-`tree_rewriting`     syntax trees changed
-`comparison`         what of two runs has to be the same
-`law`                what may be changed, and how it is tried
+`subject`            a program with everything needed to run it: a case, or a generated program
+`tree_rewriting`     transformation of syntax trees
+`comparison`         what must be equal in two runs
+`law`                a permitted change, and how it is tried
 `source_text_laws`   folds, letter case, names, the order of declarations, routines, components
 `control_flow_laws`  loops, branches, inlining, constants
 `motion_laws`        base, override, exact stops, lines, batches
@@ -12,8 +12,8 @@
 `trial`              all laws on cases and on generated programs
 ==================== ===============================================================================
 
-No expectation is needed: a law says what two runs have in common, whatever they do. So it finds
-faults that all executors share.
+A law needs no expectation: it says what two runs have in common, whatever they do. So it can find
+defects that all executors share.
 """
 
 from conformance.metamorphic.law import Attempt, Law, run_law

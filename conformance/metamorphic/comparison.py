@@ -1,7 +1,7 @@
 """Comparison of two runs under a law: what must be equal, and the first difference.
 
-Each comparison gives the first difference as one line, or an empty text. Lines are never compared:
-laws move them.
+Each comparison returns the first difference as one line, or "" if there is none. Line numbers are
+never compared, because laws change them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from conformance.evaluation.observation import Event, Observation
 Compare = Callable[[Observation, Observation], str]
 Array = npt.NDArray[np.float64]
 
-#: What a program does to the world, and what it computes: not by which statements it does so.
+#: The events of what a program computes and does to the world, regardless of its statements.
 _EFFECTS: Final = frozenset(
     {
         "assign",
@@ -38,21 +38,24 @@ _EFFECTS: Final = frozenset(
         "fault",
     }
 )
-#: Degrees by which axes may differ that were computed in another way.
+#: Tolerance in degrees between axes that were computed in different ways.
 _SAME: Final = 1e-3
-#: Share of a time by which something may end later that may not be later at all.
+#: Tolerance of times that must not increase, as a fraction.
 _LATER: Final = 1e-3
-#: Degrees by which a point may lie beside the other path: both are samples, joined by chords.
+#: Tolerance in degrees between a point and the other path, which is sampled and joined by chords.
 _BESIDE: Final = 0.05
 
 
 def same_trace(left: Observation, right: Observation) -> str:
-    """The whole trace, times included, but for lines."""
+    """Compare the whole trace including times, except line numbers."""
     return _first(left, right, _whole)
 
 
 def same_trace_renamed(names: Mapping[str, str]) -> Compare:
-    """The whole trace, where variables have other names: from new to old, in upper case."""
+    """Return a comparison of whole traces after renaming; ``names`` maps new names to old ones.
+
+    All names are in upper case.
+    """
 
     def compare(left: Observation, right: Observation) -> str:
         def old(event: Event) -> Any:
@@ -68,9 +71,9 @@ def same_trace_renamed(names: Mapping[str, str]) -> Compare:
 
 
 def same_effects(left: Observation, right: Observation) -> str:
-    """What was assigned, switched, moved and reported, in this order for each task; not when.
+    """Compare what was assigned, switched, moved and reported in each task; order but not times.
 
-    More statements take more of a cycle, so times may differ by cycles.
+    A changed number of statements changes the cycle in which they are executed.
     """
     for task in ("robot", "submit"):
         one, other = (_of_task(run, task, _EFFECTS) for run in (left, right))
@@ -81,14 +84,14 @@ def same_effects(left: Observation, right: Observation) -> str:
 
 
 def same_outputs(left: Observation, right: Observation) -> str:
-    """The outputs in their order, and where the arm went; not when."""
+    """Compare the outputs in their order, and the path of the arm, but not times."""
     kinds = frozenset({"out", "anout", "motion_end", "fault"})
     one, other = (_of_task(run, "robot", kinds) for run in (left, right))
     return _first(one, other, _untimed) or same_geometry(left, right)
 
 
 def same_axes(left: Observation, right: Observation) -> str:
-    """The axes at each set-point, and the trace but for what variables are assigned."""
+    """Compare the axes at each set-point, and the trace except assignments."""
     kinds = _EFFECTS - {"assign"}
     one, other = (_of_task(run, "robot", kinds) for run in (left, right))
     difference = _first(one, other, lambda event: (event.time, *_untimed(event)))
@@ -104,16 +107,17 @@ def same_axes(left: Observation, right: Observation) -> str:
 
 
 def same_geometry(left: Observation, right: Observation) -> str:
-    """The way of the axes from the first set-point to the last, however fast it is travelled.
+    """Compare the geometry of the path, regardless of its speed.
 
-    Where a fault ends the old run nothing is said: it stops the arm at some time, not some place.
+    Nothing is compared if a fault ends the first run, because it stops the arm at a time and not at
+    a place.
     """
     if left.ending == "fault":
         return ""
     if left.path is None or right.path is None or not len(left.path.axes):
         return ""
     one, other = (_thinned(run.path.axes) for run in (left, right) if run.path is not None)
-    # the last set-point is that of the last cycle, which is not quite the end
+    # The last set-point is that of the last cycle, which is slightly before the end.
     if max(np.abs(one[place] - other[place]).max() for place in (0, -1)) > _BESIDE:
         return "the path does not begin and end where it did"
     for mine, theirs, which in ((one, other, "old"), (other, one, "new")):
@@ -125,7 +129,7 @@ def same_geometry(left: Observation, right: Observation) -> str:
 
 
 def no_sooner(left: Observation, right: Observation) -> str:
-    """The last motion of the changed program ends no sooner than it did."""
+    """Check that the last motion of the changed program ends no earlier than before."""
     one, other = _ended(left), _ended(right)
     if one is None or other is None or one <= other * (1.0 + _LATER):
         return ""
@@ -133,7 +137,7 @@ def no_sooner(left: Observation, right: Observation) -> str:
 
 
 def at_most_twice(left: Observation, right: Observation) -> str:
-    """Its motions end no sooner than they did, and take no more than twice as long."""
+    """Check that its motions end no earlier than before, and take at most twice as long."""
     one, other = _ended(left), _ended(right)
     if one is None or other is None or other <= 2.0 * one * (1.0 + _LATER):
         return no_sooner(left, right)
@@ -141,7 +145,7 @@ def at_most_twice(left: Observation, right: Observation) -> str:
 
 
 def _ended(run: Observation) -> int | None:
-    """When the last motion ended, in µs; ``None`` for a run that did not come to its end."""
+    """Return when the last motion ended in µs; ``None`` if the run did not come to its end."""
     times = [one.time for one in run.of_kind("motion_end") if one.time is not None]
     return max(times, default=0) if run.ending == "end" else None
 
@@ -155,7 +159,7 @@ def _first(
     old: Callable[[Event], Any],
     new: Callable[[Event], Any] | None = None,
 ) -> str:
-    """The first events that are not the same, where one run is not just cut off by its time."""
+    """Return the first difference between events, unless a run was only cut off by its time."""
     is_cut = "running" in (left.ending, right.ending)
     for one, other in zip_longest(left.events, right.events):
         if one is None or other is None:
@@ -182,7 +186,7 @@ def _untimed(event: Event) -> Any:
 
 
 def _fields(event: Event) -> tuple[tuple[str, str], ...]:
-    """Names and texts in upper case: letter case is not looked at where names are."""
+    """Return names and texts in upper case, because letter case of names is not compared."""
     return tuple((key, repr(value).upper()) for key, value in sorted(event.fields.items()))
 
 
@@ -196,7 +200,7 @@ def _event(event: Event | None) -> str:
 
 
 def _split(path: str) -> list[str]:
-    """A name, and the indices and members behind it."""
+    """Return a name, and the text of the indices and members after it."""
     end = next((place for place, letter in enumerate(path) if letter in "[."), len(path))
     return [path[:end], path[end:]]
 
@@ -205,13 +209,13 @@ def _split(path: str) -> list[str]:
 
 
 def _thinned(axes: Array) -> Array:
-    """Without set-points where the arm stands."""
+    """Return the axes without set-points at which the arm rests."""
     moves = np.abs(np.diff(axes, axis=0)).max(axis=1) > 0.0
     return axes[np.concatenate(([True], moves))]
 
 
 def _beside(points: Array, path: Array) -> Array:
-    """How far each point lies from a path, going along both in the same direction."""
+    """Return the distance of each point from a path, following both in the same direction."""
     if len(path) < 2:
         return np.asarray(np.abs(points - path[0]).max(axis=1))
     starts, ways = path[:-1], np.diff(path, axis=0)
@@ -225,7 +229,7 @@ def _beside(points: Array, path: Array) -> Array:
         off = np.abs(starts[window] + share[:, None] * ways[window] - point).max(axis=1)
         nearest = int(np.argmin(off))
         found[number] = off[nearest]
-        # the first place that is near: where a path comes back over itself, there are several
+        # Continue at the first place that is near: a path that reverses passes a place twice.
         near = np.flatnonzero(off <= max(off[nearest], _BESIDE))
         first += max(0, int(near[0]) - 1)
     return found

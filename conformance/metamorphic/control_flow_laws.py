@@ -1,4 +1,4 @@
-"""Laws about control flow and expressions: other statements that do the same."""
+"""Laws about control flow and expressions: equivalent statements."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _if(condition: ast.Expression, *body: ast.Statement) -> ast.If:
 
 
 def _for_to_while(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
-    """Where its last value and its step are numbers, which no pass can change."""
+    """Replace a FOR whose last value and step are literals, so that no pass can change them."""
     if not isinstance(node, ast.For) or _is_down(node.last) is None:
         return node
     step = node.step or integer(1)
@@ -58,7 +58,7 @@ def _for_to_while(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
 
 
 def _is_down(number: ast.Expression) -> bool | None:
-    """Whether a number is negative; ``None`` where it is none that is written out."""
+    """Return whether a number is negative; ``None`` if the expression is no literal."""
     is_down = isinstance(number, ast.Unary) and number.operator == "-"
     digits = number.operand if isinstance(number, ast.Unary) else number
     return is_down if isinstance(digits, ast.IntegerLiteral) else None
@@ -69,7 +69,7 @@ def _has_labels(body: Statements) -> bool:
 
 
 def _with_goto(program: Program, _random: Random) -> Program | None:
-    """WHILE, REPEAT and LOOP become labels and GOTO; EXIT goes behind them."""
+    """Replace WHILE, REPEAT and LOOP by labels and GOTO; EXIT becomes a GOTO to after the loop."""
     numbers = count(1)
 
     def change(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
@@ -89,7 +89,7 @@ def _with_goto(program: Program, _random: Random) -> Program | None:
         return (top, *body, back, bottom)
 
     def make(routine: ast.Routine) -> Change:
-        # what is inside becomes labels as well, into which no GOTO may lead from outside
+        # inner loops stay: no GOTO from outside may enter the labels that they would become
         inner = {id(one) for loop in walk(routine) if _is_loop(loop) for one in _below(loop)}
         return lambda node: node if id(node) in inner else change(node)
 
@@ -106,7 +106,7 @@ def _below(node: ast.Node) -> Iterator[ast.Node]:
 
 
 def _without_exit(node: ast.Statement, label: ast.Name) -> ast.Statement:
-    """EXIT of this loop, not of those within it, leaves by a GOTO."""
+    """Replace EXIT of this loop, but not of inner loops, by a GOTO."""
     if isinstance(node, ast.Exit):
         return ast.Goto(MADE, label)
     if isinstance(node, ast.If):
@@ -137,7 +137,7 @@ def _without_exit(node: ast.Statement, label: ast.Name) -> ast.Statement:
 
 
 def _switch_to_if(node: ast.Node) -> ast.Node:
-    """A chain of IF, where looking at the selector twice does not matter."""
+    """Replace a SWITCH by a chain of IF, if its selector can be evaluated repeatedly."""
     if not isinstance(node, ast.Switch) or not isinstance(node.selector, ast.Variable):
         return node
     if node.selector.name.text.startswith("$"):
@@ -171,11 +171,11 @@ _BOUND: Final = (
 
 
 def _inlined(program: Program, _random: Random) -> Program | None:
-    """Routines without parameters and data of their own stand where they were called."""
+    """Replace calls by the body of the routine, if it has no parameters and no data of its own."""
     modules = program.modules or {}
     every = [one for module in modules.values() for one in walk(module)]
     if any(isinstance(one, ast.Resume | ast.InterruptDeclaration) for one in every):
-        return None  # which routine declared an interrupt matters
+        return None  # the depth of the routine that declares an interrupt matters
     changed, is_other = {}, False
     for path, module in modules.items():
         bodies = {one.name.key: one.body for one in routines(module)[1:] if _may_be_inlined(one)}
@@ -204,7 +204,7 @@ def _may_be_inlined(routine: ast.Routine) -> bool:
 
 
 def _own_names(routine: ast.Routine) -> set[str]:
-    """What a routine declares, which would hide what the inlined one means."""
+    """Return the names that a routine declares, which could hide names in an inlined body."""
     declared = {
         declarator.name.key
         for one in routine.body
@@ -237,7 +237,7 @@ def _inlining(bodies: dict[str, Statements]) -> Change:
 
 
 def _unfolded(program: Program, random: Random) -> Program | None:
-    """Numbers that are assigned or compared are computed instead."""
+    """Replace numbers that are assigned or compared by computations with the same result."""
 
     def operand(node: ast.Expression) -> ast.Expression:
         if isinstance(node, ast.IntegerLiteral) and 0 < node.value < _MOST_FOLDED:

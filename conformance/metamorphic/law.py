@@ -9,7 +9,8 @@ from random import Random
 from conformance.metamorphic.comparison import Compare
 from conformance.metamorphic.subject import Program, Run
 
-#: A changed program with the comparison it asks for (``None``: that of the law), or ``None`` where
+#: Returns a changed program, optionally with its own comparison; ``None`` if the law does not
+#: apply to the program.
 #: the law does not apply to it.
 Change = Callable[[Program, Random], "Program | tuple[Program, Compare] | None"]
 
@@ -18,9 +19,10 @@ Change = Callable[[Program, Random], "Program | tuple[Program, Compare] | None"]
 class Law:
     """A law.
 
-    ``states`` is what it says, ``rules`` what it rests on. ``change`` gives the changed program;
-    ``None`` there: the program stays, and is run as ``other`` says. ``is_of_text``: the change is
-    one of the text as it was written, not of its trees. ``usual`` is how both are run.
+    ``states`` is the law in words, ``rules`` the rules of KRL on which it rests. ``change`` returns
+    the changed program; without it the program stays the same and is run as ``other`` says. With
+    ``is_of_text``, the change is one of the source text and not of syntax trees. ``usual`` says how
+    both programs are run, and ``needs`` to which programs the law applies.
     """
 
     name: str
@@ -36,7 +38,7 @@ class Law:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """What became of a law on a program: ``difference`` is empty where it held."""
+    """The result of a law on a program; ``difference`` is empty if the law held."""
 
     law: str
     program: str
@@ -45,7 +47,7 @@ class Attempt:
 
 
 def run_law(law: Law, program: Program, seed: int = 0) -> Attempt | None:
-    """Try a law on a program; ``None`` where it does not apply."""
+    """Try a law on a program; return ``None`` if it does not apply."""
     if program.modules is None or not law.needs(program):
         return None
     before = program if law.is_of_text or law.change is None else program.plain

@@ -32,9 +32,9 @@ from grammar.syntax.walk import walk
 
 _KINEMATIC: Final = Run(robot="kinematic")
 _SHIFT: Final = {"X": 24.0, "Y": -36.0, "Z": 12.0}
-#: What reads or changes the position of the arm or the base in force.
+#: Names with which a program reads or changes the position of the arm or the base.
 _KNOW_PLACES: Final = ("$POS_", "$IPO_MODE", "INVERSE", "FORWARD", "$ROBROOT", "BAS")
-#: What may make it matter when something happens.
+#: Names that can make the time of an event matter.
 _KNOW_TIMES: Final = (
     "$TIMER",
     "$OV_PRO",
@@ -66,7 +66,7 @@ def _motions(program: Program) -> list[ast.Motion]:
 
 
 def _is_timeless(program: Program) -> bool:
-    """Whether it moves, and nothing but its own statements decides where."""
+    """Return whether a program moves, and only its own statements decide where."""
     if program.case.io or len(program.case.sources) > 2 or not _motions(program):
         return False
     bound = ast.InterruptDeclaration | ast.WaitFor | ast.SignalOn | ast.StopWhen | ast.Halt
@@ -83,7 +83,7 @@ def _goes_by_place(program: Program) -> bool:
 
 
 def _with_prelude(program: Program, *statements: ast.Statement) -> Program | None:
-    """The program with statements before its first one."""
+    """Return the program with statements added before its first statement."""
     modules = dict(program.modules or {})
     module = modules[program.case.main]
     if not routines(module):
@@ -118,7 +118,7 @@ def _real(value: float) -> ast.Expression:
 
 
 def _components(point: ast.Expression | None) -> dict[str, float] | None:
-    """The components of a target that is written out in numbers; ``None`` for any other."""
+    """Return the components of a target if it is an aggregate of numbers, else ``None``."""
     if not isinstance(point, ast.Aggregate):
         return None
     found = {}
@@ -145,7 +145,7 @@ def _moved(point: ast.Expression, way: dict[str, float]) -> ast.Expression:
 
 
 def _shifted(program: Program, _random: Random) -> Program | None:
-    """Another $BASE, and all points so much the other way."""
+    """Shift $BASE, and shift all points by the opposite vector."""
     absolute = [one for one in _motions(program) if not one.kind.endswith("_REL")]
     points = [p for one in absolute for p in (one.target, one.auxiliary) if p is not None]
     written = [_components(point) for point in points]
@@ -181,7 +181,7 @@ def _shifted(program: Program, _random: Random) -> Program | None:
 
 
 def _sets_base(program: Program) -> frozenset[int] | None:
-    """Where $BASE is made zero, by identity; ``None`` where anything else is done with it."""
+    """Return the assignments of zero to $BASE, by `id`; ``None`` if $BASE is used otherwise."""
     found = []
     mentions = 0
     for one in _nodes(program):
@@ -211,7 +211,7 @@ def _halved_override(program: Program, _random: Random) -> Program | None:
 
 
 def _stopped(program: Program, _random: Random) -> Program | None:
-    """Exact stops where the program approximates."""
+    """Replace all blends by exact stops."""
     if _has_exact_stops(program):
         return None
 
@@ -226,7 +226,7 @@ def _stopped(program: Program, _random: Random) -> Program | None:
 
 
 def _halved(program: Program, _random: Random) -> Program | None:
-    """LIN behind a point that is known becomes two, with an exact stop at its middle."""
+    """Replace each LIN between known points by two, with an exact stop in the middle."""
     count = 0
 
     def change(node: ast.Node) -> ast.Node:
@@ -250,7 +250,7 @@ def _halved(program: Program, _random: Random) -> Program | None:
 
 
 def _middle(before: ast.Statement | None, one: ast.Statement) -> ast.Aggregate | None:
-    """The point half-way of a LIN that only shifts the tool; ``None`` where that is not known."""
+    """Return the midpoint of a LIN that only translates the tool; ``None`` if it is unknown."""
     if not isinstance(before, ast.Motion) or not isinstance(one, ast.Motion):
         return None
     if one.kind != "LIN" or one.criteria or before.criteria or before.kind.endswith("_REL"):
@@ -282,10 +282,11 @@ def _is_for_batches(program: Program) -> bool:
 
 
 def _where_all_blends(compare: Compare) -> Compare:
-    """Nothing is said of two kinds of programs.
+    """Return a comparison that makes an exception for two kinds of programs.
 
-    Where a blend has failed: in a batch all of them are known in time. Where a motion cannot be
-    planned: then none of its batch is executed (`interp.robot.api.batch`).
+    One are those in which a blend has failed: in a batch, all blends are known in time. The other
+    are those in which a motion cannot be planned: then no motion of its batch is executed
+    (`interp.robot.api.batch`).
     """
 
     def found(left: Observation, right: Observation) -> str:

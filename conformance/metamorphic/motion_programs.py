@@ -1,6 +1,7 @@
 """Generated programs that move: reachable points, lines, arcs, blends, outputs, waits.
 
-Those of `grammar.generation` have points anywhere, and mostly end with a fault of the first.
+The points of programs from `grammar.generation` are arbitrary, so most of those programs end with a
+fault at their first point.
 """
 
 from __future__ import annotations
@@ -10,13 +11,13 @@ from typing import Final
 
 from grammar.generation.closed.programs import Sample
 
-#: Where the arm stands with its hand down, at X 445, Y 0, Z 810.
+#: The arm with its hand down, at X 445, Y 0, Z 810.
 _HOME: Final = "PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}"
 _MOTIONS: Final = ("LIN", "LIN", "LIN", "PTP", "CIRC", "REL", "BLOCK")
 
 
 def moving_program(seed: int, number: int) -> Sample:
-    """The program of a number under a seed: a file of four to nine motions."""
+    """Return the program with a number under a seed: one file with four to nine motions."""
     random = Random(f"moving/{seed}/{number}")
     blends = random.random() < 0.4
     lines = [

@@ -28,7 +28,7 @@ _STRINGS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
 
 
 def _folded(program: Program, random: Random) -> Program | None:
-    """Comments and folds around statements; never behind CONTINUE, whose line is the next."""
+    """Add comments and folds around statements, but not after CONTINUE, which affects a line."""
     texts = {}
     for source in program.case.sources:
         if source.kind != "src":
@@ -54,7 +54,7 @@ def _opens(line: str) -> bool:
 
 
 def _other_case(program: Program, random: Random) -> Program | None:
-    """Letters outside of texts and comments, each small or not."""
+    """Change the case of letters at random, outside of texts and comments."""
     if _prints_names(program):
         return None
 
@@ -75,7 +75,7 @@ def _other_case(program: Program, random: Random) -> Program | None:
 
 
 def _prints_names(program: Program) -> bool:
-    """Whether it writes constants of enumerations into texts, which are case-sensitive."""
+    """Return whether a program formats texts, which may contain case-sensitive constants."""
     return any(
         {"SWRITE", "CWRITE", "SREAD", "CREAD"} & calls_of(module)
         for module in (program.modules or {}).values()
@@ -86,7 +86,7 @@ def _prints_names(program: Program) -> bool:
 
 
 def _renamed(program: Program, _random: Random) -> tuple[Program, Compare] | None:
-    """Variables that a routine declares for itself get fresh names."""
+    """Rename the variables that a routine declares."""
     modules = program.modules or {}
     taken = {one for module in modules.values() for one in names_of(module)}
     texts = {
@@ -123,7 +123,7 @@ def _locals(routine: ast.Routine) -> list[str]:
 
 
 def _with_names(routine: ast.Routine, names: dict[str, str]) -> ast.Routine:
-    """Only where a name stands for a variable: members and enumerations have their own."""
+    """Rename variables in a routine; members and enumeration constants keep their names."""
 
     def change(node: ast.Node) -> ast.Node:
         if isinstance(node, ast.Variable | ast.Declarator) and node.name.key in names:
@@ -139,7 +139,7 @@ def _with_names(routine: ast.Routine, names: dict[str, str]) -> ast.Routine:
 
 
 def _reordered(program: Program, _random: Random) -> Program | None:
-    """Neighbouring declarations of plain variables the other way round."""
+    """Reverse the order of adjacent declarations of plain variables."""
 
     def change(node: ast.Node) -> ast.Node:
         if not isinstance(node, ast.Routine):
@@ -159,7 +159,7 @@ def _is_plain(node: ast.Statement) -> bool:
 
 
 def _routines_moved(program: Program, random: Random) -> Program | None:
-    """All routines but the first one, which gives the file its name, in another order."""
+    """Change the order of all routines but the first, which gives the file its name."""
     changed, is_other = {}, False
     for path, module in (program.modules or {}).items():
         others = list(routines(module)[1:])
@@ -172,7 +172,7 @@ def _routines_moved(program: Program, random: Random) -> Program | None:
 
 
 def _components_moved(program: Program, _random: Random) -> Program | None:
-    """The components of aggregates of constants the other way round."""
+    """Reverse the components of aggregates of constants."""
     count = 0
 
     def change(node: ast.Node) -> ast.Node:

@@ -1,7 +1,8 @@
-"""Subjects of laws: a program with everything it is run with.
+"""Subjects of laws: a program with everything that is needed to run it.
 
-Programs come from cases and from `grammar.generation`. A law changes a
-program and runs both; `Program.modules` are its files as trees, `Program.written` puts trees back.
+Programs come from cases and from `grammar.generation`. A law changes a program, and both versions
+are run. `Program.modules` are its files as syntax trees; `Program.written` returns a program with
+other trees.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from grammar.syntax.unparse import unparse
 
-#: Virtual seconds that a generated program is watched: it may wait for inputs for ever.
+#: Virtual seconds of the run of a generated program, which may wait for an input forever.
 _WATCHED: Final = 5.0
-#: What gives a program its own line number: such programs do see a change of text.
+#: Names that give a program its own line numbers: it can observe a change of its text.
 _KNOW_LINES: Final = ("LINE_NR", "PROG_LINE", "$PRO_IP", "$PRO_NAME")
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """How a program is run."""
+    """How a program is run: the robot, and the strategy of motion planning."""
 
     robot: str = "none"
     motion: Literal["lookahead", "batch"] = "lookahead"
@@ -38,25 +39,25 @@ class Run:
 
 @dataclass(frozen=True)
 class Program:
-    """A program: the case that it is, or is made into, to be run."""
+    """A program in the form of a case, which may have been generated."""
 
     case: Case
 
     @staticmethod
     def of_sample(sample: Sample, name: str, seconds: float = _WATCHED) -> Program:
-        """A generated program, and the virtual seconds that it is watched."""
+        """Return a generated program; it is run for ``seconds`` of virtual time."""
         sources = tuple(Source(text, path) for path, text in sample.files)
         made = Case(name, Path(name), "", ("CTL-01",), "run", "kss8", sources, (), seconds=seconds)
         return Program(made)
 
     @property
     def name(self) -> str:
-        """As its case is called, or the number of the generated program."""
+        """The name of its case, or the number of the generated program."""
         return self.case.name
 
     @cached_property
     def modules(self) -> Mapping[str, ast.Module] | None:
-        """Its files as trees; ``None`` where one cannot be read."""
+        """Its files as syntax trees; ``None`` if one cannot be read."""
         found: dict[str, ast.Module] = {}
         for source in self.case.sources:
             read = read_module(source.text, source.path)
@@ -67,21 +68,21 @@ class Program:
 
     @cached_property
     def knows_lines(self) -> bool:
-        """Whether it can read its own line number."""
+        """Whether it can read its own line numbers."""
         return any(word in one.text.upper() for one in self.case.sources for word in _KNOW_LINES)
 
     @cached_property
     def plain(self) -> Program:
-        """The same as it is printed from its trees: without comments, one statement a line."""
+        """The same program printed from its trees: without comments, one statement per line."""
         return self if self.modules is None else self.written(self.modules)
 
     def written(self, modules: Mapping[str, ast.Module]) -> Program:
-        """A program of other trees, its files in their order."""
+        """Return a program with other trees, its files in the given order."""
         sources = tuple(Source(unparse(module), path) for path, module in modules.items())
         return Program(replace(self.case, sources=sources))
 
     def rewritten(self, change_for: Callable[[ast.Routine], Change]) -> Program | None:
-        """The program with each routine changed; ``None`` where all stay as they are."""
+        """Return the program with changed routines, or ``None`` if no routine changes."""
         changed, is_other = {}, False
         for path, module in (self.modules or {}).items():
             found = [rewritten(one, change_for(one)) for one in routines(module)]
@@ -91,12 +92,12 @@ class Program:
         return self.written(changed) if is_other else None
 
     def with_texts(self, texts: Mapping[str, str]) -> Program:
-        """A program with other texts of some of its files."""
+        """Return a program with other texts for some of its files."""
         sources = tuple(
             Source(texts.get(one.path, one.text), one.path) for one in self.case.sources
         )
         return Program(replace(self.case, sources=sources))
 
     def run(self, how: Run) -> Observation:
-        """Run it."""
+        """Run the program on the tree interpreter, and return the observation."""
         return observe(self.case, Setup("tree", how.robot, how.motion))

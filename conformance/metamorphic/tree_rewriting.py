@@ -1,4 +1,4 @@
-"""Rewriting of syntax trees: nodes replaced from the inside out, statements by several."""
+"""Rewriting of syntax trees, bottom-up; a statement can be replaced by several."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any, TypeVar
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain, walk
 
-#: The span of a node that was made and stands nowhere.
+#: The span of a generated node, which has no place in a source.
 MADE = (0, 0)
 
-#: A node, the same or another one; or several in its place, where it stands in a sequence.
+#: Returns the same node or another one; or several nodes, if the node is in a sequence.
 Change = Callable[[ast.Node], ast.Node | tuple[ast.Node, ...]]
 _Any = TypeVar("_Any", bound=ast.Node)
 
 
 def rewritten(node: _Any, change: Change) -> _Any:
-    """A node in which all below it, and then it itself, went through ``change``."""
+    """Return a node after applying ``change`` to everything below it, then to itself."""
     found = _changed(node, change)
     if not isinstance(found, type(node)):
         raise TypeError(f"{type(node).__name__} became {type(found).__name__}")
@@ -38,7 +38,7 @@ def _changed(node: ast.Node, change: Change) -> ast.Node | tuple[ast.Node, ...]:
 def _with_changed(
     node: ast.Node, change: Change, **changed: Any
 ) -> ast.Node | tuple[ast.Node, ...]:
-    """A node whose fields are changed, but for those that are, and then itself."""
+    """Return ``change`` of a node with changed fields; those in ``changed`` are already given."""
     values: dict[str, Any] = {}
     for field in node.__dataclass_fields__:
         before = getattr(node, field)
@@ -67,27 +67,27 @@ def _sequence(items: Sequence[Any], change: Change) -> Iterator[Any]:
 
 
 def name(text: str) -> ast.Name:
-    """A name."""
+    """Return a generated name."""
     return ast.Name(MADE, text)
 
 
 def variable(text: str) -> ast.Variable:
-    """A variable."""
+    """Return a generated variable."""
     return ast.Variable(MADE, name(text))
 
 
 def integer(value: int) -> ast.IntegerLiteral:
-    """A number that is not negative."""
+    """Return a generated literal of a number that is not negative."""
     return ast.IntegerLiteral(MADE, value)
 
 
 def parenthesised(inner: ast.Expression) -> ast.Parenthesised:
-    """An expression in parentheses."""
+    """Return an expression in parentheses."""
     return ast.Parenthesised(MADE, inner)
 
 
 def negated(condition: ast.Expression) -> ast.Unary:
-    """``NOT (condition)``."""
+    """Return ``NOT (condition)``."""
     return ast.Unary(MADE, "NOT", parenthesised(condition))
 
 
@@ -95,21 +95,21 @@ def negated(condition: ast.Expression) -> ast.Unary:
 
 
 def routines(module: ast.Module) -> tuple[ast.Routine, ...]:
-    """The routines of a module; none of a data list."""
+    """Return the routines of a module; a data list has none."""
     return module.content.routines if isinstance(module.content, ast.Program) else ()
 
 
 def with_routines(module: ast.Module, found: Sequence[ast.Routine]) -> ast.Module:
-    """The module with other routines."""
+    """Return the module with other routines."""
     assert isinstance(module.content, ast.Program), "the caller looked"
     return replace(module, content=replace(module.content, routines=tuple(found)))
 
 
 def names_of(node: ast.Node) -> frozenset[str]:
-    """All names below a node, in upper case."""
+    """Return all names below a node, in upper case."""
     return frozenset(one.key for one in walk(node) if isinstance(one, ast.Name))
 
 
 def calls_of(node: ast.Node) -> frozenset[str]:
-    """The names of what is called below a node, in upper case."""
+    """Return the names of all calls below a node, in upper case."""
     return frozenset(one.name.key for one in walk(node) if isinstance(one, ast.Call))

@@ -1,4 +1,4 @@
-"""Laws tried on cases and on generated programs: which apply, hold, or are broken, and how."""
+"""Trials of laws on cases and on generated programs, with their results."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from conformance.suite.case import Case
 from grammar.generation.closed.programs import seeded
 from support.parallel.ordered_map import ordered_map
 
-#: Every law.
+#: All laws.
 LAWS: Final = (*source_text_laws.LAWS, *control_flow_laws.LAWS, *motion_laws.LAWS)
-#: For each generated program that a law is to apply to, so many are looked at.
+#: How many generated programs are examined for each one to which a law must apply.
 _LOOKED_AT: Final = 6
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """How a law stands: on how many programs it was tried, and where it was broken.
+    """The result of a law: on how many programs it was tried, and on which it was broken.
 
-    ``inapplicable`` are the programs that were looked at and had nothing to change.
+    ``inapplicable`` is the number of programs that were examined and to which it does not apply.
     """
 
     law: Law
@@ -36,7 +36,7 @@ class Standing:
 
     @property
     def held(self) -> int:
-        """How often it was kept."""
+        """The number of programs on which the law held."""
         return self.applied - len(self.broken)
 
 
@@ -48,11 +48,10 @@ def try_laws(
     on_done: Callable[[int], None] = lambda _count: None,
     scheduler: str | None = None,
 ) -> list[Standing]:
-    """Try each law on so many cases, generated programs and such that move, where it applies.
+    """Try each law on up to ``programs`` cases, generated programs, and moving programs each.
 
-    Which these are follows from the seed. ``jobs`` processes try them, or the Dask cluster of
-    ``scheduler`` (`support.parallel.ordered_map`). ``on_done`` is called with the number of laws
-    tried.
+    The seed determines which these are. ``jobs`` processes try the laws, or the Dask cluster at
+    ``scheduler`` (`support.parallel.ordered_map`). ``on_done`` is called with 1 after each law.
     """
     running = [case for case in cases if case.phase == "run"]
     tasks = ((law.name, running, programs, seed) for law in LAWS)
@@ -63,7 +62,7 @@ def try_laws(
     return found
 
 
-#: Name of the law, applied, inapplicable, broken: what goes from process to process.
+#: What is sent between processes: name of the law, applied, inapplicable, broken.
 _Counted = tuple[str, int, int, tuple[Attempt, ...]]
 
 
@@ -122,7 +121,7 @@ def _program(seed: int, number: int) -> Program:
 
 
 def record_of(standings: Sequence[Standing], programs: int, seed: int) -> dict[str, Any]:
-    """What is written as JSON."""
+    """Return the results as JSON."""
     return {
         "programs": programs,
         "seed": seed,
