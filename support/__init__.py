@@ -1,1 +1,1 @@
-"""What every package needs and is not about KRL: files, processes, measurements."""
+"""Code that every package needs and that does not depend on KRL: files, processes, measurement."""

@@ -1,7 +1,7 @@
-"""Garbage collection delayed during work that makes many objects and little garbage.
+"""Pausing the garbage collector during work that creates many objects and little garbage.
 
-A syntax tree of a megabyte has half a million objects, and none is garbage before the whole tree
-is. Visiting them again and again takes 40 % of the time of a check.
+The syntax tree of a megabyte has half a million objects, and none is garbage before the whole tree
+is. Visiting them repeatedly would take 40 % of the time of a check.
 """
 
 from __future__ import annotations
@@ -10,21 +10,20 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-# New objects from which on garbage is collected all the same, so that memory stays flat: they take
-# some 50 MB, and a collection goes through every object that there is.
+# After this many new objects (some 50 MB) garbage is collected all the same, to bound memory.
 _MANY = 500_000
 
 
 def collect_seldom() -> None:
-    """From now on collect new garbage every 100,000 objects, and all of it now and then."""
+    """Collect new garbage every 100,000 objects from now on, and all garbage rarely."""
     gc.set_threshold(_MANY // 5, 5, 1)
 
 
 @contextmanager
 def gc_paused(many: int = _MANY) -> Iterator[None]:
-    """Collect no garbage while the block runs, and behind it only where it made many objects.
+    """Disable garbage collection in the context; collect after it if it created many objects.
 
-    Work that leaves little garbage in cycles can set ``many`` higher: what is alive counts too.
+    Work that leaves little garbage in cycles can raise ``many``, which also counts live objects.
     """
     was_enabled = gc.isenabled()
     gc.disable()

@@ -1,9 +1,9 @@
-"""Dataclasses whose generated code is compiled when the first instance is made.
+"""Dataclasses whose generated methods are compiled at their first call.
 
 `dataclasses.dataclass` compiles up to seven functions for each class, which was a third of the
-start of a command: most of the classes that it loads it never makes. Here methods are compiled at
-their first call. Nothing else differs, but that ``__init__`` has no signature of its own before.
-A class inherits only from classes that are made here too, or from none that are dataclasses.
+start-up time of a command, although most of the loaded classes are never instantiated. The only
+other difference is that ``__init__`` has no signature of its own before its first call. A class may
+only inherit from classes made here, or from classes that are no dataclasses.
 """
 
 import dataclasses
@@ -48,16 +48,16 @@ else:
 
 @dataclass_transform(eq_default=False, frozen_default=True)
 def node(kind: type[_Class]) -> type[_Class]:
-    """A class whose instances compare by identity, frozen for the type checker alone.
+    """Return a class whose instances compare by identity and are frozen for type checkers only.
 
-    For what is made by the thousand, as the nodes of a tree are: a dataclass that is frozen at run
-    time takes three times as long to make.
+    It is meant for objects that are created by the thousand, such as tree nodes: a dataclass that
+    is frozen at run time takes three times as long to create.
     """
     return dataclass(slots=True, eq=False)(kind)
 
 
 def _late(cls: Any, name: str, text_of: Callable[[Any], tuple[str, dict[str, Any]]]) -> Any:
-    """A method that at its first call puts in its place what is compiled of a text."""
+    """Return a method that, at its first call, replaces itself by the compiled text."""
 
     def method(self: Any, *values: Any, **named: Any) -> Any:
         text, known = text_of(cls)

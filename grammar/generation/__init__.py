@@ -1,1 +1,1 @@
-"""Valid programs made at random from a seed."""
+"""Random valid KRL programs, reproducible from a seed."""

@@ -1,7 +1,7 @@
-"""Random decisions: a generated program follows from the results of `Choices.below` alone.
+"""Random decisions: a generated program depends on the results of `Choices.below` alone.
 
-A smaller number means a simpler decision, so that a test that draws the numbers itself can shrink a
-program.
+A smaller number means a simpler decision, so a test that draws the numbers itself (property-based
+testing) can shrink a program.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _T = TypeVar("_T")
 
 
 class Weighted(Generic[_T]):
-    """Items of which some are drawn more often than others."""
+    """Items that are drawn in proportion to their weights."""
 
     __slots__ = ("items", "limits")
 
@@ -27,35 +27,35 @@ class Weighted(Generic[_T]):
 
 
 class Choices(ABC):
-    """A source of decisions."""
+    """A source of random decisions."""
 
     __slots__ = ()
 
     @abstractmethod
     def below(self, end: int) -> int:
-        """A number from 0 to below ``end``, which is at least 1."""
+        """Return a number from 0 up to ``end``, which is excluded and at least 1."""
 
     def between(self, low: int, high: int) -> int:
-        """A number from ``low`` to ``high``, both included."""
+        """Return a number from ``low`` to ``high``, both included."""
         return low + self.below(high - low + 1)
 
     def chance(self, percent: int) -> bool:
-        """Whether something happens that has this probability."""
+        """Return ``True`` with this probability."""
         return self.below(100) >= 100 - percent
 
     def pick(self, items: Sequence[_T]) -> _T:
-        """One of them; there is at least one."""
+        """Return one of the items, of which there is at least one."""
         return items[self.below(len(items))]
 
     def weighted(self, weighted: Weighted[_T]) -> _T:
-        """One of them, by its weight; a single one is returned without a decision."""
+        """Return an item according to the weights; no number is drawn if there is only one."""
         limits = weighted.limits
         if len(limits) == 1:
             return weighted.items[0]
         return weighted.items[bisect(limits, self.below(limits[-1]))]
 
     def few(self, items: Sequence[_T], count: int) -> Sequence[_T]:
-        """``count`` different ones, or all if there are no more, in their order."""
+        """Return ``count`` different items in their order, or all if there are no more."""
         if count >= len(items):
             return items
         left = list(range(len(items)))
@@ -65,9 +65,9 @@ class Choices(ABC):
 
 
 class SeededChoices(Choices):
-    """Decisions by chance that are the same on every machine and release.
+    """Decisions from a seed that are the same on every machine and Python release.
 
-    Only `random.Random.random` is drawn from, seeded with a text: Python documents both to stay.
+    Only `random.Random.random` is used, seeded with a text: Python guarantees both to be stable.
     """
 
     __slots__ = ("_real",)
@@ -76,19 +76,19 @@ class SeededChoices(Choices):
         self._real = Random(seed).random  # no secret depends on it
 
     def below(self, end: int) -> int:
-        """A number from 0 to below ``end``."""
+        """Return a number from 0 up to ``end``, which is excluded."""
         return int(self._real() * end)
 
-    # The same as above without a call more: half of the time goes into decisions.
+    # The same as above with one call less: half of the run time is spent on decisions.
 
     def between(self, low: int, high: int) -> int:
-        """A number from ``low`` to ``high``, both included."""
+        """Return a number from ``low`` to ``high``, both included."""
         return low + int(self._real() * (high - low + 1))
 
     def chance(self, percent: int) -> bool:
-        """Whether something happens that has this probability."""
+        """Return ``True`` with this probability."""
         return self._real() * 100 >= 100 - percent
 
     def pick(self, items: Sequence[_T]) -> _T:
-        """One of them; there is at least one."""
+        """Return one of the items, of which there is at least one."""
         return items[int(self._real() * len(items))]

@@ -1,7 +1,8 @@
-"""A routine in the making, and the style it is made in.
+"""A routine under construction, and the style in which it is generated.
 
-The rules of `expressions`, `statements`, `control_flow` and `motions` write any kind of program.
-A `Style` holds what they may choose and how often; two exist: `programs.closed` and `cells.style`.
+The rules in `expressions`, `statements`, `control_flow` and `motions` can generate any kind of
+program. A `Style` says what they may choose and how often. There are two: `closed.style` and
+`cells.style`.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ from grammar.semantics.types import Type
 
 
 class Naming(Protocol):
-    """Makes names that are not taken yet."""
+    """A source of unique names."""
 
     def variable(self, type_: Type, letter: str = "V") -> str:
-        """A name for a variable; plain styles begin it with the letter."""
+        """Return a name for a variable; simple implementations begin it with the letter."""
 
     def label(self) -> str:
-        """A name for a label."""
+        """Return a name for a label."""
 
 
 @dataclass(frozen=True, slots=True)
 class Spelling:
-    """White space: what stands around operators and assignments, behind commas, before calls."""
+    """White space: indentation, and blanks around operators, after commas and before arguments."""
 
     indent: str = "  "
     eq: str = "="
@@ -38,18 +39,18 @@ class Spelling:
     before: str = ""
 
     def call(self, name: str, arguments: Iterable[str]) -> str:
-        """A call as a statement or as part of an expression."""
+        """Return a call as a statement or as part of an expression."""
         return f"{name}{self.before}({self.comma.join(arguments)})"
 
     def binary(self, left: str, operator: str, right: str) -> str:
-        """Two operands with an operator between them; one that is a word stands apart."""
+        """Return an operation; an operator that is a word is always surrounded by blanks."""
         gap = " " if operator[0].isalpha() else self.gap
         return f"{left}{gap}{operator}{gap}{right}"
 
 
-#: Writes an expression that may nest so deep.
+#: Returns an expression; the number is the greatest depth of nesting.
 ExpressionRule = Callable[["Code", int], str]
-#: Writes a statement; whether the place had what it takes.
+#: Writes a statement; returns ``False`` and writes nothing if the scope lacks what it needs.
 StatementRule = Callable[["Code"], bool]
 
 
@@ -57,76 +58,76 @@ StatementRule = Callable[["Code"], bool]
 class Style:
     """What programs of a kind choose from, and how often; shares are in percent.
 
-    ``is_closed``: every loop is bounded by a variable that only it counts with, numbers are kept
-    small, and the cost of all that is executed is accounted for, so that a program runs to its end
-    alone. Where it is not, programs are as people write them, and only have to check.
+    In a closed style every loop is bounded by its own counter, numbers are kept small, and the cost
+    of all executed statements is counted, so that a program terminates without input. Otherwise
+    programs resemble those that people write, and only have to pass the check.
     """
 
     is_closed: bool
     spelling: Spelling
     literals: Literals
-    #: What an expression of a type is made by where it is not an atom, a call or a function.
+    #: Rules for expressions of a type other than atoms, calls and functions.
     expressions: Mapping[Type, Weighted[ExpressionRule]]
     #: Functions and variables of the controller.
     functions: Mapping[Type, Weighted[ExpressionRule]]
     relations: Weighted[ExpressionRule]
     statements: Weighted[StatementRule]
-    #: Motions, in a share that each routine has.
+    #: Rules for motions; each routine has its own share of them.
     moving: Weighted[StatementRule]
-    #: What stands under ON_ERROR_PROCEED.
+    #: Statements after ON_ERROR_PROCEED.
     risky: Weighted[StatementRule]
-    #: Types of what is assigned, selected by, compared.
+    #: Draws the type of an assigned variable; see also ``selectors`` and ``compared``.
     assigned: Callable[[Code], Type]
-    #: A value for a place of a type.
+    #: Draws a value for a place of a type.
     value: Callable[[Code, str, Type], str]
-    #: A parameter without its name, of an array only where that may be.
+    #: Draws a parameter without a name; the flag says whether it may be an array.
     parameter: Callable[[Choices, bool], Parameter]
     selectors: Callable[[Code], Type]
     compared: Callable[[Code], Type]
-    #: Where a motion goes: its kind, and whether it is a direction of an arc; and how it blends.
+    #: Draw the target and the blending criterion of a motion of a kind.
     goal: Callable[[Code, str], str]
     blend: Callable[[Code, str], str]
     motions: Weighted[str]
-    #: Variables of the controller among atoms, with their share.
+    #: System variables among the atoms of a type, with their share.
     atoms: Mapping[Type, tuple[int, Weighted[ExpressionRule]]]
-    #: Puts a remark behind an assignment at times.
+    #: Draws a comment to put after an assignment, or an empty text.
     remark: Callable[[Choices], str] | None = None
     atom_share: int = 0
     operator_share: int = 75
     call_share: int = 9
-    #: Of atoms: variables of the program; the others are constants. Truth values have their own.
+    #: Share of variables among atoms; the rest are constants. BOOL has a share of its own.
     variable_share: int = 70
     truth_share: int = 70
-    #: Of places: variables as a whole; then each place alike, or each variable alike.
+    #: Shares of whole variables among places, and of a draw that gives each place the same chance.
     whole_share: int = 0
     any_place_share: int = 50
     omitted_share: int = 1
     jump_share: int = 0
     else_share: int = 50
     exit_share: int = 12
-    #: Whether a SWITCH has another CASE, and how many labels one has at most.
+    #: Probability of one more CASE in a SWITCH, and the greatest number of labels of a CASE.
     case_share: int = 65
     case_labels: int = 3
-    #: Declarations: without DECL, together with the one before, and with a value.
+    #: Shares of declarations without DECL, joined with the one before, and without a value.
     short_declaration_share: int = 40
     group_share: int = 0
     bare_share: int = 4
     bare_local_share: int = 5
     deepest: int = 99
-    #: What has to be left of the budget for another statement of a block.
+    #: The least remaining budget with which a block gets another statement.
     reserve: int = 12
     has_splines: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """How large programs become.
+    """The size of programs.
 
-    ``budget`` is how many statements the main routine executes at most, ``others`` how many each
-    of the others does; ``statements`` is how many stand in a block at most, ``depth`` how deep
-    expressions nest, ``routines`` how many there are besides the main one at most, ``data`` how
-    many variables of a kind a data list has about. Of a hundred programs, ``risky`` are such that
-    provoke faults.
+    ``budget`` is the greatest number of statements that the main routine executes, ``others`` that
+    of every other routine. ``statements`` is the greatest number of statements in a block,
+    ``depth`` the greatest depth of expressions, ``routines`` the greatest number of routines
+    besides the main one, and ``data`` the approximate number of variables of each kind in a data
+    list. ``risky`` is the percentage of programs that provoke faults.
     """
 
     budget: int = 700
@@ -140,7 +141,7 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Counter:
-    """An INT that has a value within these limits wherever it is known."""
+    """An INT variable whose value is within these limits while it is listed."""
 
     name: str
     low: int
@@ -149,7 +150,7 @@ class Counter:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Which routine is made: the main one, what an interrupt calls, and what a function gives."""
+    """The kind of routine: main routine, interrupt or trigger action, function with its result."""
 
     is_main: bool = False
     is_action: bool = False
@@ -157,14 +158,13 @@ class Part:
 
 
 class Code:
-    """A routine in the making.
+    """A routine under construction.
 
-    ``budget`` is how many statements it may execute; in an open style, how many lines it may have.
-    ``times`` is how often what is written now is executed at most, ``spent`` what all before costs,
-    ``risk`` the percentage of places at which a fault is provoked, ``moving`` that of statements
-    that are motions. ``passes`` are names of integers
-    that only loops and jumps backwards count with, ``counters`` those that do here, ``interrupts``
-    the numbers declared so far.
+    ``budget`` is the number of statements it may execute; in an open style, the number of lines it
+    may have. ``times`` is how often the current place is executed at most, ``spent`` the cost of
+    everything before it, ``risk`` the percentage of places at which a fault is provoked, ``moving``
+    that of statements that are motions. ``passes`` are names of integers that only count loops and
+    backward jumps, ``counters`` those in use here, ``interrupts`` the numbers declared so far.
     """
 
     def __init__(
@@ -203,22 +203,22 @@ class Code:
     # ----------------------------------------------------------------------- writing
 
     def line(self, text: str) -> bool:
-        """A line at the depth of the moment; gives `True`, as most statements do."""
+        """Write a line with the current indentation; returns ``True``, as most rules do."""
         self.lines.append(self.pad + text)
         return True
 
     def set(self, variable: str, value: str) -> bool:
-        """An assignment."""
+        """Write an assignment."""
         remark = self.style.remark(self.choices) if self.style.remark else ""
         return self.line(f"{variable}{self.spelling.eq}{value}{remark}")
 
     def call(self, name: str, *arguments: str) -> bool:
-        """A call as a statement."""
+        """Write a call as a statement."""
         return self.line(self.spelling.call(name, arguments))
 
     @contextmanager
     def indented(self) -> Iterator[None]:
-        """Lines a step further in."""
+        """Indent the lines of the context by one step."""
         pad, self.pad = self.pad, self.pad + self.spelling.indent
         self.level += 1
         yield
@@ -227,20 +227,20 @@ class Code:
 
     @contextmanager
     def block(self, opener: str, closer: str) -> Iterator[None]:
-        """The lines of a block, a step further in than its opener and closer."""
+        """Write ``opener``, the indented lines of the context, and ``closer``."""
         self.line(opener)
         with self.indented():
             yield
         self.line(closer)
 
     def guarded(self, condition: str, text: str) -> bool:
-        """One statement under a condition."""
+        """Write one statement in an IF."""
         with self.block(f"IF {condition} THEN", "ENDIF"):
             return self.line(text)
 
     @contextmanager
     def fold(self, title: str, closer: str = "") -> Iterator[None]:
-        """The lines of a fold, no further in."""
+        """Write the lines of the context in a fold, without indentation."""
         self.line(f";FOLD {title}")
         yield
         self.line(f";ENDFOLD ({closer})" if closer else ";ENDFOLD")
@@ -248,18 +248,18 @@ class Code:
     # ----------------------------------------------------------------------- what it costs
 
     def spend(self, cost: int = 1) -> None:
-        """So many statements are executed whenever the program comes here."""
+        """Count the cost of statements at the current place."""
         self.spent += cost * self.times
 
     def left(self) -> int:
-        """How many statements may still be executed whenever the program comes here."""
+        """Return how many more statements each execution of the current place may take."""
         if not self.style.is_closed:
             return self.budget - len(self.lines)
         return max((self.budget - self.spent) // self.times, 0)
 
     @contextmanager
     def repeated(self, times: int, *, is_loop: bool = True) -> Iterator[None]:
-        """What is executed so often each time the program comes to it; its counter ends there."""
+        """Count the context as executed ``times`` times; counters added in it are removed after."""
         before, counters = self.times, len(self.counters)
         self.loops += is_loop
         self.times *= times
@@ -269,5 +269,5 @@ class Code:
         del self.counters[counters:]
 
     def risks(self) -> bool:
-        """Whether a fault is provoked here."""
+        """Return whether to provoke a fault here."""
         return self.risk > 0 and self.choices.chance(self.risk)

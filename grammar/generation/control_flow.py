@@ -1,6 +1,7 @@
 """Blocks of statements: branches, loops, jumps, returns.
 
-In closed programs every loop is bounded: by its limits, or by a variable that only it counts with.
+In a closed style every loop is bounded, by its limits or by its own counter. As in `statements`, a
+rule writes into a `Code` and returns whether it could.
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ from grammar.generation.scope import Variable
 from grammar.generation.statements import assignment
 from grammar.semantics.types import CHAR, INT, Array, Enumeration, Type
 
-#: Loops within blocks.
+#: Greatest depth of blocks in which a loop begins.
 _DEEPEST: Final = 5
-#: An upper limit that is not known.
+#: Stands for an unknown upper limit.
 _UNKNOWN: Final = 10_000
 
 
 def statement(code: Code) -> None:
-    """A statement of the style: an assignment where the place has not what another one takes."""
+    """Write a statement of the style; an assignment if the drawn rule finds nothing to use."""
     style, choices = code.style, code.choices
     is_motion = code.moving > 0 and choices.chance(code.moving)
     if not choices.weighted(style.moving if is_motion else style.statements)(code):
@@ -29,7 +30,7 @@ def statement(code: Code) -> None:
 
 
 def statements(code: Code, most: int | None = None) -> None:
-    """The body of a block, of ``most`` statements."""
+    """Write the statements of a block, at most ``most``."""
     choices, style = code.choices, code.style
     for _ in range(choices.between(1, most or code.size.statements)):
         if code.left() < style.reserve:
@@ -44,7 +45,7 @@ def statements(code: Code, most: int | None = None) -> None:
 
 
 def branch(code: Code) -> bool:
-    """IF."""
+    """Write an IF."""
     if code.level > code.style.deepest:
         return False
     code.spend()
@@ -59,7 +60,7 @@ def branch(code: Code) -> bool:
 
 
 def switch(code: Code) -> bool:
-    """SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
+    """Write a SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
     choices, style = code.choices, code.style
     type_ = style.selectors(code)
     labels = _labels(type_)
@@ -106,7 +107,7 @@ def _is_constant(variable: Variable) -> bool:
 
 
 def _times(code: Code) -> int:
-    """How often a loop is passed; 0 where there is no room for one."""
+    """Return how often a loop is to run; 0 if the budget has no room for one."""
     if not code.style.is_closed:
         return code.choices.between(2, 12) if code.level <= code.style.deepest else 0
     room = code.left() // 12
@@ -116,13 +117,13 @@ def _times(code: Code) -> int:
 
 
 def _spare(code: Code) -> list[str]:
-    """Variables for counting that no loop around counts with; of a data list in one routine."""
+    """Return the counters that no enclosing loop uses."""
     used = {one.name for one in code.counters}
     return [name for name in code.passes if name not in used]
 
 
 def loop_for(code: Code) -> bool:
-    """FOR, upwards or downwards, its limits constants or not [CTL-05]."""
+    """Write a FOR, upwards or downwards, with or without constant limits [CTL-05]."""
     choices = code.choices
     times, spare = _times(code), _spare(code)
     if not times or not spare:
@@ -147,7 +148,7 @@ _Limits = tuple[str, str, int, int, int, int]
 
 
 def _closed_limits(code: Code, times: int) -> _Limits:
-    """First and last value, the step, the least and the greatest value, how often it goes."""
+    """Return first and last value, step, least and greatest value, and number of passes."""
     choices = code.choices
     first, step = choices.pick((1, 1, 1, 0, -2)), choices.pick((1, 1, 1, 2, -1, -3))
     final = first + step * (times - 1)
@@ -166,7 +167,7 @@ def _closed_limits(code: Code, times: int) -> _Limits:
 
 
 def _open_limits(code: Code, times: int) -> _Limits:
-    """The same, as people write it: from one upwards as a rule."""
+    """Return the same for an open style: mostly from one upwards."""
     choices = code.choices
     way = choices.below(100)
     if way < 10:
@@ -177,9 +178,9 @@ def _open_limits(code: Code, times: int) -> _Limits:
 
 
 def _counted(code: Code) -> tuple[str, int] | None:
-    """A variable of its own for a loop or a jump, set to zero, and how often it goes.
+    """Set an unused counter to zero; return its name and the number of passes.
 
-    In an open style the name is empty: a condition alone decides.
+    In an open style the name is empty, because a condition alone ends the loop.
     """
     times = _times(code)
     if not code.style.is_closed:
@@ -194,7 +195,7 @@ def _counted(code: Code) -> tuple[str, int] | None:
 
 
 def loop_while(code: Code) -> bool:
-    """WHILE [CTL-01]."""
+    """Write a WHILE [CTL-01]."""
     found = _counted(code)
     if found is None:
         return False
@@ -210,7 +211,7 @@ def loop_while(code: Code) -> bool:
 
 
 def loop_repeat(code: Code) -> bool:
-    """REPEAT [CTL-01]."""
+    """Write a REPEAT [CTL-01]."""
     found = _counted(code)
     if found is None:
         return False
@@ -227,7 +228,7 @@ def loop_repeat(code: Code) -> bool:
 
 
 def loop(code: Code) -> bool:
-    """LOOP, left by EXIT [CTL-01, CTL-02]."""
+    """Write a LOOP that is left by EXIT [CTL-01, CTL-02]."""
     found = _counted(code)
     if found is None:
         return False
@@ -241,7 +242,10 @@ def loop(code: Code) -> bool:
 
 
 def _both(code: Code, bound: str, word: str) -> str:
-    """The condition of a loop: its bound, at times with another one; no bound in an open style."""
+    """Return the condition of a loop: its bound, sometimes joined with a random condition.
+
+    In an open style there is no bound.
+    """
     if not code.style.is_closed:
         return truth(code)
     return f"({bound}) {word} ({truth(code, 1)})" if code.choices.chance(40) else bound
@@ -255,7 +259,7 @@ def _count(code: Code, name: str, times: int, low: int = 1) -> None:
 
 
 def _leave(code: Code) -> None:
-    """EXIT, sometimes."""
+    """Write an EXIT sometimes."""
     if code.choices.chance(code.style.exit_share):
         code.spend(2)
         code.guarded(truth(code, 1), "EXIT")
@@ -265,7 +269,7 @@ def _leave(code: Code) -> None:
 
 
 def _forward_jump(code: Code) -> None:
-    """GOTO to a label further on, from the same block or out of blocks [CTL-07]."""
+    """Write a GOTO to a later label, in the same block or out of blocks [CTL-07]."""
     label = code.names.label()
     code.spend(2)
     way = code.choices.below(3)
@@ -287,7 +291,7 @@ def _forward_jump(code: Code) -> None:
 
 
 def backward_jump(code: Code) -> bool:
-    """GOTO to a label passed before, so often as a variable counts."""
+    """Write a GOTO to an earlier label, bounded by a counter."""
     found = _counted(code)
     if found is None:
         return False
@@ -302,7 +306,7 @@ def backward_jump(code: Code) -> bool:
 
 
 def give_back(code: Code) -> bool:
-    """RETURN, on some condition [CTL-09]."""
+    """Write a conditional RETURN [CTL-09]."""
     if code.loops and code.choices.chance(50):
         return False
     code.spend(2)
@@ -312,7 +316,7 @@ def give_back(code: Code) -> bool:
 
 
 def returned(code: Code) -> bool:
-    """RETURN, with a value in functions."""
+    """Write a RETURN, with a value in functions."""
     result = code.part.result
     if result is None:
         return code.line("RETURN")

@@ -1,7 +1,7 @@
-"""Expressions of a type that is asked for, from what a place can name: operators, places, calls.
+"""Expressions of a given type, from operators, the visible variables, and calls.
 
-Relations bind weakest in KRL and stand in parentheses where they are operands [ARI-05, ARI-06].
-Numbers of closed programs are kept small as a rule, so that most continue; now and then one is not.
+Relations bind most weakly in KRL and are put in parentheses as operands [ARI-05, ARI-06]. In closed
+programs most numbers stay small, so that most programs run to their end without a fault.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Structure, Typ
 
 _ORDERS: Final = ("==", "<>", "<", ">", "<=", ">=", "=>", "=<")
 _EQUAL: Final = ("==", "<>")
-#: Deep enough for the program stack to overflow.
+#: A depth of recursion at which the program stack overflows.
 _TOO_DEEP: Final = 70
 _ATOM: Final = re.compile(r"[\w.$]+(\[[\w.,$+]*\][\w.]*)?")
 
@@ -26,12 +26,12 @@ _ATOM: Final = re.compile(r"[\w.$]+(\[[\w.,$+]*\][\w.]*)?")
 
 
 def constant(code: Code, type_: Type, *, is_signed: bool = True) -> str:
-    """A constant of the style."""
+    """Return a constant of the style."""
     return code.style.literals.constant(code.choices, type_, is_signed=is_signed)
 
 
 def _index(code: Code, size: int) -> str:
-    """An index for a dimension of so many elements: nearly always one that it has."""
+    """Return an index for a dimension of ``size`` elements, nearly always a valid one."""
     choices = code.choices
     if code.risks() and choices.chance(30):
         # The checker finds what lies outside if it is a constant.
@@ -49,25 +49,25 @@ def _index(code: Code, size: int) -> str:
 
 
 def _written(code: Code, variable: Variable, path: Path) -> str:
-    """A place as text, with indices drawn for it."""
+    """Return a place as text, with random indices."""
     way = (_index(code, one) if isinstance(one, int) else one for one in path)
     return "".join([variable.name, *way])
 
 
 def target(code: Code, type_: Type, *, is_local: bool = True) -> str | None:
-    """A place that can be assigned, ``None`` where there is none."""
+    """Return a place that can be assigned, or ``None`` if there is none."""
     return _one_of(code, code.scope.places(type_, is_written=True, is_local=is_local))
 
 
 def read(code: Code, type_: Type) -> str | None:
-    """A place that has a value, ``None`` where there is none."""
+    """Return a place that has a value, or ``None`` if there is none."""
     is_bare = code.risks()
     has_letters = type_ != CHAR or not code.choices.chance(92)
     return _one_of(code, code.scope.places(type_, is_bare=is_bare, has_letters=has_letters))
 
 
 def _one_of(code: Code, places: Places) -> str | None:
-    """A variable as a whole, any place alike, or one of each variable alike."""
+    """Return a random place: a whole variable, any place, or a place of a random variable."""
     choices, style = code.choices, code.style
     if not places.holders:
         return None
@@ -81,7 +81,7 @@ def _one_of(code: Code, places: Places) -> str | None:
 
 
 def atom(code: Code, type_: Type) -> str:
-    """A variable or a constant."""
+    """Return a variable or a constant."""
     choices, style = code.choices, code.style
     if type_ in style.atoms:
         share, rules = style.atoms[type_]
@@ -98,12 +98,12 @@ def atom(code: Code, type_: Type) -> str:
 
 
 def constant_or_place(code: Code, type_: Type) -> str:
-    """A variable, or a constant where there is none."""
+    """Return an assignable place, or a constant if there is none."""
     return target(code, type_) or constant(code, type_)
 
 
 def count(code: Code, name: str, low: int, high: int) -> None:
-    """In this loop a variable has a value within limits."""
+    """Record that a variable is a counter within these limits here."""
     code.counters.append(Counter(name, low, high))
 
 
@@ -111,7 +111,7 @@ def count(code: Code, name: str, low: int, high: int) -> None:
 
 
 def call_of(code: Code, routine: Routine) -> str:
-    """A call, whose cost is charged to the place it stands in."""
+    """Return a call; its cost is counted at the current place."""
     if not routine.deepest:
         code.spend(routine.cost)
         return code.spelling.call(routine.name, _arguments(code, routine.parameters))
@@ -129,7 +129,7 @@ def _arguments(code: Code, parameters: Sequence[Parameter]) -> list[str]:
 
 
 def argument(code: Code, type_: Type, *, is_out: bool) -> str:
-    """An argument; for a parameter :OUT a variable nearly always."""
+    """Return an argument; for a parameter :OUT nearly always a variable."""
     choices, style = code.choices, code.style
     if style.omitted_share and choices.chance(style.omitted_share):
         return ""  # left out [SCO-13]
@@ -147,7 +147,7 @@ def argument(code: Code, type_: Type, *, is_out: bool) -> str:
 
 
 def array(code: Code, type_: Array) -> str:
-    """A whole array, or a row of one of more dimensions; empty where there is none."""
+    """Return a whole array, or part of one with more dimensions; empty if there is none."""
     rank, choices = len(type_.sizes), code.choices
     found = []
     for given in range(4 - rank):
@@ -158,7 +158,7 @@ def array(code: Code, type_: Array) -> str:
 
 
 def _row(code: Code, place: Place, given: int) -> str:
-    """A whole array, or a part of one, whose first dimensions have an index [TYP-11]."""
+    """Return an array with its first ``given`` indices written [TYP-11]."""
     assert isinstance(place.type, Array)
     sizes = [size or 2 for size in place.type.sizes]
     first = ",".join(_index(code, size) for size in sizes[:given])
@@ -167,7 +167,7 @@ def _row(code: Code, place: Place, given: int) -> str:
 
 
 def text(code: Code) -> str:
-    """A text: a variable, a row of a table, or a text as written."""
+    """Return a text: a variable, a row of a table, or a literal."""
     found = array(code, TEXT) if code.choices.chance(60) else ""
     return found or constant(code, TEXT)
 
@@ -176,7 +176,7 @@ def text(code: Code) -> str:
 
 
 def expression(code: Code, type_: Type, depth: int) -> str:
-    """An expression of a type; ``depth`` is how deep it may nest."""
+    """Return an expression of a type; ``depth`` is how deep it may nest."""
     if depth <= 0:
         return atom(code, type_)
     choices, style = code.choices, code.style
@@ -195,18 +195,18 @@ def expression(code: Code, type_: Type, depth: int) -> str:
 
 
 def truth(code: Code, depth: int = 2) -> str:
-    """A condition."""
+    """Return a condition."""
     return expression(code, BOOL, depth)
 
 
 def operand(code: Code, type_: Type, depth: int) -> str:
-    """An expression as an operand: in parentheses where it is not an atom."""
+    """Return an expression as an operand: in parentheses if it is not an atom."""
     found = expression(code, type_, depth)
     return found if _ATOM.fullmatch(found) else f"({found})"
 
 
 def factor(code: Code, type_: Type) -> str:
-    """A number that a product stays small with."""
+    """Return a small number, as the operand of a product."""
     choices = code.choices
     small = ("2", "3", "7", "-1", "0") if type_ == INT else ("0.5", "1.1", "-2.0")
     found = choices.pick((*small, atom(code, type_)))
@@ -214,7 +214,7 @@ def factor(code: Code, type_: Type) -> str:
 
 
 def divisor(code: Code, type_: Type) -> str:
-    """A number that is seldom zero."""
+    """Return a number that is seldom zero."""
     choices = code.choices
     if code.risks():
         return choices.pick(("0", atom(code, type_)))
@@ -224,7 +224,7 @@ def divisor(code: Code, type_: Type) -> str:
 
 
 def chain(type_: Type) -> ExpressionRule:
-    """Sums and products without parentheses, so that precedence is at work [ARI-05]."""
+    """Return a rule for sums and products without parentheses, to test precedence [ARI-05]."""
 
     def rule(code: Code, depth: int) -> str:
         choices = code.choices
@@ -244,13 +244,13 @@ def chain(type_: Type) -> ExpressionRule:
 
 
 def letter(code: Code, depth: int) -> str:
-    """A letter, which no operator makes, in parentheses at times."""
+    """Return a CHAR, sometimes in parentheses; no operator has a CHAR as its result."""
     found = atom(code, CHAR)
     return f"({found})" if depth > 1 and code.choices.chance(10) else found
 
 
 def pose(type_: Structure) -> ExpressionRule:
-    """Frames composed by the geometric operator; the last one gives the type [ARI-08]."""
+    """Return a rule for frames joined by the operator ``:``; the last gives the type [ARI-08]."""
 
     def rule(code: Code, depth: int) -> str:
         choices = code.choices
@@ -264,7 +264,7 @@ def pose(type_: Structure) -> ExpressionRule:
 
 
 def _frame(code: Code, type_: Structure) -> str:
-    """A variable, or an aggregate that names its type, as it would be unknown otherwise."""
+    """Return a variable, or an aggregate that names its type, which would be unknown otherwise."""
     choices = code.choices
     found = read(code, type_)
     if found is None or choices.chance(15):
@@ -276,12 +276,12 @@ def _frame(code: Code, type_: Structure) -> str:
 
 
 def relation(code: Code, depth: int) -> str:
-    """A comparison of two values of one type, of numbers of both, of letters [ARI-10]."""
+    """Return a comparison by one of the style's rules [ARI-10]."""
     return code.choices.weighted(code.style.relations)(code, depth)
 
 
 def near_comparison(code: Code, _depth: int) -> str:
-    """A comparison of numbers that are equal or nearly so."""
+    """Return a comparison of numbers that are equal or nearly equal."""
     choices = code.choices
     left = atom(code, choices.pick((INT, REAL)))
     others = (left, left, left, f"{left}+1", f"{left}-1", "0", "1", "2", f"{left}*1.0")
@@ -289,13 +289,13 @@ def near_comparison(code: Code, _depth: int) -> str:
 
 
 def letter_comparison(code: Code, _depth: int) -> str:
-    """A comparison of letters, at times with a text that is none."""
+    """Return a comparison of CHAR values, sometimes with an empty text."""
     right = '""' if code.risks() else atom(code, CHAR)
     return f"{atom(code, CHAR)} {code.choices.pick(_ORDERS)} {right}"
 
 
 def constant_comparison(code: Code, depth: int) -> str:
-    """A comparison of constants of an enumeration, the controller's own among them."""
+    """Return a comparison of enumeration values, also predefined ones."""
     choices, style = code.choices, code.style
     type_ = style.compared(code)
     functions = style.functions.get(type_)

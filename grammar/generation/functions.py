@@ -1,4 +1,4 @@
-"""Values from the controller: its functions and its variables, as patterns by type."""
+"""Values from the controller, by type: predefined functions and system variables as patterns."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _READABLE: Final[Mapping[Type, tuple[str, ...]]] = {
 
 
 def _parse(code: Code, depth: int) -> str:
-    """STRTO…: some texts can be read, some cannot."""
+    """Return a call of STRTO…; some of the texts can be converted, others cannot."""
     name, type_ = code.choices.pick(_READERS)
     if name == "STRTOSTRING":
         return pattern("STRTOSTRING(<text>, <letters>)")(code, depth)
@@ -44,7 +44,7 @@ def _inverse(code: Code, depth: int) -> str:
 
 
 def _risky(right: str, *wrong: str) -> ExpressionRule:
-    """A pattern, or one that may fail where a fault is provoked."""
+    """Return a rule for ``right``, or for one of ``wrong`` where a fault is to be provoked."""
     usual, others = pattern(right), [pattern(one) for one in wrong]
 
     def rule(code: Code, depth: int) -> str:

@@ -1,4 +1,4 @@
-"""Values as they are written: constants of each type, aggregates, and initialisations."""
+"""Literals: constants of each type, aggregates, and initial values."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, S
 #: A text of any length.
 TEXT: Final = Array(CHAR, (None,))
 
-#: The way to a part: text as it is, or an index for a dimension of so many elements.
+#: The path to a part: literal text, or the size of a dimension for which to draw an index.
 Path = tuple[str | int, ...]
 
 
 def predefined(name: str) -> Type:
-    """A type of the controller."""
+    """Return a predefined type."""
     return System.load().types[name]
 
 
 def structure(name: str) -> Structure:
-    """A structure of the controller."""
+    """Return a predefined structure."""
     found = predefined(name)
     assert isinstance(found, Structure)
     return found
@@ -37,10 +37,10 @@ AXIS_TYPES: Final = tuple(structure(name) for name in ("AXIS", "E3AXIS", "E6AXIS
 
 @cache
 def parts(type_: Type) -> Mapping[Type, tuple[Path, ...]]:
-    """The types of all parts of a type, itself among them, each with the paths to such parts.
+    """Return the paths to the parts of a type, by the type of the part; itself included.
 
-    An array of open size is taken to have two elements in each dimension, as all that are passed
-    have at least.
+    An array of open size is taken to have two elements in each dimension, which every array that is
+    passed has.
     """
     found: dict[Type, list[Path]] = {type_: [()]}
     ways: list[tuple[Path, Type]] = []
@@ -58,18 +58,18 @@ def parts(type_: Type) -> Mapping[Type, tuple[Path, ...]]:
 
 
 def elements(type_: Array) -> Iterator[str]:
-    """The indices of all elements, as written, in ascending order."""
+    """Yield the indices of all elements, as written, in ascending order."""
     for place in product(*(range(1, (size or 0) + 1) for size in type_.sizes)):
         yield ",".join(map(str, place))
 
 
 def type_name(type_: Type) -> str:
-    """The name that a declaration gives a type; for an array that of its elements."""
+    """Return the name of a type in a declaration; for an array that of its elements."""
     return type_name(type_.element) if isinstance(type_, Array) else str(type_)
 
 
 def declarator(type_: Type, name: str, *, is_open: bool = False) -> str:
-    """What a declaration puts behind the name of the type: ``A[2,3]``; ``A[,]`` where open."""
+    """Return a name with its array sizes: ``A[2,3]``, or ``A[,]`` if they are open."""
     if not isinstance(type_, Array):
         return name
     return f"{name}[{','.join('' if is_open or n is None else str(n) for n in type_.sizes)}]"
@@ -79,9 +79,10 @@ def declarator(type_: Type, name: str, *, is_open: bool = False) -> str:
 class Literals:
     """Constants to choose from, and how often they take one form or another, in percent.
 
-    ``large`` are integers that are seldom drawn, ``negative_integers`` and ``negative_reals`` the
-    shares with a sign. Aggregates are ``named`` with their type at times and ``incomplete`` at
-    times; ``makers`` write those of some types, by name.
+    ``large`` are integers that are rarely drawn; ``negative_integers`` and ``negative_reals`` are
+    the shares with a sign. ``named`` is the share of aggregates with a type prefix, ``incomplete``
+    the share of components that are left out. ``makers`` generate the values of some types, by type
+    name.
     """
 
     integers: tuple[str, ...]
@@ -97,7 +98,7 @@ class Literals:
     makers: Mapping[str, Callable[[Choices], str]] = field(default_factory=dict)
 
     def constant(self, choices: Choices, type_: Type, *, is_signed: bool = True) -> str:
-        """A constant; ``is_signed`` says that a sign may stand in front."""
+        """Return a constant; ``is_signed`` says that a sign may precede it."""
         if type_ == INT:
             pool = self.large if self.large and choices.chance(3) else self.integers
             text = choices.pick(pool)
@@ -118,7 +119,7 @@ class Literals:
         return f'"{choices.pick(self.texts)}"'
 
     def aggregate(self, choices: Choices, type_: Structure, *, is_full: bool = False) -> str:
-        """An aggregate; its first part is always there, the others nearly always."""
+        """Return an aggregate; its first component is always present, the others nearly always."""
         maker = self.makers.get(type_.name)
         if maker is not None:
             return maker(choices)
@@ -144,7 +145,7 @@ class Literals:
         ]
 
     def initialisation(self, choices: Choices, type_: Type, name: str) -> list[tuple[str, str]]:
-        """Targets and constants that give a variable a value in all its parts [TYP-10]."""
+        """Return targets and constants that together initialise all of a variable [TYP-10]."""
         if isinstance(type_, Structure):
             return [(name, self.aggregate(choices, type_, is_full=True))]
         if not isinstance(type_, Array):

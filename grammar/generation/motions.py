@@ -1,4 +1,7 @@
-"""Motions, spline blocks, triggers, interrupts."""
+"""Motions, spline blocks, triggers, interrupts.
+
+As in `statements`, a rule writes into a `Code` and returns whether it could.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ _SINGLE: Final = ("SPTP", "SLIN", "SCIRC", "SPTP_REL", "SLIN_REL", "SCIRC_REL")
 
 
 def motion_text(code: Code, kind: str) -> str:
-    """A motion of a kind, up to where it blends."""
+    """Return a motion of a kind, without its blending criterion."""
     choices, style = code.choices, code.style
     text = f"{kind} {style.goal(code, kind)}"
     if "CIRC" in kind:
@@ -31,7 +34,7 @@ def motion_text(code: Code, kind: str) -> str:
 
 
 def motion(code: Code) -> bool:
-    """PTP, LIN, CIRC, the relative ones, and asynchronous axes."""
+    """Write a PTP, LIN, CIRC, a relative one, or a motion of asynchronous axes."""
     choices, style = code.choices, code.style
     code.spend()
     kind = choices.weighted(style.motions)
@@ -44,7 +47,7 @@ def motion(code: Code) -> bool:
 
 
 def spline_motion(code: Code) -> bool:
-    """SPTP, SLIN, SCIRC by themselves; none within interrupts [SPL-11]."""
+    """Write a single SPTP, SLIN or SCIRC; not in interrupt routines [SPL-11]."""
     if code.part.is_action or not code.style.has_splines:
         return False
     kind = code.choices.pick(_SINGLE)
@@ -57,7 +60,7 @@ def _segment(code: Code, kind: str) -> str:
 
 
 def _with(code: Code, percent: int) -> str:
-    """Values for one motion only [SPL-08]."""
+    """Return a WITH clause: values for one motion only [SPL-08]."""
     choices = code.choices
     if not choices.chance(percent):
         return ""
@@ -78,7 +81,7 @@ _VALUES: Final = tuple(
 
 
 def spline_block(code: Code) -> bool:
-    """SPLINE or PTP_SPLINE [SPL-01]."""
+    """Write a SPLINE or PTP_SPLINE [SPL-01]."""
     if code.part.is_action or not code.style.has_splines:
         return False
     choices = code.choices
@@ -102,7 +105,10 @@ def spline_block(code: Code) -> bool:
 
 
 def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> None:
-    """A segment with what belongs to it; ``edges`` of constant velocity are still to come."""
+    """Write a segment of a spline block, sometimes after a trigger or the like.
+
+    ``edges`` are the edges of the CONST_VEL range that have not been written yet.
+    """
     choices, eq = code.choices, code.spelling.eq
     way = choices.below(10)
     if way < 2:
@@ -129,7 +135,7 @@ def _onstart(code: Code) -> str:
 
 
 def _triggered(code: Code) -> str:
-    """What stands behind the place of a trigger: delay, action, priority."""
+    """Return the end of a trigger: delay, action, priority."""
     choices, eq = code.choices, code.spelling.eq
     delay = choices.pick(("0", "20", "-10.5", f"{operand(code, INT, 1)} B_AND 255"))
     actions = code.scope.actions()
@@ -151,7 +157,7 @@ def _triggered(code: Code) -> str:
 
 
 def action_call(code: Code, routine: Routine) -> str:
-    """A call for later, when the variables of this routine may be gone."""
+    """Return a call for a later time, when the local variables of this routine may be gone."""
     given = [
         constant(code, one.type)
         if not one.is_out
@@ -162,7 +168,7 @@ def action_call(code: Code, routine: Routine) -> str:
 
 
 def trigger(code: Code) -> bool:
-    """TRIGGER, and the motion it belongs to."""
+    """Write a TRIGGER and its motion."""
     if code.part.is_action:
         return False
     choices, eq = code.choices, code.spelling.eq
@@ -179,7 +185,7 @@ def trigger(code: Code) -> bool:
 
 
 def interrupt(code: Code) -> bool:
-    """INTERRUPT DECL, ON, OFF, ENABLE, DISABLE [INT-01, INT-07]."""
+    """Write an INTERRUPT DECL, ON, OFF, ENABLE or DISABLE [INT-01, INT-07]."""
     choices = code.choices
     code.spend()
     if not code.interrupts or choices.chance(40):
@@ -215,7 +221,7 @@ _EVENTS: Final = tuple(map(pattern, ("$IN[<1-16>]", "$FLAG[<1-16>]==TRUE", "<BOO
 
 
 def brake(code: Code) -> bool:
-    """BRAKE and RESUME, where an interrupt routine is made."""
+    """Write a BRAKE or RESUME, in interrupt routines only."""
     if not code.part.is_action:
         return False
     code.spend()

@@ -1,9 +1,9 @@
-"""Patterns of KRL: text with places to fill, which most rules of a style are.
+"""Patterns: KRL text with placeholders, the form of most rules of a style.
 
-Between ``<`` and ``>`` stands what a place is filled with: ``<INT>`` an expression of a type,
-``<operand INT>`` the same in parentheses where it is not an atom, ``<atom INT>``, ``<constant
-INT>``, ``<place INT>`` what can be assigned, ``<1-16>`` a number, ``<a|b>`` one of these words, or
-a word of `_FILLERS`. ``~`` is the gap around operators, ``:=`` the sign of an assignment.
+A placeholder stands between ``<`` and ``>``: ``<INT>`` is an expression of a type, ``<operand
+INT>`` the same in parentheses unless it is an atom, ``<atom INT>``, ``<constant INT>``, ``<place
+INT>`` something that can be assigned, ``<1-16>`` a number, ``<a|b>`` one of these words. Others are
+in `_FILLERS`. ``~`` is the gap around operators, ``:=`` the sign of an assignment.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _PLACE: Final = re.compile(r"<[^<>]+>|~|:=")
 _SCALARS: Final[Mapping[str, Type]] = {"INT": INT, "REAL": REAL, "BOOL": BOOL, "CHAR": CHAR}
-#: How deep expressions of a statement nest.
+#: Greatest depth of the expressions in a statement.
 _DEPTH: Final = 2
 
 
 def patterns(*weights: tuple[int, str | ExpressionRule]) -> Weighted[ExpressionRule]:
-    """Rules by weight, of which those that are text are patterns."""
+    """Return weighted rules; a rule that is a text is a pattern."""
     return Weighted(
         *((weight, pattern(rule) if isinstance(rule, str) else rule) for weight, rule in weights)
     )
 
 
 def pattern(text: str) -> ExpressionRule:
-    """The rule that fills the places of a pattern, from left to right."""
+    """Return the rule that fills the placeholders of a pattern from left to right."""
     pieces: list[str | ExpressionRule] = []
     end = 0
     for found in _PLACE.finditer(text):
@@ -58,7 +58,7 @@ def pattern(text: str) -> ExpressionRule:
 
 
 def line(*texts: str, cost: int = 1) -> StatementRule:
-    """The rule that writes one of these patterns as a statement."""
+    """Return the rule that writes one of the patterns as a statement."""
     rules = [pattern(text) for text in texts]
 
     def statement(code: Code) -> bool:
@@ -69,7 +69,7 @@ def line(*texts: str, cost: int = 1) -> StatementRule:
 
 
 def output(code: Code, _depth: int = 0) -> str:
-    """An output that a program may set."""
+    """Return an output that a program may set."""
     choices = code.choices
     if code.style.is_closed:
         return f"$OUT[{choices.between(1, 16)}]"
@@ -99,7 +99,7 @@ def _filler(place: str) -> ExpressionRule:
 
 
 def _of_type(kind: str, type_: Type) -> ExpressionRule:
-    """A value of a type, of a kind."""
+    """Return the rule for a placeholder such as ``<operand INT>``."""
     match kind:
         case "":
             return lambda code, depth: expression(code, type_, depth - 1)
@@ -132,16 +132,16 @@ def _name(code: Code, _depth: int) -> str:
 
 
 _FILLERS: Final[Mapping[str, ExpressionRule]] = {
-    #: A comparison; signs of comparisons of numbers, and of others.
+    #: A comparison; operators for values with an order, and for others.
     "relation": relation,
     "order": lambda code, _depth: code.choices.pick(("==", "<>", "<", ">", "<=", ">=", "=>", "=<")),
     "equal": lambda code, _depth: code.choices.pick(("==", "<>")),
-    #: A text, and one that can be changed.
+    #: A text, and a text variable.
     "text": lambda code, _depth: text(code),
     "letters": lambda code, _depth: array(code, TEXT) or '"abc"',
     "output": output,
-    #: What does not end with the routine, for conditions that are looked at later [IOT-11].
+    #: An operand that outlives the routine, for conditions that are evaluated later [IOT-11].
     "lasting": _lasting,
-    #: The name of a variable that is there, or of none.
+    #: The name of a variable, or one that does not exist.
     "name": _name,
 }

@@ -1,4 +1,4 @@
-"""Declarations, and routines as they are written: heads, parameters, local data, first values."""
+"""Declarations, and the text of routines: heads, parameters, local data, initial values."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from grammar.generation.literals import declarator, type_name
 from grammar.generation.scope import Parameter, Routine, Scope, Variable
 from grammar.semantics.types import Array, Enumeration, Structure, Type
 
-#: The parameter that counts how often a routine may still call itself.
+#: The parameter of a recursive routine that limits the remaining depth.
 DEPTH: Final = "N"
-#: Types that are declared without DECL as well [TYP-06].
+#: Types that can also be declared without DECL [TYP-06].
 _WITHOUT_DECL: Final = frozenset(
     "INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split()
 )
@@ -24,7 +24,7 @@ _WITHOUT_DECL: Final = frozenset(
 
 
 def decl(choices: Choices, style: Style, type_: Type, *, is_global: bool = False) -> str:
-    """What stands before a declarator: DECL where it is not left out, GLOBAL, the type."""
+    """Return the text before a declarator: DECL unless it is left out, GLOBAL, the type."""
     name = type_name(type_)
     is_short = name in _WITHOUT_DECL and choices.chance(style.short_declaration_share)
     return f"{'' if is_short else 'DECL '}{'GLOBAL ' if is_global else ''}{name}"
@@ -33,7 +33,7 @@ def decl(choices: Choices, style: Style, type_: Type, *, is_global: bool = False
 def datum(
     choices: Choices, style: Style, scope: Scope, type_: Type, name: str, *, is_global: bool
 ) -> list[str]:
-    """A variable of a data list, with initial values nearly always [TYP-10]."""
+    """Return the lines of a variable in a data list, nearly always with initial values [TYP-10]."""
     has_value = not choices.chance(style.bare_share)
     first = f"{decl(choices, style, type_, is_global=is_global)} {declarator(type_, name)}"
     scope.add(Variable(name, type_, is_local=False, has_value=has_value))
@@ -48,7 +48,7 @@ def datum(
 def constant_datum(
     choices: Choices, style: Style, scope: Scope, type_: Type, name: str, *, is_global: bool
 ) -> str:
-    """A named constant [TYP-07]."""
+    """Return the declaration of a named constant [TYP-07]."""
     scope.add(Variable(name, type_, is_writable=False, is_local=False))
     word = "GLOBAL " if is_global else ""
     value = style.literals.constant(choices, type_)
@@ -56,14 +56,14 @@ def constant_datum(
 
 
 def enumeration(type_: Enumeration, *, is_global: bool, comma: str = ",") -> str:
-    """The definition of an enumeration."""
+    """Return the definition of an enumeration."""
     return f"{'GLOBAL ' if is_global else ''}ENUM {type_.name} {comma.join(type_.constants)}"
 
 
 def structure_definition(
     choices: Choices, type_: Structure, *, is_global: bool, comma: str = ","
 ) -> str:
-    """The definition of a structure; members of one type share its name or have one each."""
+    """Return the definition of a structure; members of one type may share its name."""
     groups: list[str] = []
     before = ""
     for member in type_.members:
@@ -79,13 +79,13 @@ def structure_definition(
 def parameters(
     choices: Choices, style: Style, names: Naming, count: int, *, has_arrays: bool = True
 ) -> list[Parameter]:
-    """Formal parameters of types of the style; what is called by interrupts has no arrays."""
+    """Return formal parameters of the style's types; those of interrupt routines are no arrays."""
     drawn = [style.parameter(choices, has_arrays) for _ in range(count)]
     return [replace(one, name=names.variable(one.type, "P")) for one in drawn]
 
 
 def declare_parameters(code: Code, given: Sequence[Parameter]) -> None:
-    """Declarations of parameters; what counts how deep a routine calls itself is not written."""
+    """Declare the parameters; the one that limits recursion is not writable."""
     for one in given:
         first = decl(code.choices, code.style, one.type)
         code.line(f"{first} {declarator(one.type, one.name, is_open=True)}")
@@ -93,7 +93,7 @@ def declare_parameters(code: Code, given: Sequence[Parameter]) -> None:
 
 
 def declare(code: Code, types: Sequence[Type], name_of: Callable[[Type], str]) -> list[Variable]:
-    """Declarations of local variables, which have no value yet."""
+    """Declare local variables and return them; they have no value yet."""
     found: list[Variable] = []
     for type_ in types:
         name, style = name_of(type_), code.style
@@ -109,7 +109,7 @@ def declare(code: Code, types: Sequence[Type], name_of: Callable[[Type], str]) -
 
 
 def begin(code: Code, variables: Sequence[Variable], most: int) -> None:
-    """Give local variables their first values, each in so many parts at most."""
+    """Write initial values of local variables, at most ``most`` parts of each."""
     for variable in variables:
         if variable.has_value:
             values = code.style.literals.initialisation(code.choices, variable.type, variable.name)
@@ -121,7 +121,7 @@ def begin(code: Code, variables: Sequence[Variable], most: int) -> None:
 def routine_text(
     code: Code, routine: Routine, *, is_global: bool = False, close: str = ")"
 ) -> list[str]:
-    """The routine with its head and its end."""
+    """Return the lines of a routine with its first and last one."""
     spelling = code.spelling
     formal = []
     for one in routine.parameters:

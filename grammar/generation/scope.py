@@ -1,4 +1,4 @@
-"""Names visible at a place in a generated program: variables, their parts, routines."""
+"""The names that are visible at a place of a generated program: variables, parts, routines."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grammar.semantics.types import BOOL, Array, Enumeration, Structure, Type, i
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Variable:
-    """A variable; ``has_value`` says that nearly all of it was given one before it is used."""
+    """A variable; ``has_value`` says that nearly all of it is initialised before it is used."""
 
     name: str
     type: Type
@@ -25,7 +25,7 @@ class Variable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Place:
-    """A variable or a part of one."""
+    """A variable or a part of it."""
 
     variable: Variable
     type: Type
@@ -37,7 +37,7 @@ _Holder = tuple[Variable, Sequence[Path]]
 
 
 class Places:
-    """Places of one type: by their variables, and those that are a variable as a whole."""
+    """The places of one type, grouped by variable; ``whole`` are the variables of that type."""
 
     __slots__ = ("_all", "_type", "holders", "whole")
 
@@ -49,7 +49,7 @@ class Places:
 
     @property
     def all(self) -> Sequence[Place]:
-        """All of them, those of a variable together."""
+        """All places, those of a variable together."""
         if self._all is None:
             self._all = [
                 Place(variable, self._type, path)
@@ -61,7 +61,7 @@ class Places:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A formal parameter; an array has open sizes."""
+    """A formal parameter; the sizes of an array are open."""
 
     name: str
     type: Type
@@ -71,11 +71,11 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Routine:
-    """A routine that can be called; ``cost`` is how many statements it executes at most.
+    """A routine that can be called; ``cost`` is the greatest number of statements it executes.
 
-    ``deepest`` is, where it calls itself, how often it may; the first parameter says how often.
-    One that ``is_action`` is called by interrupts and triggers, one that ``is_quick`` by both and
-    by programs.
+    ``deepest`` is the greatest depth of a recursive routine, whose first parameter is the depth.
+    ``is_action`` says that it is called by interrupts and triggers only, ``is_quick`` that programs
+    may call it too.
     """
 
     name: str
@@ -89,25 +89,25 @@ class Routine:
 
 @dataclass(slots=True, eq=False)
 class Scope:
-    """Variables by what can be done with them."""
+    """The visible variables and routines, indexed by type."""
 
     _routines: list[Routine] = field(default_factory=list)
     _variables: dict[str, Variable] = field(default_factory=dict)
-    #: Variables that are, or have parts, of a type.
+    #: By type, the variables that have this type or have parts of it.
     _holders: dict[Type, list[_Holder]] = field(default_factory=dict)
-    #: What `places` and `arrays` answered since something was added.
+    #: Caches of `places` and `arrays`, cleared when a variable is added.
     _places: dict[tuple[Type, bool, bool, bool, bool], Places] = field(default_factory=dict)
     _arrays: dict[tuple[Type, int, bool], list[Place]] = field(default_factory=dict)
     _signals: dict[tuple[Type, bool], list[str]] = field(default_factory=dict)
     _callable: dict[Type | None, list[Routine]] = field(default_factory=dict)
 
     def inner(self) -> Scope:
-        """A scope within this one."""
+        """Return a copy of this scope for an inner one."""
         holders = {type_: list(found) for type_, found in self._holders.items()}
         return Scope(list(self._routines), dict(self._variables), holders)
 
     def some(self, choices: Choices, most: int) -> Scope:
-        """A scope with a few variables of each kind of type, and a few routines of each result."""
+        """Return a scope with at most ``most`` variables and routines of each kind."""
         variables: dict[Hashable, list[Variable]] = {}
         for variable in self._variables.values():
             key = (_kind(variable.type), variable.is_signal, variable.is_writable)
@@ -127,7 +127,7 @@ class Scope:
         )
 
     def add(self, variable: Variable) -> None:
-        """Make a variable known; one of the same name is hidden."""
+        """Add a variable; it hides one with the same name."""
         self._places.clear()
         self._arrays.clear()
         self._signals.clear()
@@ -140,7 +140,7 @@ class Scope:
             self._holders.setdefault(type_, []).append((variable, paths))
 
     def extend(self, variables: Iterable[Variable]) -> None:
-        """Make variables known."""
+        """Add variables."""
         for one in variables:
             self.add(one)
 
@@ -153,9 +153,10 @@ class Scope:
         is_local: bool = True,
         has_letters: bool = True,
     ) -> Places:
-        """Places of a type; those without value only where they are written or may be bare.
+        """Return the places of a type.
 
-        ``has_letters``: letters of texts are among them.
+        Those without a value are included if they are to be written (``is_written``) or may have
+        none (``is_bare``). ``has_letters`` includes single letters of texts.
         """
         key = (type_, is_written, is_bare, is_local, has_letters)
         found = self._places.get(key)
@@ -176,7 +177,7 @@ class Scope:
         return found
 
     def arrays(self, element: Type, dimensions: int, *, is_written: bool = False) -> list[Place]:
-        """Whole arrays of elements of a type."""
+        """Return the whole arrays with this element type and number of dimensions."""
         key = (element, dimensions, is_written)
         found = self._arrays.get(key)
         if found is None:
@@ -191,7 +192,7 @@ class Scope:
         return found
 
     def signals(self, type_: Type = BOOL, *, is_output: bool) -> list[str]:
-        """The names of signals of a type."""
+        """Return the names of the signals of a type."""
         key = (type_, is_output)
         found = self._signals.get(key)
         if found is None:
@@ -203,31 +204,31 @@ class Scope:
         return found
 
     def enumerations(self) -> list[Enumeration]:
-        """The types of enumerations of which something has a value."""
+        """Return the enumerations of which some place exists."""
         return [type_ for type_ in self._holders if isinstance(type_, Enumeration)]
 
     def variables(self) -> Iterator[Variable]:
-        """All of them."""
+        """Yield the visible variables."""
         yield from self._variables.values()
 
     # ----------------------------------------------------------------------- routines
 
     def add_routine(self, routine: Routine) -> None:
-        """Make a routine known."""
+        """Add a routine."""
         self._callable.clear()
         self._routines.append(routine)
 
     def forget_routines(self) -> None:
-        """No routine is known any more."""
+        """Remove all routines."""
         self._callable.clear()
         self._routines.clear()
 
     def routines(self) -> Sequence[Routine]:
-        """All of them, in the order they were made."""
+        """Return the visible routines in the order of their creation."""
         return self._routines
 
     def callable(self, result: Type | None, most: int) -> list[Routine]:
-        """Routines with this result that cost at most so much."""
+        """Return the routines with this result whose cost is at most ``most``."""
         found = self._callable.get(result)
         if found is None:
             found = self._callable[result] = [
@@ -236,13 +237,13 @@ class Scope:
         return [one for one in found if one.cost <= most]
 
     def actions(self) -> list[Routine]:
-        """Routines that interrupts and triggers can call."""
+        """Return the routines that interrupts and triggers can call."""
         return [one for one in self._routines if one.is_action or one.is_quick]
 
 
 @cache
 def _kind(type_: Type) -> Hashable:
-    """What types have in common of which a program uses a few."""
+    """Return the key by which similar types are grouped."""
     if isinstance(type_, Array):
         return (len(type_.sizes), _kind(type_.element))
     if isinstance(type_, Structure) and not is_position(type_):

@@ -1,4 +1,4 @@
-"""Programs of one shape and any size, which show how cost grows with it."""
+"""Programs with one repeated part and any size, to measure how cost grows with size."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A text that repeats a part: ``{i}`` in it is the number of the repetition, from 1.
+    """A text that repeats a part, in which ``{i}`` is the number of the repetition, from 1.
 
-    ``closing`` repeats as often, after ``middle``, which makes the parts nested.
+    ``closing`` is repeated as often after ``middle``, so that the parts are nested.
     """
 
     part: str
@@ -22,7 +22,7 @@ class Shape:
     name: str = "a.src"
 
     def text(self, size: int) -> str:
-        """The text with about ``size`` characters."""
+        """Return the text with about ``size`` characters."""
         parts: list[str] = []
         length = 0
         while length < size or not parts:
@@ -32,7 +32,7 @@ class Shape:
 
 
 def _line(before: str, part: str, after: str, **more: str) -> Shape:
-    """A routine with one long line."""
+    """Return a shape with one long line in a routine."""
     return Shape(
         part,
         head=f"DEF A()\nINT I,J\nREAL R\nBOOL B\nCHAR C[80]\n{before}",
@@ -42,11 +42,11 @@ def _line(before: str, part: str, after: str, **more: str) -> Shape:
 
 
 def _list(part: str, head: str = "", tail: str = "") -> Shape:
-    """A data list."""
+    """Return a shape that is a data list."""
     return Shape(part, head=f"DEFDAT A PUBLIC\n{head}", tail=f"{tail}\nENDDAT\n", name="a.dat")
 
 
-#: By what repeats in them.
+#: The shapes by the name of what repeats in them.
 SHAPES: Final[Mapping[str, Shape]] = {
     # lines
     "assignments": Shape("I={i}\n"),

@@ -1,4 +1,8 @@
-"""Simple statements: assignments, calls, what acts on the world without moving the arm."""
+"""Simple statements: assignments, calls, inputs and outputs.
+
+A rule writes a statement into a `Code` and returns ``True``. If the scope lacks what the statement
+needs, it writes nothing and returns ``False``.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,7 @@ _STATE: Final = structure("STATE_T")
 
 
 def assignment(code: Code) -> bool:
-    """A variable or a part of one is assigned."""
+    """Write an assignment to a variable or a part of one."""
     code.spend()
     for _ in range(4):
         type_ = code.style.assigned(code)
@@ -28,7 +32,7 @@ def assignment(code: Code) -> bool:
 
 
 def assign_missing(code: Code) -> bool:
-    """A place by an index that is often wrong is assigned what is often missing: one is first."""
+    """Write an assignment with an index that is often invalid or a value that is often missing."""
     if not code.risk:
         return False
     before, code.risk = code.risk, 100
@@ -44,7 +48,7 @@ def assign_missing(code: Code) -> bool:
 
 
 def assign_whole(code: Code) -> bool:
-    """A structure or a whole array is assigned."""
+    """Write an assignment of a structure or a whole array."""
     choices = code.choices
     if choices.chance(25):
         element = choices.pick((INT, REAL, CHAR, BOOL))
@@ -70,7 +74,7 @@ _RANKS: Final = Weighted((3, 1), (1, 2))
 
 
 def call(code: Code) -> bool:
-    """A procedure is called, or a function for what it does; arguments may be left out."""
+    """Write a call of a procedure or, for its effect, of a function."""
     result = code.choices.weighted(_CALLED) if code.style.is_closed else None
     found = code.scope.callable(result, code.left() - 2)
     if not found:
@@ -83,7 +87,7 @@ _CALLED: Final = Weighted[Type | None]((6, None), (1, INT), (1, BOOL))
 
 
 def proceed(code: Code) -> bool:
-    """ON_ERROR_PROCEED, what may go wrong, and a look at $ERR [TYP-13]."""
+    """Write ON_ERROR_PROCEED, a risky statement, and a read access to $ERR [TYP-13]."""
     found = target(code, INT)
     if found is None:
         return False
@@ -99,7 +103,7 @@ def proceed(code: Code) -> bool:
 
 
 def set_base(code: Code) -> bool:
-    """The base or the tool, at times from a position with more components."""
+    """Write an assignment to $BASE or $TOOL, sometimes from a type with more components."""
     other = read(code, POSES[1]) if code.choices.chance(25) else None
     value = other or expression(code, POSES[0], 2)
     code.spend()
@@ -107,7 +111,7 @@ def set_base(code: Code) -> bool:
 
 
 def set_advance(code: Code) -> bool:
-    """How far the advance run goes; not within interrupts."""
+    """Write an assignment to $ADVANCE; not in interrupt routines."""
     if code.part.is_action:
         return False
     code.spend()
@@ -115,7 +119,7 @@ def set_advance(code: Code) -> bool:
 
 
 def channel(code: Code) -> bool:
-    """A channel is opened, written to, closed [FCT-08]."""
+    """Write the opening, use and closing of a channel [FCT-08]."""
     state, handle = target(code, _STATE), target(code, INT)
     if state is None or handle is None:
         return False
@@ -126,7 +130,7 @@ def channel(code: Code) -> bool:
 
 
 def input_signal(code: Code) -> bool:
-    """ANIN or DIGIN into a variable that lasts [IOT-04, IOT-09]."""
+    """Write a cyclic ANIN or DIGIN into a global variable [IOT-04, IOT-09]."""
     found = target(code, REAL, is_local=False)
     if found is None:
         return False
@@ -140,7 +144,7 @@ def input_signal(code: Code) -> bool:
 
 
 def assign_text(code: Code) -> bool:
-    """A text is assigned as a whole [TYP-11]."""
+    """Write an assignment of a whole text [TYP-11]."""
     place = array(code, TEXT)
     if not place:
         return False

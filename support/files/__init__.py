@@ -1,1 +1,1 @@
-"""Files: untrusted input read within limits, results kept, output written whole or not at all."""
+"""Files: limits for untrusted input, caches, atomic writes."""

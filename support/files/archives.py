@@ -1,8 +1,9 @@
 """Reading `.zip` archives without trusting them.
 
-Nothing is ever unpacked to disk: a member is found by its place in the directory of the archive and
-read into memory. Names serve for showing only, so a name such as `../x.src` has no power. Sizes in
-the directory are claims: what is read is counted, and reading stops at the limits below.
+Nothing is unpacked to disk. A member is addressed by its index in the directory of the archive and
+read into memory. Names are only displayed, so a name such as `../x.src` has no effect. Sizes in the
+directory are not trusted: bytes are counted while they are read, and reading stops at the limits
+below.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ MAX_DIRECTORY_BYTES = 16 * MB
 OPEN_ARCHIVES = 4
 """Archives kept open between two calls of `read` in one process."""
 
-# Both unpack in bounded steps. The bzip2 and LZMA readers of `zipfile` turn a few kilobytes into
-# gigabytes in one step; no controller and no common Windows tool packs with them.
+# Both are unpacked in bounded steps. The bzip2 and LZMA readers of `zipfile` can expand a few
+# kilobytes to gigabytes in one step; no controller and no common Windows tool uses them.
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 _OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "XZ", 98: "PPMd"}
 _ENCRYPTED = 0x1
@@ -47,7 +48,7 @@ _UNIX = 3  # `create_system` of archives whose attributes hold a file mode
 _STEP = MB
 _DRIVE = re.compile(r"\A[A-Za-z]:")
 
-# What `zipfile` raises on damaged archives, found by feeding it damaged ones.
+# Exceptions that `zipfile` raises for damaged archives, found by fuzzing.
 _DAMAGE = (
     zipfile.BadZipFile,
     zipfile.LargeZipFile,
@@ -63,7 +64,7 @@ _DAMAGE = (
 _TOO_DEEP = "an archive in an archive in an archive is not opened"
 _TOO_MANY = f"more than {MAX_MEMBERS:,} members"
 _OVERLAPPING = "its bytes are those of another member too"
-_HEAD_BYTES = 30  # before a member, at least
+_HEAD_BYTES = 30  # least size of the local header before a member
 _CHANGED = "the archive changed while it was being read"
 
 
@@ -73,12 +74,12 @@ class ArchiveError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member worth reading, or one that would be but for `problem`.
+    """A member worth reading, or one that cannot be read because of `problem`.
 
-    `path` is for people: cleaned, `/` separated, unique in its archive. `address` is for `read`:
-    the places in the directories on the way (`17`, or `3/17` for a member of a nested archive),
-    because names may be double or not decodable. `size` is what the directory claims, in bytes.
-    `nested` is the `path` of the archive inside the archive that holds it, if any.
+    `path` is for display: cleaned, `/` separated, unique in its archive. `address` is for `read`:
+    the indices in the directories (`17`, or `3/17` for a member of a nested archive), because names
+    may be duplicate or not decodable. `size` in bytes is the one in the directory. `nested` is the
+    `path` of the inner archive that contains it, if any.
     """
 
     path: str
@@ -89,17 +90,17 @@ class Member:
 
 
 def is_archive(name: str) -> bool:
-    """Tell whether `name` is that of an archive to look into."""
+    """Return whether `name` is that of an archive."""
     return name.lower().endswith(".zip")
 
 
 def why(error: OSError) -> str:
-    """Return the reason of `error` without the path, which may hold anything."""
+    """Return the reason of `error` without its path, which may contain anything."""
     return error.strerror or type(error).__name__
 
 
 def read_whole(stream: io.RawIOBase | IO[bytes]) -> bytes:
-    """Return what is left in `stream`; raises ArchiveError beyond the limit for one file."""
+    """Return the rest of `stream`; raises ArchiveError beyond the limit for one file."""
     data = bytearray()
     while step := stream.read(_STEP):
         data += step
@@ -109,15 +110,15 @@ def read_whole(stream: io.RawIOBase | IO[bytes]) -> bytes:
 
 
 def too_large() -> str:
-    """Return the reason for files beyond the limit."""
+    """Return the message for a file beyond the size limit."""
     return f"larger than {_in_mb(MAX_FILE_BYTES)}"
 
 
 def members(file: Path, wanted: Callable[[str], bool]) -> list[Member]:
-    """List the members of the archive `file` whose cleaned path is `wanted`, sorted by path.
+    """Return the members of the archive `file` whose cleaned path is `wanted`, sorted by path.
 
-    Archives in it are opened too, one level deep. Raises ArchiveError when `file` is no readable
-    archive or has more members than the limit.
+    Archives in it are opened too, one level deep. Raises ArchiveError if `file` is not a readable
+    archive or has too many members.
     """
     with closing(_on_disk(file)) as archive:
         return list(_listed(archive, wanted, _Budget(MAX_MEMBERS, MAX_ARCHIVE_BYTES)))
@@ -126,7 +127,7 @@ def members(file: Path, wanted: Callable[[str], bool]) -> list[Member]:
 def read(file: Path, address: str, size: int) -> bytes:
     """Return the content of a member that `members` listed with this `address` and `size`.
 
-    Archives stay open for the next call, a few in each process. Raises ArchiveError.
+    A few archives stay open in each process for the next call. Raises ArchiveError.
     """
     *outer, last = (int(place) for place in address.split("/"))
     with _lock:
@@ -137,7 +138,7 @@ def read(file: Path, address: str, size: int) -> bytes:
 
 
 def close_archives() -> None:
-    """Close what `read` keeps open in this process."""
+    """Close the archives that `read` keeps open in this process."""
     with _lock:
         for archive in _open.values():
             archive.close()
@@ -149,13 +150,13 @@ def close_archives() -> None:
 
 @dataclass(slots=True)
 class _Budget:
-    """What is left of the limits of one archive."""
+    """What remains of the limits of one archive."""
 
     members: int
     bytes: int
 
     def spend(self, size: int) -> str | None:
-        """Take `size` bytes off, or say that they are too many; a smaller file may still fit."""
+        """Subtract `size` bytes; return a problem instead if they exceed the rest."""
         if size > self.bytes:
             return f"the archive holds more than {_in_mb(MAX_ARCHIVE_BYTES)}"
         self.bytes -= size
@@ -194,7 +195,7 @@ def _listed(
 
 
 def _named(infos: list[zipfile.ZipInfo], wanted: Callable[[str], bool]) -> list[tuple[str, int]]:
-    """Pair the cleaned, unique path of each wanted member with its place; sorted by path."""
+    """Return the cleaned, unique path and the index of each wanted member, sorted by path."""
     paths = [(_clean(info.filename), index) for index, info in enumerate(infos)]
     chosen = [
         (path, index)
@@ -211,16 +212,17 @@ def _named(infos: list[zipfile.ZipInfo], wanted: Callable[[str], bool]) -> list[
 
 
 def _clean(name: str) -> str:
-    """Return the path that a member's name means, below the archive whatever it says.
+    """Return the relative path in a member's name.
 
-    Windows tools write backslashes; drive letters, leading slashes and `..` lose their meaning.
+    Backslashes of Windows tools become slashes; drive letters, leading slashes and `..` are
+    dropped.
     """
     parts = _DRIVE.sub("", name.replace("\\", "/"), count=1).split("/") if name else []
     return "/".join(part for part in parts if part not in ("", ".", ".."))
 
 
 def _problem(info: zipfile.ZipInfo) -> str | None:
-    """The reason not to read a member, as far as the directory shows it."""
+    """Return why a member cannot be read, as far as the directory shows it, or ``None``."""
     mode = info.external_attr >> 16 if info.create_system == _UNIX else 0
     if stat.S_ISLNK(mode):
         return "symbolic link"
@@ -237,9 +239,9 @@ def _problem(info: zipfile.ZipInfo) -> str | None:
 
 
 def _overlapping(infos: list[zipfile.ZipInfo]) -> set[int]:
-    """The places of members that begin before another has ended.
+    """Return the indices of members that begin before another one ends.
 
-    So a few kilobytes can claim to hold gigabytes; no tool that packs files writes that.
+    A few kilobytes could thus claim to hold gigabytes (a zip bomb); no packing tool writes that.
     """
     found, end = set(), 0
     for place in sorted(range(len(infos)), key=lambda place: infos[place].header_offset):
@@ -258,7 +260,7 @@ def _in_mb(size: int) -> str:
 
 
 class _Stream(io.BufferedReader):
-    """Bytes of an archive that refuse to be read whole: `zipfile` does so with the directory."""
+    """The bytes of an archive; refuses large reads, such as that of a huge directory."""
 
     def read(self, size: int | None = -1, /) -> bytes:
         if size is not None and size > MAX_DIRECTORY_BYTES:
@@ -283,7 +285,7 @@ class _Archive:
         self.infos = self._zip.infolist()
 
     def _close_unopened(self) -> str:
-        """Close, and say what the bytes are if not a whole archive."""
+        """Close the stream, and return why the bytes are no archive."""
         with self._stream as stream:
             stream.seek(0)
             start = stream.read(4)
@@ -292,7 +294,7 @@ class _Archive:
         return "truncated or damaged archive" if start[:2] == b"PK" else "not a zip archive"
 
     def content(self, info: zipfile.ZipInfo) -> bytes:
-        """Return what the member `info` holds; raises ArchiveError."""
+        """Return the content of the member `info`; raises ArchiveError."""
         if problem := _problem(info):
             raise ArchiveError(problem)
         try:
@@ -304,7 +306,7 @@ class _Archive:
             raise ArchiveError(reason) from error
 
     def inner(self, info: zipfile.ZipInfo) -> _Archive:
-        """Open the archive that the member `info` is, in memory; raises ArchiveError."""
+        """Return the archive that is the member `info`, opened in memory; raises ArchiveError."""
         return _Archive(io.BytesIO(self.content(info)))
 
     def close(self) -> None:
@@ -319,7 +321,7 @@ def _on_disk(file: Path) -> _Archive:
         raise ArchiveError(f"cannot be read: {why(error)}") from error
 
 
-# The process is part of the key: a forked child shares the file position of what it inherits.
+# The process ID is part of the key: a forked child shares the file position of open archives.
 _Key = tuple[int, str, int, int, int | None]
 _open: OrderedDict[_Key, _Archive] = OrderedDict()
 _lock = threading.Lock()
@@ -327,7 +329,7 @@ atexit.register(close_archives)
 
 
 def _kept(file: Path, outer: int | None) -> _Archive:
-    """Return the archive `file`, or the one at place `outer` in it, open."""
+    """Return the open archive `file`, or the one at index `outer` in it."""
     try:
         state = file.stat()
     except OSError as error:

@@ -1,10 +1,9 @@
-"""Files written whole or not at all: one, or several together.
+"""Atomic writes: one file, or several together, are written completely or not at all.
 
-What is written is laid beside its target first and then exchanged, so that a full disk, an error
-or a killed process leaves no half of a file. Of several files, those already exchanged are put back
-where a later exchange fails. A process that is killed puts nothing back. For that there is a
-journal, itself written whole: once it stands, the change counts as made, and `finish` exchanges
-what the process did not come to.
+New content is written beside its target and then renamed over it. So a full disk, an error or a
+killed process never leaves half a file. If renaming one of several files fails, those already
+replaced are restored. A killed process restores nothing. For that case there is a journal, itself
+written atomically: once it exists, the change counts as made, and `finish` completes it.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 @contextlib.contextmanager
 def naming(file: Path) -> Iterator[None]:
-    """Let a full disk say which file it was full for, as the system does not."""
+    """Add the file name to an error about a full disk, which the system leaves out."""
     try:
         yield
     except OSError as error:
@@ -36,11 +35,11 @@ def naming(file: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def atomic_path(target: Path) -> Iterator[Path]:
-    """A path to write to, which takes the place of ``target`` once the block has ended well.
+    """Yield a path to write to, which replaces ``target`` when the context ends without error.
 
-    It lies beside the target, with its suffix, and keeps the permissions of a file that is there. A
-    device or a pipe, as /dev/stdout, is itself that path: it is not replaced. Folders above are
-    made. Raises `OSError`.
+    It lies beside the target, has the same suffix, and gets the permissions of an existing file. If
+    the target is a device or a pipe, such as /dev/stdout, the target itself is yielded and not
+    replaced. Missing folders are created. Raises `OSError`.
     """
     if target.exists() and not target.is_file():
         yield target
@@ -54,28 +53,29 @@ def atomic_path(target: Path) -> Iterator[Path]:
             part.chmod(stat.S_IMODE(mode))
         part.replace(target)
     finally:
-        with contextlib.suppress(OSError):  # there is none any more, or there never was
+        with contextlib.suppress(OSError):  # it was moved, or never created
             part.unlink()
 
 
 def write_atomic(target: Path, content: bytes | str) -> Path:
-    """Write one file and return its path; see `atomic_path`. Text becomes UTF-8 as it stands."""
+    """Write one file and return its path; see `atomic_path`. Text is encoded as UTF-8 unchanged."""
     with atomic_path(target) as part:
         part.write_bytes(content.encode() if isinstance(content, str) else content)
     return target
 
 
 class JournalError(ValueError):
-    """A journal that is not to be followed; the text names it."""
+    """A journal that cannot be trusted; the message names it."""
 
 
 def write_together(
     changes: Mapping[Path, bytes | None], *, journal: Path | None = None
 ) -> list[Path]:
-    """Give each file its new content; ``None`` removes it. Returns the files that have changed.
+    """Write the new content of each file, or remove it if that is ``None``; all or nothing.
 
-    Folders of new files are made. ``journal`` is where a killed process leaves word of what it was
-    about to do. Raises `OSError`, and then nothing has changed.
+    Returns the files that changed. Missing folders are created. ``journal`` is the file by which
+    `finish` completes the change after a killed process. Raises `OSError`; then nothing has
+    changed.
     """
     olds = {path: path.read_bytes() if path.is_file() else None for path in changes}
     staged: dict[Path, Path] = {}
@@ -110,7 +110,7 @@ def write_together(
 
 
 def _note(journal: Path, changes: Mapping[Path, bytes | None]) -> None:
-    """Write down which file is to have which content, by its digest."""
+    """Write the journal: the digest of the new content of each file."""
     wanted = {
         str(path.absolute()): None if content is None else hashlib.sha256(content).hexdigest()
         for path, content in changes.items()
@@ -121,7 +121,7 @@ def _note(journal: Path, changes: Mapping[Path, bytes | None]) -> None:
 
 
 def _write_through(file: Path, content: bytes) -> None:
-    """Write a file, and wait until the disk has it: the journal may not stand before its parts."""
+    """Write a file and flush it to disk, because the journal must not exist before its parts."""
     with naming(file), file.open("wb") as stream:
         stream.write(content)
         stream.flush()
@@ -129,11 +129,11 @@ def _write_through(file: Path, content: bytes) -> None:
 
 
 def finish(journal: Path) -> list[Path]:
-    """Exchange what a killed process had laid ready; the files that changed.
+    """Complete the change that a killed process left in a journal; return the changed files.
 
-    Without a journal nothing was begun, or all of it is done. A part whose content is not the one
-    noted is another's, and left alone. Raises `OSError`, and `JournalError` for a journal that is
-    damaged or names files elsewhere than below the folder that the journal's folder lies in.
+    Returns an empty list if there is no journal. A part with another content than the journal says
+    is left alone. Raises `OSError`, and `JournalError` for a journal that is damaged or names files
+    outside the parent of its own folder.
     """
     try:
         wanted = json_of(read_bytes(journal).decode("utf-8"))
@@ -160,7 +160,7 @@ def finish(journal: Path) -> list[Path]:
 
 
 def _is_below(home: Path, name: str) -> bool:
-    """Whether a file may be one of ours; its name may hold anything, links on the way too."""
+    """Return whether a path lies below ``home``, links resolved; it may be any text."""
     try:
         return Path(name).is_absolute() and home in Path(name).resolve().parents
     except (OSError, ValueError, RuntimeError):

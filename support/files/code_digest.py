@@ -1,4 +1,4 @@
-"""One digest of code and tables, which invalidates caches and workers of a cluster."""
+"""A digest of code and tables; caches and cluster workers are invalid when it changes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from importlib.resources.abc import Traversable
 from typing import Final
 
 _SUFFIXES: Final = (".py", ".g4", ".lark", ".tsv", ".toml", ".dat", ".src", ".xml")
-# Cases are input: they travel with the work and are not what it is done with.
+# Conformance cases are input to the work, not part of the code that does it.
 _INPUT: Final = "cases"
 
 
 @cache
 def code_digest(*packages: str) -> str:
-    """The SHA-256 of every file of the packages that a result of theirs may depend on.
+    """Return the SHA-256 of every file in the packages that can influence a result.
 
-    Folders count whole, by relative path and content. Anything may matter, so nothing is left out:
-    a stale result is worse than one worked out again.
+    It covers relative paths and contents of whole folders. It errs on the safe side: computing a
+    result again is better than using a stale one.
     """
     code = hashlib.sha256()
     for package in packages:

@@ -1,8 +1,9 @@
-"""From bytes to KRL text, or the reason why the bytes are not KRL.
+"""Decoding: from bytes to KRL text, or the reason why the bytes are no KRL.
 
-`.src` and `.dat` are used for much else, so a file is taken as KRL on evidence only: a line that
-opens a KRL module or routine or, where that is missing, several lines that KRL alone has. A file
-that shows either counts as KRL even when no grammar will parse it: that is what the survey is for.
+`.src` and `.dat` are used for many other things, so a file counts as KRL only on evidence: a line
+that opens a module or routine of KRL or, without one, several lines that occur only in KRL. A file
+with such evidence counts as KRL even if no grammar can parse it, because finding these is the
+purpose of the survey.
 """
 
 from __future__ import annotations
@@ -17,43 +18,43 @@ from support.lazy_dataclass import dataclass
 EVIDENCE_LINES = 2_000
 """Lines looked at for KRL statements when no line opens a module. Openers are sought everywhere."""
 
-_LINE_WIDTH = 400  # characters of a line that are looked at; enough to know a statement
+_LINE_WIDTH = 400  # how many characters of a line are examined; enough to recognise a statement
 
 
 @dataclass(frozen=True, slots=True)
 class Decoded:
     """The text of a KRL file.
 
-    `text` has its newlines as they were, and no byte order mark. `encoding` is the Python name of
-    what it was written in: `text.encode(encoding)` gives back the bytes, but for the mark of
-    UTF-16 and UTF-32 and for what `decode` drops at the end.
+    `text` has its original line ends and no byte order mark. `encoding` is the Python name of the
+    file's encoding: `text.encode(encoding)` gives the bytes of the file, except for the byte order
+    mark of UTF-16 and UTF-32 and the padding that `decode` drops at the end.
     """
 
     text: str
     encoding: str
 
     def replaced(self, data: bytes, text: str) -> bytes:
-        """The bytes of the file, which were ``data``, with another text.
+        """Return the bytes of the file with another text; ``data`` are its present bytes.
 
-        What decoding leaves out, a mark at the start and padding at the end, stays as it is. Raises
-        `UnicodeEncodeError` for a text with other characters than the encoding has.
+        A byte order mark and padding at the end are kept. Raises `UnicodeEncodeError` if the
+        encoding lacks a character of ``text``.
         """
         before, _, after = data.partition(self.text.encode(self.encoding))
         return before + text.encode(self.encoding) + after
 
 
 def digest(data: bytes) -> str:
-    """Return the SHA-256 of `data` in hexadecimal: two files are the same when it is the same."""
+    """Return the SHA-256 of `data` in hexadecimal, by which equal files are recognised."""
     return hashlib.sha256(data).hexdigest()
 
 
 def decode(data: bytes) -> Decoded | str:
-    """Return the text of a KRL file, or in one line why `data` is not KRL text.
+    """Return the text of a KRL file, or one line on why `data` is no KRL text.
 
-    Read as UTF-8 where that is valid, else as cp1252, else as Latin-1, because cp1252 leaves five
-    bytes undefined; as UTF-16 or UTF-32 where the byte order mark says so, or every other byte is
-    zero. Ctrl-Z and NUL bytes at the very end are dropped: old controllers pad their files with
-    them; so is half a character of UTF-16.
+    The encoding is UTF-8 if the bytes are valid, else cp1252, else Latin-1, because cp1252 leaves
+    five bytes undefined. It is UTF-16 or UTF-32 if the byte order mark says so or every other byte
+    is zero. Ctrl-Z and NUL bytes at the very end, with which old controllers pad their files, are
+    dropped, as is an incomplete character of UTF-16.
     """
     if not data:
         return "empty file"
@@ -73,7 +74,7 @@ _WIDE = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 _PADDING = "\0\x1a"
-# Where the zeros of Latin letters are.
+# Position, in each pair of bytes, of the zeros of Latin letters.
 _ZEROS = {"utf-16-le": 1, "utf-16-be": 0}
 _LOOKED_AT = 64
 _CONTROLS = bytes(set(range(32)) - set(b"\t\n\v\f\r")) + b"\x7f"
@@ -96,7 +97,7 @@ _MAGIC = (
 
 
 def _text_of(data: bytes) -> Decoded | str:
-    """Decode `data`, or say why it is not text."""
+    """Return the decoded text, or why `data` is no text."""
     unmarked = ((b"", encoding) for encoding, place in _ZEROS.items() if _is_wide(data, place))
     for mark, encoding in (*_WIDE, *unmarked):
         if data.startswith(mark):
@@ -122,13 +123,13 @@ def _text_of(data: bytes) -> Decoded | str:
 
 
 def _is_wide(data: bytes, place: int) -> bool:
-    """Whether every other byte is zero from a place on, and no other, where the text begins."""
+    """Return whether every other byte at the start is zero, beginning with `place`."""
     start = data[: _LOOKED_AT // 2 * 2]
     return len(start) > 1 and not any(start[place::2]) and all(start[1 - place :: 2])
 
 
 def _why_binary(body: bytes) -> str | None:
-    """Say that `body` is binary data. A few stray control characters do occur in real KRL."""
+    """Return why `body` is binary data, or None. Real KRL may have a few control characters."""
     controls = len(body) - len(body.translate(None, _CONTROLS))
     if b"\0" in body:
         what = "NUL bytes"
@@ -154,7 +155,7 @@ _OPENER = re.compile(
     _FLAGS,
 )
 
-# DEF with a slip of the finger, of which that alone would make a whole program other text.
+# DEF with a typing error, which alone must not make a program count as other text.
 _MISSPELT_OPENER = re.compile(
     r"(?:GLOBAL\s+)?(?:\w?DE\w?|\w?EF\w?|\w?D\w?F\w?|EDF)\s+[\w$]+\s*\([^;()]*\)\s*(?:;|\Z)", _FLAGS
 )
@@ -182,7 +183,7 @@ _STATEMENT = re.compile(
     ),
     _FLAGS,
 )
-# What KRL shares with Fortran and others, so it counts only beside something of KRL's own.
+# Keywords that KRL shares with Fortran and others; they count only beside specific ones.
 _SHARED = re.compile(r"(?:END|ENDIF|ENDFOR|ENDWHILE|CONTINUE)\s*(?:;|\Z)", _FLAGS)
 
 _MARKUP = re.compile(r"<[?!/A-Z]", _FLAGS)
@@ -213,7 +214,7 @@ _SEPARATORS = re.compile(r"[\s,;|]+")
 
 
 def _why_not_krl(text: str) -> str | None:
-    """Say why `text` is not KRL, or None when it is."""
+    """Return why `text` is no KRL, or None if it is."""
     lines = [line[:_LINE_WIDTH].strip() for line in islice(_lines(text), EVIDENCE_LINES)]
     code = [line for line in lines if line and line[0] not in "&;"]
     if code and _MARKUP.match(code[0]):
@@ -248,7 +249,7 @@ def _extent(lines: list[str]) -> str:
 
 
 def _likeness(code: list[str]) -> str:
-    """Name what `code`, lines without comments, looks like. For people; nothing depends on it."""
+    """Return what `code`, lines without comments, looks like; only shown to people."""
     sample = code[:50]
     rows = [line for line in sample if not line.startswith(("#", "%", "!", "*"))]
     if rows and 2 * sum(map(_is_row, rows)) > len(rows):

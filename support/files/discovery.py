@@ -1,8 +1,8 @@
-"""Discovery of KRL files in folders, files and archives, each file exactly once.
+"""Discovery of KRL files in folders and archives, each file exactly once.
 
-`discover` finds the candidates; `read` fetches the bytes of one, in any process, and `read_source`
-its text too. Nothing is lost: what cannot be read becomes a `Skipped` with its reason. The order is
-that of sorted paths, the same on every system and for every order of the roots.
+`discover` finds the candidates. `read` returns the bytes of one, in any process, and `read_source`
+its text too. Nothing is lost silently: what cannot be read becomes a `Skipped` with its reason. The
+order is that of sorted paths, the same on every system and for every order of the roots.
 """
 
 from __future__ import annotations
@@ -37,16 +37,17 @@ _JUNCTION = 0xA0000003  # stat.IO_REPARSE_TAG_MOUNT_POINT, which only Windows ha
 
 
 class IngestError(Exception):
-    """What the person named cannot be surveyed; the message is one clear line."""
+    """A root that cannot be surveyed; the message is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A candidate and where it lies; its bytes have not been read.
+    """A candidate file whose bytes have not been read yet.
 
-    `path` is for people: `/` separated, relative as the root was given, control characters escaped.
-    `size` in bytes is what the file system or the archive claims. `file` is absolute; for a member
-    of an archive it is the archive, and `member` the address that `support.files.archives` gave it.
+    `path` is for display: `/` separated, relative if the root was given so, control characters
+    escaped. `size` in bytes is the one that the file system or the archive states. `file` is
+    absolute; for a member of an archive it is the archive, and `member` is its address in
+    `support.files.archives`.
     """
 
     path: str
@@ -58,7 +59,7 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """A candidate, archive or folder that is not surveyed, and why, in one line."""
+    """A candidate, archive or folder that is not surveyed, and the reason in one line."""
 
     path: str
     reason: str
@@ -67,7 +68,7 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True)
 class SourceFile:
-    """A candidate that holds KRL: where it lies, its bytes, and its text."""
+    """A file with KRL: its location, bytes and text."""
 
     found: Found
     data: bytes
@@ -85,28 +86,27 @@ class SourceFile:
 
 
 def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
-    """Find the candidates below `roots`: files, folders, `.zip` archives, places inside these.
+    """Yield the candidates below `roots`: files, folders, `.zip` archives, paths inside archives.
 
-    Roots are looked at before anything is returned. A file below two roots belongs to the nearer
-    one. Links are not followed, except for the roots themselves.
-
-    Raises IngestError when a root is missing or unreadable, and, at the end of the iteration, when
-    there was nothing to survey.
+    The roots are checked before anything is returned. A file below two roots belongs to the nearer
+    one. Links are not followed, except the roots themselves. Raises IngestError if a root is
+    missing or unreadable and, at the end of the iteration, if there was nothing to survey.
     """
     return _survey(_resolved(roots))
 
 
 def is_drive(names: Iterable[str]) -> bool:
-    """Whether a folder that holds folders of these names is the drive of a controller.
+    """Return whether a folder with subfolders of these names is a drive of a controller.
 
-    As R1 does, whatever it is called: Program, TP or others beside System or Mada.
+    Like R1 it has System or Mada and at least one other of the usual folders; its own name does not
+    matter.
     """
     parts = DRIVE_FOLDERS & {name.casefold() for name in names}
     return len(parts) > 1 and not parts.isdisjoint({"system", "mada"})
 
 
 def read(found: Found) -> bytes | Skipped:
-    """Return the content of a candidate, or why it cannot be had. Works in any process."""
+    """Return the content of a candidate, or why it cannot be read. Works in any process."""
     try:
         if found.member is not None:
             return archives.read(found.file, found.member, found.size)
@@ -132,7 +132,7 @@ def read_source(candidate: Found | Skipped) -> SourceFile | Skipped:
 
 
 def source_files(roots: Sequence[Path]) -> Iterator[SourceFile]:
-    """Every file with KRL below `roots`; the others are left out. Raises IngestError as above."""
+    """Yield every file with KRL below `roots` and skip the others; raises as `discover` does."""
     for candidate in discover(roots):
         file = read_source(candidate)
         if isinstance(file, SourceFile):
@@ -140,7 +140,7 @@ def source_files(roots: Sequence[Path]) -> Iterator[SourceFile]:
 
 
 def printable(text: str) -> str:
-    """Return `text` with every character escaped that a terminal or a page would not just show."""
+    """Return `text` with escapes for characters that a terminal or a page would not show."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else _escaped(ord(c)) for c in text)
@@ -157,7 +157,7 @@ def _escaped(code: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Root:
-    """A root as it was given, and where it really lies; ``inside`` is a place in an archive."""
+    """A root as it was given and its real path; ``inside`` is a path in an archive."""
 
     shown: str
     real: Path
@@ -165,12 +165,12 @@ class _Root:
     inside: str = ""
 
     def holds(self, item: Found | Skipped) -> bool:
-        """Whether what was found in the root's file is meant."""
+        """Return whether something found in the root's file is part of the root."""
         return not self.inside or f"{item.path}/".startswith(printable(f"{self.inside}/"))
 
 
 def _resolved(roots: Sequence[Path]) -> list[_Root]:
-    """Check the roots; return them sorted, each place once."""
+    """Return the checked roots, sorted and without duplicates."""
     if not roots:
         raise IngestError("no file or folder was named")
     found: dict[tuple[Path, str], _Root] = {}
@@ -196,7 +196,7 @@ def _resolved(roots: Sequence[Path]) -> list[_Root]:
 
 
 def _archive_around(path: Path) -> Path | None:
-    """The archive that a path leads into, if it does."""
+    """Return the archive through which a path leads, or ``None``."""
     try:
         return next((one for one in path.parents if is_archive(one.name) and one.is_file()), None)
     except (OSError, ValueError):
@@ -212,9 +212,9 @@ def _order(name: str) -> tuple[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """A folder to enter or a file; `problem` says why it is neither entered nor read.
+    """A folder to enter or a file; `problem` is why it is neither entered nor read.
 
-    `names_origins`: the folders in this one are an origin each.
+    `names_origins` says that each of its folders is an origin of its own.
     """
 
     shown: str
@@ -226,7 +226,7 @@ class _Place:
 
 
 def _walk(root: _Root, others: frozenset[Path]) -> Iterator[_Place]:
-    """Yield candidates, archives and problems below `root`, sorted; `others` are left out."""
+    """Yield candidates, archives and problems below `root`, sorted, without `others`."""
     if not root.folder:
         problem = None if _wanted(root.real.name) else "not a .src, .dat, .sub or .zip file"
         yield _Place(root.shown, root.real, _origin(root.real.parent), problem=problem)
@@ -262,7 +262,7 @@ def _walk(root: _Root, others: frozenset[Path]) -> Iterator[_Place]:
 
 
 def _at(entry: os.DirEntry[str], place: _Place) -> Iterator[_Place]:
-    """Yield what `entry` of the folder `place` is: nothing, a file, a folder, or a problem."""
+    """Yield the places for an entry of a folder: none, a file, a folder, or a problem."""
     real = place.real / entry.name
     shown = entry.name if place.shown == "." else f"{place.shown.rstrip('/')}/{entry.name}"
     candidate = _wanted(entry.name)
@@ -285,7 +285,7 @@ def _at(entry: os.DirEntry[str], place: _Place) -> Iterator[_Place]:
 
 
 def _is_link(entry: os.DirEntry[str]) -> bool:
-    """Tell whether `entry` is a link, or a junction, which is Windows' link to a folder."""
+    """Return whether `entry` is a link or a junction (Windows' link to a folder)."""
     if entry.is_symlink():
         return True
     tag = getattr(entry.stat(follow_symlinks=False), "st_reparse_tag", 0)
@@ -293,7 +293,7 @@ def _is_link(entry: os.DirEntry[str]) -> bool:
 
 
 def _is_backup(listed: list[os.DirEntry[str]]) -> bool:
-    """Tell whether a folder that holds `listed` is one repository or one controller's backup."""
+    """Return whether a folder with these entries is a repository or a controller's backup."""
     names = {entry.name.casefold() for entry in listed}
     drives = [Path(entry.path) for entry in listed if entry.name.casefold() == "c"]
     return (
@@ -304,7 +304,7 @@ def _is_backup(listed: list[os.DirEntry[str]]) -> bool:
 
 
 def _has_programs(listed: list[os.DirEntry[str]]) -> bool:
-    """Tell whether programs lie in a folder itself, so that those in its folders belong to them."""
+    """Return whether a folder has programs itself, so that its folders are no origins."""
     return any(entry.name.lower().endswith(SUFFIXES) for entry in listed)
 
 
@@ -314,7 +314,7 @@ def _is_corpus(listed: list[os.DirEntry[str]]) -> bool:
 
 
 def _origin(folder: Path) -> str:
-    """Name the origin that `folder` is; `OWNER__NAME` stands for a repository OWNER/NAME."""
+    """Return the name of the origin `folder`; `OWNER__NAME` stands for OWNER/NAME."""
     name = folder.name or folder.anchor
     owner, mark, repository = name.partition("__")
     return printable(f"{owner}/{repository}" if owner and mark and repository else name)
@@ -366,7 +366,7 @@ def _survey(roots: list[_Root]) -> Iterator[Found | Skipped]:
 
 
 def _items(place: _Place, names: dict[Path, str]) -> Iterator[Found | Skipped]:
-    """Turn a place into what is found there."""
+    """Yield the candidates at a place, or why there is none."""
     shown = printable(place.shown)
     if place.problem:
         yield Skipped(shown, printable(place.problem), place.origin)
@@ -387,7 +387,7 @@ def _items(place: _Place, names: dict[Path, str]) -> Iterator[Found | Skipped]:
 def _in_archive(file: Path, shown: str, origin: str) -> Iterator[Found | Skipped]:
     """Yield the candidates in an archive.
 
-    An archive that holds candidates only in archives of its own is a collection: each is an origin.
+    If all candidates are in nested archives, each of these is an origin.
     """
     try:
         listed = archives.members(file, _wanted_member)
@@ -407,7 +407,7 @@ def _in_archive(file: Path, shown: str, origin: str) -> Iterator[Found | Skipped
 
 
 def _archive_names(files: Iterable[Path]) -> dict[Path, str]:
-    """Name each archive after its file, with as many folders as tell it from the others."""
+    """Return a unique name for each archive: its file name, with folders if necessary."""
     names: dict[Path, str] = {}
     alike = list(dict.fromkeys(files))
     for depth in range(1, 1 + max((len(file.parts) for file in alike), default=0)):

@@ -1,8 +1,8 @@
-"""A cache of values that take long to compute, keyed by all that they depend on.
+"""A disk cache of values that take long to compute, keyed by everything they depend on.
 
-They lie as pickles below `support.files.user_cache`, where native code lies too: whoever can write
-there can run what they like as this user anyway. What comes from elsewhere is never read this way
-(`support.files.restricted_pickle` is for that).
+The values are pickles below `support.files.user_cache`, beside compiled native code: whoever can
+write there can run code as this user anyway. Files from elsewhere are never read this way;
+`support.files.restricted_pickle` is for these.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from support.files.code_digest import code_digest
 from support.files.user_cache import user_cache
 from support.gc_pause import gc_paused
 
-#: Characters: what is made of less is made sooner than the digest of the code is.
+#: Below this number of characters, computing the value is faster than the digest of the code.
 _FEWEST: Final = 10_000
 _MOST_KEPT: Final = 200 << 20  # bytes
 
@@ -29,10 +29,11 @@ _T = TypeVar("_T")
 
 
 def kept(packages: Sequence[str], made_of: Sequence[str], make: Callable[[], _T]) -> _T:
-    """What ``make`` gives, or gave before for the same texts and the same code of ``packages``.
+    """Return the result of ``make``, from the cache if texts and code are unchanged.
 
-    Nothing is kept of short texts, of values that cannot be pickled, and where there is no place.
-    What ``make`` raises is raised, and not kept.
+    The key consists of ``made_of`` and the code of ``packages``. Nothing is cached for short texts,
+    for values that cannot be pickled, or if there is no cache folder. An exception of ``make`` is
+    passed on.
     """
     folder = user_cache()
     if folder is None or sum(map(len, made_of)) < _FEWEST:

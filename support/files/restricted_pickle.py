@@ -1,7 +1,7 @@
-"""Serialisation of our own classes that is safe to read from untrusted bytes.
+"""Serialisation of our own classes that is safe for untrusted bytes.
 
-Pickle can build any object. Here it builds only plain values, and data classes and enumerations of
-the named packages. Forged bytes can contain false values of these kinds, and nothing else.
+Pickle can build any object. This reader only builds plain values, and dataclasses and enumerations
+of the named packages. Forged bytes can contain wrong values of these classes, but nothing else.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from typing import Any
 
 
 def dumps(value: object) -> bytes:
-    """The value as bytes."""
+    """Return the value as bytes."""
     stream = io.BytesIO()
     _Writer(stream, protocol=5).dump(value)
     return stream.getvalue()
 
 
 def loads(data: bytes, packages: Sequence[str]) -> Any:
-    """The value, made of classes of these packages.
+    """Return the value, built from plain values and classes of these packages.
 
-    Raises `ValueError` for anything else, and for what is damaged.
+    Raises `ValueError` for any other content and for damaged data.
     """
     try:
         return _Reader(data, packages).load()
@@ -35,14 +35,14 @@ def loads(data: bytes, packages: Sequence[str]) -> Any:
 
 
 class _Writer(pickle.Pickler):
-    """Writes data classes as calls with the values of their fields.
+    """Writes a dataclass as a call with the values of its fields.
 
-    As `dataclasses` has it, the fields would be looked up again for each value that is read, which
-    is most of the time that reading takes.
+    The default way looks the fields up again for every value that is read, which is most of the
+    reading time.
     """
 
     def reducer_override(self, value: Any) -> Any:
-        """How a value is made anew; `NotImplemented` for what pickle knows how to."""
+        """Return how to rebuild a value; `NotImplemented` leaves it to pickle."""
         kind: Callable[..., Any] = type(value)
         if isinstance(value, Enum):  # some Pythons look it up by getattr, which is not to be read
             return kind, (value.value,)
@@ -54,21 +54,21 @@ class _Writer(pickle.Pickler):
 
 @cache
 def _fields(kind: Callable[..., Any]) -> tuple[str, ...] | None:
-    """The arguments that a data class takes, if it takes all its fields in their order."""
+    """Return the field names of a dataclass if its constructor takes all of them in order."""
     if not is_dataclass(kind) or any(not one.init or one.kw_only for one in fields(kind)):
         return None
     return tuple(one.name for one in fields(kind))
 
 
 class _Reader(pickle.Unpickler):
-    """Finds no classes but those that are allowed."""
+    """Finds only the classes that are allowed."""
 
     def __init__(self, data: bytes, packages: Sequence[str]) -> None:
         super().__init__(io.BytesIO(data))
         self._packages = frozenset(packages)
 
     def find_class(self, module: str, name: str) -> Any:
-        """A data class or an enumeration of an allowed package."""
+        """Return a dataclass or an enumeration of an allowed package; raises `UnpicklingError`."""
         found = _class(module, name) if module.partition(".")[0] in self._packages else None
         if found is None:
             raise pickle.UnpicklingError(f"{module}.{name} is not to be read")

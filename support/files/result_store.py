@@ -1,7 +1,7 @@
-"""Results kept between runs, in one SQLite file per folder.
+"""A persistent store of results, in one SQLite file for each folder.
 
-A damaged or foreign file is put aside and begun anew, never trusted: what is in it can always be
-worked out again.
+A damaged or foreign file is renamed and replaced by a new one, because its content can always be
+computed again.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Self
 
-# What a damaged file raises: Python cannot read an error message of SQLite that quotes the damage.
+# Exceptions for a damaged file; Python cannot decode a message of SQLite that quotes the damage.
 _DAMAGE = (sqlite3.Error, UnicodeDecodeError)
-#: What is wrong with a file itself; it is not where a disk is full or the file is in use.
+#: Errors of the file itself, as opposed to a full disk or a file in use.
 _DAMAGED = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
 
 
 class ResultStore:
-    """JSON values, or bytes, by digest, below one key; a context manager.
+    """JSON values or bytes by digest, under one key; a context manager.
 
-    The key says what all of them depend on besides what the digest is of: code, tables, a grammar.
-    What another key holds is not seen. Without a folder nothing is kept, nor in a store that
-    cannot be opened or written to; a damaged one is put aside.
+    The key identifies everything else that the values depend on: code, tables, a grammar. Values
+    under other keys are not visible. Without a folder nothing is stored, nor if the file cannot be
+    opened or written.
     """
 
     def __init__(self, folder: Path | None, key: str) -> None:
@@ -67,7 +67,7 @@ class ResultStore:
             self._base.close()
 
     def get(self, digest: str) -> object:
-        """The value kept under a digest; ``None`` where there is none that can be read."""
+        """Return the value stored under a digest, or ``None`` if none can be read."""
         body = self.get_bytes(digest)
         try:
             value: object = None if body is None else json.loads(body)
@@ -76,7 +76,7 @@ class ResultStore:
         return value
 
     def get_bytes(self, digest: str) -> bytes | None:
-        """The bytes kept under a digest; ``None`` where there are none that can be read."""
+        """Return the bytes stored under a digest, or ``None`` if none can be read."""
         if self._base is None:
             return None
         try:
@@ -88,12 +88,12 @@ class ResultStore:
             return None
 
     def get_record(self, digest: str) -> dict[str, Any] | None:
-        """The value kept under a digest where it is an object of JSON, else ``None``."""
+        """Return the value stored under a digest if it is a JSON object, else ``None``."""
         record = self.get(digest)
         return record if isinstance(record, dict) else None
 
     def put(self, values: Iterable[tuple[str, object]]) -> None:
-        """Keep values or bytes under their digests in place of what lay there: all, or none."""
+        """Store values or bytes under their digests in one transaction, replacing old ones."""
         if self._base is None:
             return
         with contextlib.suppress(*_DAMAGE), self._base:

@@ -1,7 +1,7 @@
-"""Reading of small untrusted files: without blocking, limited in size and depth.
+"""Reading small untrusted files: without blocking, with limits on size and depth.
 
-KRL itself comes in through `support.files.discovery`. This is for grammars,
-constructs, profiles, scripts and recordings.
+It is used for grammars, constructs, profiles, scripts and recordings; KRL files are read by
+`support.files.discovery`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import tomllib
 from pathlib import Path
 from typing import Any, Final
 
-#: No document that a person writes is nearly as large; recordings may have some MB.
+#: Documents that people write are far smaller; recordings may have some MB.
 MOST_BYTES: Final = 64 << 20
 # `tomllib` needs seconds for a dotted key of thousands of parts, and minutes for tens of thousands.
 MOST_DOTS: Final = 100
@@ -24,13 +24,13 @@ MOST_TOML: Final = 1_000_000
 
 
 class DocumentError(ValueError):
-    """A text that is not TOML or JSON, or too deeply nested; says why in one line."""
+    """A text that is not TOML or JSON, or too deeply nested; the message is one line."""
 
 
 def open_file(file: Path) -> io.FileIO:
     """Open a regular file for reading; raises OSError, also for folders, pipes and devices.
 
-    Never waits, as opening a pipe without a writer would.
+    It never blocks, as opening a pipe without a writer would.
     """
     flags = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)
     stream = io.FileIO(os.open(file, flags), "rb")
@@ -41,7 +41,7 @@ def open_file(file: Path) -> io.FileIO:
 
 
 def read_bytes(file: Path, most: int = MOST_BYTES) -> bytes:
-    """The bytes of a regular file; raises OSError, also where there are more than ``most``."""
+    """Return the bytes of a regular file; raises OSError, also if there are more than ``most``."""
     with open_file(file) as opened, io.BufferedReader(opened) as stream:
         data = stream.read(most + 1)
     if len(data) > most:
@@ -50,12 +50,15 @@ def read_bytes(file: Path, most: int = MOST_BYTES) -> bytes:
 
 
 def read_text(file: Path, encoding: str = "utf-8") -> str:
-    """The text of a regular file, whatever ends its lines; raises OSError, UnicodeDecodeError."""
+    """Return the text of a regular file, with line feeds as line ends.
+
+    Raises OSError and UnicodeDecodeError.
+    """
     return read_bytes(file).decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
 
 def toml_of(text: str) -> dict[str, Any]:
-    """The tables of a TOML text; raises `DocumentError`."""
+    """Return the tables of a TOML text; raises `DocumentError`."""
     if len(text) > MOST_TOML:
         raise DocumentError(f"not TOML that is read: longer than {MOST_TOML:,} characters")
     for number, line in enumerate(text.splitlines(), 1):
@@ -70,7 +73,7 @@ def toml_of(text: str) -> dict[str, Any]:
 
 
 def json_of(text: str) -> object:
-    """The value of a JSON text, its numbers finite; raises `DocumentError`."""
+    """Return the value of a JSON text with finite numbers; raises `DocumentError`."""
     try:
         value: object = json.loads(text, parse_float=_finite, parse_constant=_finite)
     except RecursionError:

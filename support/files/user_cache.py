@@ -1,4 +1,4 @@
-"""The user's cache folder, for what can be computed again."""
+"""The user's cache folder."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def user_cache() -> Path | None:
-    """The folder of this user, which need not exist; ``None`` where there can be none."""
+    """Return the cache folder of this user, which need not exist; ``None`` if there can be none."""
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA")
         return Path(base, "krl", "cache") if base else None

@@ -1,1 +1,1 @@
-"""Cost of a function: time and memory in a separate process."""
+"""Measuring the cost of a function: time and memory in a separate process."""

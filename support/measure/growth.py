@@ -1,4 +1,4 @@
-"""Growth of the cost of a call with the size of its input."""
+"""How the cost of a call grows with the size of its input."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _LONGEST_S: Final = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What a call of one size took: CPU seconds, and bytes of memory at most so far."""
+    """The cost of a call with an input of one size: CPU seconds, and peak memory so far (bytes)."""
 
     size: int
     seconds: float
@@ -32,9 +32,9 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """The costs at sizes that double, and of next to nothing (``base``).
+    """The costs at sizes that double, and of an almost empty input (``base``).
 
-    There are three sizes, or fewer where one took so long that the next was left out.
+    There are three sizes, or fewer if one took so long that the next was left out.
     """
 
     base: Cost
@@ -42,7 +42,7 @@ class Growth:
 
     @property
     def time_slope(self) -> float | None:
-        """The exponent of CPU time over size, from the first size to the last; 0 for hardly any."""
+        """The exponent of CPU time over size, from first to last size; 0 if it hardly grows."""
         base, first, last = (one.seconds for one in (self.base, self.costs[0], self.costs[-1]))
         if last - base < _NOTICEABLE_S:
             return 0.0
@@ -52,7 +52,7 @@ class Growth:
 
     @property
     def memory_slope(self) -> float | None:
-        """The exponent of peak memory over size, in the same way; 0 where it hardly grows."""
+        """The exponent of peak memory over size, computed likewise; 0 if it hardly grows."""
         first, last = (cost.peak - self.base.peak for cost in (self.costs[0], self.costs[-1]))
         if last < _NOTICEABLE_BYTES:
             return 0.0
@@ -66,11 +66,10 @@ class Growth:
 def measure_growth(
     prepare: Callable[[int], _T], call: Callable[[_T], object], smallest: int, largest: int
 ) -> Growth:
-    """The growth of ``call``, in this process, with what ``prepare`` makes for a size.
+    """Return the growth of ``call``, in this process, on inputs that ``prepare`` makes.
 
-    The first size is found by doubling ``smallest`` until its cost can be measured beside that of
-    next to nothing; the last is never above ``largest``. Costs that seem to grow too fast are
-    measured once more.
+    The first size is found by doubling ``smallest`` until its cost is measurable; the last is never
+    above ``largest``. Costs that seem to grow too fast are measured again.
     """
 
     def cost(size: int) -> Cost:

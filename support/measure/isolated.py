@@ -1,4 +1,4 @@
-"""Calls in a fresh process, so that a measurement finds no cached state."""
+"""Calls in a fresh process, so that no cached state influences a measurement."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ _T = TypeVar("_T")
 
 
 def call_isolated(function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs) -> _T:
-    """What the function returns in a process of its own, which is then ended."""
+    """Return the result of a function that is called in a process of its own."""
     with process_pool(1) as pool:
         return pool.submit(function, *arguments, **named).result()

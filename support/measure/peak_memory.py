@@ -1,4 +1,4 @@
-"""Peak memory of this process."""
+"""Peak memory of the current process."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if sys.platform == "win32":
         )
 
     def peak_memory() -> int | None:
-        """The most memory in bytes that this process has had at once; ``None`` if not known."""
+        """Return the peak memory of this process in bytes, or ``None`` if it is unknown."""
         kernel = ctypes.WinDLL("kernel32")
         kernel.GetCurrentProcess.restype = wintypes.HANDLE
         ask = kernel.K32GetProcessMemoryInfo
@@ -33,8 +33,8 @@ else:
     import resource
 
     def peak_memory() -> int | None:
-        """The most memory in bytes that this process has had at once; ``None`` if not known."""
-        # Linux hands the figure of `getrusage` down from the process that started this one
+        """Return the peak memory of this process in bytes, or ``None`` if it is unknown."""
+        # on Linux a process inherits the figure of `getrusage` from its parent
         status = Path("/proc/self/status")
         if status.exists():
             for line in status.read_text(encoding="ascii", errors="replace").splitlines():

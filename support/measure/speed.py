@@ -1,4 +1,4 @@
-"""Shared by the speed benches: the machine, time by phase, growth of cost."""
+"""Helpers of the speed benches: the machine, time by phase, growth of cost."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ ROUNDS: Final = 3
 
 
 def peak_mb() -> float | None:
-    """The most memory that this process took, in MB; ``None`` where the system does not say."""
+    """Return the peak memory of this process in MB, or ``None`` if the system does not say."""
     peak = peak_memory()
     return None if peak is None else peak / MB
 
 
 def machine() -> dict[str, str]:
-    """What the figures of a record were measured on."""
+    """Return the machine and Python release on which a record was measured."""
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
@@ -27,7 +27,7 @@ def machine() -> dict[str, str]:
 
 
 def shares(phases: Mapping[str, float]) -> list[dict[str, Any]]:
-    """Seconds by phase as a record has them, each with its share of all."""
+    """Return the seconds of each phase with its share of the total, as a record has them."""
     total = sum(phases.values())
     return [
         {"name": name, "seconds": seconds, "share": seconds / total}
@@ -41,11 +41,12 @@ def scaling(
     figure: str,
     on_step: Callable[[], object],
 ) -> dict[str, Any]:
-    """The part of a record on corpora of several ``sizes``, in MB.
+    """Return the part of a record about corpora of several ``sizes``, in MB.
 
-    ``measured`` gives the entry of one of them, with ``figure`` and ``peak_mb`` in it; ``linear``
-    is that figure of the last over that of the first, ``memory_growth_mb`` how much more memory the
-    last took; ``None`` where not measured. ``on_step`` is called once a size.
+    ``measured`` returns the entry of one size, including ``figure`` and ``peak_mb``. ``linear`` is
+    that figure of the last size divided by that of the first, and ``memory_growth_mb`` how much
+    more memory the last one took; ``None`` if it was not measured. ``on_step`` is called after each
+    size.
     """
     entries = []
     for size in sizes:

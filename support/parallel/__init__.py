@@ -1,1 +1,1 @@
-"""Work in processes of this machine or on a Dask cluster, and progress while it runs."""
+"""Parallel work in local processes or on a Dask cluster, and progress reports."""

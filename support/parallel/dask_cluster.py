@@ -1,4 +1,4 @@
-"""The workers of a Dask cluster, which must have the same code as this process."""
+"""The workers of a Dask cluster, which must run the same code as this process."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from support.parallel.workers import Workers, WorkersError
 
 _T = TypeVar("_T")
 
-#: What a result may depend on.
+#: The packages on whose code a result may depend.
 _PACKAGES: Final = ("support", "grammar", "interp", "recovery", "conformance")
-#: Seconds after which it is asked whether there is still a worker that could bring a result.
+#: Seconds of waiting for a result after which the client checks that there are still workers.
 _PATIENCE: Final = 20.0
 #: Seconds that a scheduler may take to accept a connection.
 _GREETING: Final = 10.0
@@ -25,7 +25,7 @@ _GREETING: Final = 10.0
 
 @contextmanager
 def connected(address: str) -> Iterator[Workers]:
-    """The workers of the scheduler at an address; raises `WorkersError` where there are none."""
+    """Yield the workers of the scheduler at an address; raise `WorkersError` if there are none."""
     from distributed import Client
 
     try:
@@ -42,7 +42,7 @@ def connected(address: str) -> Iterator[Workers]:
 
 
 def _greet(address: str) -> None:
-    """Connect once: a client of Dask waits for ever for a server that does not answer."""
+    """Connect once with a time limit, because a Dask client waits for ever for a silent server."""
     import asyncio
 
     from distributed import Security
@@ -62,7 +62,7 @@ def _greet(address: str) -> None:
 
 @contextmanager
 def _silent(*names: str) -> Iterator[None]:
-    """Keep loggers of Dask from printing what is raised here."""
+    """Keep Dask's loggers from printing errors that are raised here anyway."""
     loggers = [logging.getLogger(name) for name in names]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
@@ -75,9 +75,9 @@ def _silent(*names: str) -> Iterator[None]:
 
 
 class _Cluster:
-    """The workers of a scheduler, which gives the tasks of a dead one to others by itself."""
+    """The workers of a scheduler, which itself gives the tasks of a dead worker to others."""
 
-    retries = 1  # Dask has tried it four times before it reports the death
+    retries = 1  # Dask itself has retried the task before it reports the death
 
     def __init__(self, client: Any, address: str) -> None:
         from distributed import KilledWorker
@@ -98,7 +98,7 @@ class _Cluster:
             raise WorkersError(f"the workers at {address} have no krl: {error}") from error
 
     def submit(self, function: Callable[..., _T], task: tuple[object, ...]) -> _Awaited[_T]:
-        # not pure: Dask would keep results and answer from them
+        # not pure, or Dask would answer from cached results
         future = self._client.submit(_perform, self._release, function, task, pure=False)
         return _Awaited(future, self._client, self._address)
 
@@ -107,7 +107,7 @@ class _Cluster:
 
 
 class _Awaited(Generic[_T]):
-    """A task of a cluster; its result is not waited for where no worker is left to bring it."""
+    """A submitted task; waiting for its result ends when no worker is left."""
 
     def __init__(self, future: Any, client: Any, address: str) -> None:
         from distributed.comm.core import CommClosedError
@@ -128,7 +128,7 @@ class _Awaited(Generic[_T]):
                 if self._future.done():  # it ended just now, or the task's own time was up
                     own: _T = self._future.result()
                     return own
-                # once may be the moment between a worker that died and the one in its place
+                # once may be the moment between the death of a worker and its replacement
                 deserted = 0 if self._client.ncores() else deserted + 1
                 if deserted == 2:
                     text = f"the scheduler at {self._address} has no workers left"
@@ -143,13 +143,13 @@ _one_at_a_time = threading.Lock()
 
 
 def _perform(release: str, function: Callable[..., _T], task: tuple[object, ...]) -> _T:
-    """Do a task on a worker; its threads take turns, since caches are made for one thread."""
+    """Run a task on a worker, one at a time, because the caches are not thread-safe."""
     _check_release(release)
     with _one_at_a_time:
         return function(*task)
 
 
 def _check_release(release: str) -> None:
-    """Raise `WorkersError` where this worker has other code than the process that asks."""
+    """Raise `WorkersError` if this worker has other code than the submitting process."""
     if release != code_digest(*_PACKAGES):
         raise WorkersError(f"a worker on {platform.node()} has another release of krl than this")

@@ -1,4 +1,4 @@
-"""A command with limits of time and memory; no process of it survives its end."""
+"""Running a command with limits on time and memory; none of its processes outlives it."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ def run_limited(
     hear: Callable[[str], object],
     environment: Mapping[str, str] | None = None,
 ) -> int | None:
-    """The exit status of a command; ``None`` where it took longer than so many seconds.
+    """Return the exit status of a command, or ``None`` if it took longer than ``seconds``.
 
-    ``memory`` is how many bytes of addresses each of its processes may have, which only Linux
-    enforces. ``hear`` is given what it writes to standard error, piece by piece, from a thread;
-    all of it has been given when this returns. Ends with all processes of the command, also when
-    this process receives a signal to end. A command that cannot be started raises OSError; on Linux
-    it has the status 127 instead.
+    ``memory`` limits the address space of each of its processes in bytes; only Linux enforces it.
+    ``hear`` is called from a thread with everything the command writes to standard error, piece by
+    piece, before this function returns. All processes of the command are killed at the end, also if
+    this process receives SIGTERM. A command that cannot be started raises OSError; on Linux it has
+    the status 127 instead.
     """
-    if sys.platform == "linux":  # a limit set from here could come after the command has begun
+    if sys.platform == "linux":  # by a shell: set from here, the limit could come too late
         limited = f'ulimit -v {memory // 1024} && exec "$@"'
         command = ["/bin/sh", "-c", limited, "sh", *command]
     with _ended_by_termination() as started:
@@ -52,7 +52,7 @@ def run_limited(
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """End a process and, where a system has groups of processes, all that it started."""
+    """Kill a process and, on systems with process groups, everything it started."""
     if sys.platform == "win32":
         process.kill()
         return
@@ -62,7 +62,10 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 @contextmanager
 def _ended_by_termination() -> Iterator[Callable[[subprocess.Popen[bytes]], None]]:
-    """SIGTERM kills the process given to what this yields, even if it came before, and this one."""
+    """Yield a function that registers a process to be killed when this process gets SIGTERM.
+
+    SIGTERM also ends this process. It may have arrived before the registration.
+    """
     running: list[subprocess.Popen[bytes]] = []
     signals: list[int] = []
 

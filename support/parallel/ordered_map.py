@@ -1,8 +1,8 @@
-"""A function applied to many tasks: in this process, in others of this machine, or on a cluster.
+"""An ordered parallel map: in this process, in local processes, or on a cluster.
 
-A few tasks are submitted ahead. Results come back in the order of the tasks, each exactly once. If
-a worker dies, another one does its tasks. A task is then tried alone, so that one that kills every
-worker is found.
+A few tasks are submitted ahead. Results are returned in the order of the tasks, each exactly once.
+If a worker dies, its tasks are given to another one. A task during which a worker died is then
+retried alone, so that a task that kills every worker is found.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ def ordered_map(
     scheduler: str | None = None,
     lost: Callable[[*_Ts], _T] | None = None,
 ) -> Iterator[_T]:
-    """What ``function`` returns for the arguments of each task, in the order of the tasks.
+    """Yield the results of ``function`` for the arguments of each task, in the order of the tasks.
 
-    ``jobs`` processes of this machine do it, one being the process that asks; or the workers of the
-    Dask ``scheduler`` with this address. Function, arguments and results must be picklable.
-    Exceptions of the function are raised here. ``lost`` gives the result of a task that kills every
-    worker it is given to.
+    With ``jobs`` of 1 the work is done in this process, otherwise by that many local processes or,
+    if ``scheduler`` is the address of a Dask scheduler, by its workers. Function, arguments and
+    results must be picklable. Exceptions of the function are raised here. ``lost`` computes the
+    result of a task that kills every worker.
 
-    Raises `support.parallel.workers.WorkersError` where there is no such scheduler, where its
-    workers have other code than this process or have all gone, or, without ``lost``, where a task
-    kills every worker it is given to.
+    Raises `support.parallel.workers.WorkersError` if there is no such scheduler, if its workers run
+    other code than this process or have all gone, or, without ``lost``, if a task kills every
+    worker.
     """
     if scheduler is None and jobs == 1:
         for task in tasks:
@@ -61,14 +61,17 @@ def in_shares(
     size: int,
     jobs: int = 1,
 ) -> Iterator[tuple[Sequence[_Item], _T]]:
-    """Shares of so many items, each with what ``function`` returns for it and ``more``."""
+    """Yield the items in slices of ``size``, each with the result of ``function`` for it.
+
+    ``more`` are further arguments of the function.
+    """
     shares = [items[at : at + size] for at in range(0, len(items), size)]
     tasks = ((share, *more) for share in shares)
     return zip(shares, ordered_map(function, tasks, jobs=jobs), strict=True)
 
 
 def check_scheduler(scheduler: str | None) -> None:
-    """Raise `WorkersError` where there is no such scheduler, or no workers with code like ours."""
+    """Raise `WorkersError` if the scheduler has no workers with the same code as this process."""
     if scheduler is not None:
         with connected(scheduler):
             pass
@@ -90,7 +93,7 @@ def _next(
     workers: Workers,
     lost: Callable[[*_Ts], _T] | None,
 ) -> _T:
-    """The result of the first task, retried if a worker died."""
+    """Return the result of the first task; retry it if a worker died."""
     task, pending = submitted.popleft()
     try:
         return pending.result()
@@ -109,7 +112,7 @@ def _next(
 
 
 def _wait_for(submitted: Iterable[Pending[object]]) -> None:
-    """Wait until all are done; an error is raised later, when its result is taken."""
+    """Wait until all tasks are done; their errors are raised later, with their results."""
     for pending in submitted:
         try:
             pending.result()

@@ -1,4 +1,4 @@
-"""Worker processes on this machine: started afresh, ended with their parent."""
+"""Worker processes on this machine: spawned afresh, and ended with their parent."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ _Ts = TypeVarTuple("_Ts")
 def process_pool(
     count: int, prepare: Callable[[*_Ts], object] | None = None, *arguments: *_Ts
 ) -> ProcessPoolExecutor:
-    """So many processes that know nothing of this one; ``prepare`` is called first in each."""
+    """Return a pool of fresh processes; each first calls ``prepare`` with the arguments."""
     return ProcessPoolExecutor(count, _Context(), _begin, (prepare, arguments))
 
 
 class _Process(SpawnProcess):
-    """A process that hears of no interrupt until it has begun: it would print a traceback.
+    """A process with interrupts blocked until it is ready, because it would print a traceback.
 
-    Nor does it import the script that this one runs, which without a guard would begin anew there.
+    It does not import the main script of its parent either, which would start again if it has no
+    main guard.
     """
 
     def start(self) -> None:
@@ -37,14 +38,14 @@ class _Process(SpawnProcess):
 
 
 class _Context(SpawnContext):
-    """How processes are made: 'spawn' behaves the same on every system and copies no threads."""
+    """Creates processes by 'spawn', which is the same on every system and copies no threads."""
 
     Process = _Process
 
 
 @contextmanager
 def _script_hidden() -> Iterator[None]:
-    """What is started now finds no main module to import; its tasks are functions of others."""
+    """Hide the main module from new processes, which would import it; tasks are elsewhere."""
     script = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:
@@ -55,7 +56,7 @@ def _script_hidden() -> Iterator[None]:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """What is started inherits that interrupts wait; where a system has no such thing, nothing."""
+    """Block SIGINT in processes started in the context, if the system can."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -67,8 +68,8 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def _begin(prepare: Callable[..., object] | None, arguments: tuple[object, ...]) -> None:
-    """Begin a process of a pool."""
-    # an interrupt reaches all processes of a terminal; the one that asked for the work reports it
+    """Initialise a process of a pool."""
+    # Ctrl-C reaches all processes of a terminal; the parent reports it
     signal.signal(signal.SIGINT, lambda *_: os._exit(130))
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -78,9 +79,9 @@ def _begin(prepare: Callable[..., object] | None, arguments: tuple[object, ...])
 
 
 def _end_with_parent() -> None:
-    """Wait for the end of the process that made the pool.
+    """Wait until the parent process has ended, then exit.
 
-    A killed process ends no pool, and a worker that waits for a task would wait for ever.
+    A killed parent does not close its pool, and its workers would wait for tasks for ever.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -89,10 +90,10 @@ def _end_with_parent() -> None:
 
 
 class LocalWorkers:
-    """Processes of this machine as `support.parallel.workers.Workers`."""
+    """Processes of this machine that implement `support.parallel.workers.Workers`."""
 
     deaths: tuple[type[BaseException], ...] = (BrokenExecutor,)
-    retries = 2  # one death more may be bad luck
+    retries = 2  # a second death may still be chance
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -100,7 +101,7 @@ class LocalWorkers:
         self.restart()
 
     def submit(self, function: Callable[..., _T], task: tuple[object, ...]) -> Future[_T]:
-        """See `Workers.submit`; a death is raised when the result is asked for, as all are."""
+        """See `Workers.submit`; the death of a worker is raised by the result."""
         try:
             return self._pool.submit(function, *task)
         except BrokenExecutor as error:
@@ -109,9 +110,9 @@ class LocalWorkers:
             return dead
 
     def restart(self) -> None:
-        """Start other processes: a pool in which one died takes no more tasks."""
+        """Start new processes, because a pool in which one died accepts no more tasks."""
         self._pool = process_pool(self._count)
 
     def close(self) -> None:
-        """End the processes; tasks that none of them has begun are not done."""
+        """End the processes; tasks that have not begun are cancelled."""
         self._pool.shutdown(wait=True, cancel_futures=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-#: Is given a number: of things there are to do, or of things done since the last call.
+#: A callback for a number: of items to do, or of items done since the last call.
 Progress = Callable[[int], object]
 
 

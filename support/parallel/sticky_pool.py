@@ -1,7 +1,7 @@
-"""A pool with processes chosen by number, so that a task finds its process's earlier state.
+"""A pool whose processes are chosen by number, so that a task finds state of earlier ones.
 
-A pool gives a task to whichever process is free. Here each process is a pool of its own: what is
-read into one, syntax trees above all, is there when it is asked for and is never sent.
+An ordinary pool gives a task to any free process. Here each process is a pool of its own, so
+objects such as syntax trees that one has loaded are still there for later tasks and never sent.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ _T = TypeVar("_T")
 
 
 class StickyPool:
-    """So many processes, numbered from 0; one alone is the process that asks. A context manager.
+    """A context manager of numbered processes, from 0; if there is only one, it is this process.
 
-    What is submitted, and what comes back, must be picklable.
+    Functions, arguments and results must be picklable.
     """
 
     def __init__(self, count: int) -> None:
@@ -36,7 +36,7 @@ class StickyPool:
             pool.shutdown(wait=error is None, cancel_futures=True)
 
     def least_loaded(self, load: int) -> int:
-        """The process that was given the least to do so far, to which ``load`` is added."""
+        """Return the process with the least load so far, and add ``load`` to it."""
         number = self._loads.index(min(self._loads))
         self._loads[number] += load
         return number
@@ -44,7 +44,7 @@ class StickyPool:
     def submit(
         self, number: int, function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs
     ) -> Future[_T]:
-        """Have a function called in a process, after all that was submitted to it before."""
+        """Call a function in a process, after everything submitted to it before."""
         if self._pools:
             return self._pools[number].submit(function, *arguments, **named)
         done: Future[_T] = Future()

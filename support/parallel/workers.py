@@ -10,22 +10,22 @@ _T_co = TypeVar("_T_co", covariant=True)
 
 
 class WorkersError(Exception):
-    """The workers cannot do what they were asked for; the text is one line for a person."""
+    """The workers cannot do the work; the message is one line for a person."""
 
 
 class Pending(Protocol[_T_co]):
     """A task that was submitted."""
 
     def result(self) -> _T_co:
-        """What came of it; waits, and raises what the function raised."""
+        """Return the result of the task; waits for it, and raises what the function raised."""
 
 
 class Workers(Protocol):
-    """Take tasks.
+    """Accepts tasks, and survives the death of a worker.
 
-    ``most_pending`` is how many tasks may be submitted and not done, ``deaths`` are the exceptions
-    by which `Pending.result` says that a worker died, and ``retries`` is how often a task over
-    which one died is tried again, with no other task submitted.
+    ``most_pending`` is the number of tasks that may be submitted and not done. ``deaths`` are the
+    exceptions by which `Pending.result` reports that a worker died. ``retries`` is how often such a
+    task is tried again, with no other task submitted.
     """
 
     most_pending: int
@@ -33,7 +33,7 @@ class Workers(Protocol):
     retries: int
 
     def submit(self, function: Callable[..., _T], task: tuple[object, ...]) -> Pending[_T]:
-        """Have the function called with the arguments of a task; all of it must be picklable."""
+        """Submit a call of a function with the arguments of a task; all must be picklable."""
 
     def restart(self) -> None:
-        """Continue after a death."""
+        """Continue after the death of a worker."""

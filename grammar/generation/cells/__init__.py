@@ -1,1 +1,1 @@
-"""Whole cells that resemble real ones: folders of modules in every dialect."""
+"""Synthetic robot cells that resemble real ones: folders of modules in many dialects."""

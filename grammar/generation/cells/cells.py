@@ -1,4 +1,4 @@
-"""Whole cells: folders as controllers have them, with modules in order of dependency."""
+"""Whole cells: the folders of a controller, with modules in the order of their dependencies."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from grammar.generation.choices import SeededChoices, Weighted
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A file of a cell; ``path`` begins with the folder of the cell and has ``/`` in it."""
+    """A file of a cell; ``path`` begins with the folder of the cell and uses ``/``."""
 
     path: str
     data: bytes
@@ -52,10 +52,10 @@ _WRITINGS = Weighted((5, Writing.UPPER), (3, Writing.TYPED), (2, Writing.PLAIN))
 
 
 def files(seed: int, number: int) -> Iterator[File]:
-    """The files of a cell; what one uses was in an earlier one.
+    """Yield the files of a cell; a file refers only to earlier ones.
 
-    ``seed`` and ``number`` alone decide what comes. A reader that stops early has programs whose
-    every name is declared in what it got.
+    The result depends on ``seed`` and ``number`` alone. A reader that stops early has programs
+    whose names are all declared in the files it got.
     """
     choices = SeededChoices(f"krl {seed} {number}")
     dialect = a_dialect(choices)

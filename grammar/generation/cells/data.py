@@ -1,4 +1,4 @@
-"""The data list of a module: types and variables, each named in the scope of its programs."""
+"""Generation of data lists: types and variables, which become visible in a scope."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from grammar.semantics.types import (
 
 
 class Data:
-    """Declarations for a data list, written while they are made.
+    """The declarations of a data list while they are generated.
 
-    ``is_global`` makes them known outside the module, which needs a data list that is PUBLIC.
+    ``is_global`` makes them visible outside the module; the data list then has to be PUBLIC.
     """
 
     def __init__(
@@ -41,14 +41,14 @@ class Data:
         self._is_global = is_global
 
     def some(self, count: int) -> None:
-        """So many declarations of any kind."""
+        """Add ``count`` declarations of random kinds."""
         for _ in range(count):
             found = self.choices.weighted(_DECLARATIONS)(self)
             if found is not None:
                 self.variable(found)
 
     def variable(self, type_: Type) -> None:
-        """A variable with its first value."""
+        """Add a variable with its initial value."""
         self.lines += datum(
             self.choices,
             self._style,
@@ -59,7 +59,7 @@ class Data:
         )
 
     def constant(self) -> None:
-        """A named constant [TYP-07]."""
+        """Add a named constant [TYP-07]."""
         type_ = self.choices.pick((INT, INT, REAL))
         name = self.names.variable(type_)
         self.lines.append(
@@ -69,7 +69,7 @@ class Data:
         )
 
     def enumeration(self) -> Enumeration:
-        """A new enumeration."""
+        """Add an enumeration and return it."""
         choices, names = self.choices, self.names
         states = names.vocabulary.states
         constants = choices.few(states, choices.between(3, len(states)))
@@ -81,7 +81,7 @@ class Data:
         return found
 
     def structure(self) -> Type:
-        """A new structure, or an array of it."""
+        """Add a structure and return it, or an array type of it."""
         choices, names = self.choices, self.names
         inner = names.inner()
         name = names.take(names.joined((choices.pick(names.vocabulary.things), "data", "t")))

@@ -1,4 +1,4 @@
-"""Ways of writing KRL: what controllers of a generation write, and what people make of it."""
+"""Dialects: how the programs of a controller generation are written, and how files are stored."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grammar.generation.code import Spelling
 
 
 class Generation(Enum):
-    """Of the controller; the value is the release that its inline forms name."""
+    """A controller generation; the value is the release that its inline forms name."""
 
     KRC1 = "4.1.5"
     KRC2 = "5.4.27"
@@ -20,12 +20,12 @@ class Generation(Enum):
 
     @property
     def is_krc4(self) -> bool:
-        """Whether it has KSS 8."""
+        """Whether its software is KSS 8."""
         return self in (Generation.KRC4, Generation.KRC4_SPLINE)
 
 
 class Letters(Enum):
-    """How words are written."""
+    """The letter case of keywords."""
 
     UPPER = "WHILE"
     LOWER = "while"
@@ -34,9 +34,9 @@ class Letters(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Dialect(Spelling):
-    """How the programs of a cell are written, and how a file is stored.
+    """How the programs of a cell are written, and how its files are stored.
 
-    ``language`` is that of comments and names.
+    ``language`` is the language of comments and names.
     """
 
     generation: Generation = Generation.KRC2
@@ -47,7 +47,7 @@ class Dialect(Spelling):
     encoding: str = "cp1252"
 
     def stored(self, text: str) -> bytes:
-        """The bytes of a file with this text, whose lines end with a line feed."""
+        """Return the bytes of a file with this text, whose lines end with a line feed."""
         if self.letters is Letters.LOWER:
             text = _PIECES.sub(_lowered, text)
         elif self.letters is Letters.MIXED:
@@ -89,7 +89,7 @@ _ENCODINGS = Weighted((12, "cp1252"), (5, "utf-8"), (3, "utf-8-sig"))
 
 
 def a_dialect(choices: Choices) -> Dialect:
-    """How one cell is written."""
+    """Return a random dialect for a cell."""
     generation = choices.weighted(_GENERATIONS)
     letters = Letters.UPPER if generation is Generation.KRC1 else choices.weighted(_LETTERS)
     is_spaced = choices.chance(35) and generation is not Generation.KRC1
@@ -108,7 +108,7 @@ def a_dialect(choices: Choices) -> Dialect:
 
 
 def a_way_to_store(dialect: Dialect, choices: Choices) -> Dialect:
-    """The same with line ends and an encoding for a single file, as it came to the backup."""
+    """Return the dialect with random line ends and encoding, for one file of a backup."""
     return replace(
         dialect, newline=choices.weighted(_NEWLINES), encoding=choices.weighted(_ENCODINGS)
     )

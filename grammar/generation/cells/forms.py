@@ -1,4 +1,4 @@
-"""Motions of cells: as the inline forms of a release write them, or typed by hand."""
+"""Motions of cells: written by the inline forms of a release, or typed by hand."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ _PATH_SPEEDS = ("2", "1.5", "1", "0.5", "0.3", "0.25", "0.1", "0.05", "0.012")
 
 
 class Forms:
-    """Writes the motions of a program, which go to its points.
+    """Writes the motions of a program, to its taught points.
 
-    ``rules`` draw one of any kind; ``goal`` and ``blend`` are those of motions typed by hand.
+    ``rules`` draw a motion of any kind; ``goal`` and ``blend`` are the targets and blending
+    criteria of motions typed by hand.
     """
 
     def __init__(self, dialect: Dialect, taught: Taught) -> None:
@@ -42,7 +43,7 @@ class Forms:
             self.rules = Weighted((860, motion), *_ANYWHERE)
 
     def home(self, code: Code) -> bool:
-        """The motion to the home position, which begins and ends most programs."""
+        """Write the motion to the home position that begins and ends most programs."""
         if not self._dialect.inline_forms:
             return code.line("PTP XHOME")
         with code.fold(
@@ -55,7 +56,11 @@ class Forms:
     # ------------------------------------------------------------------------ by hand
 
     def goal(self, code: Code, kind: str) -> str:
-        """A taught point, an element, somewhere near, where the arm is, or a displacement."""
+        """Return a motion target.
+
+        It is a taught point, a variable, a position relative to one, the current position, or a
+        displacement.
+        """
         choices = code.choices
         if kind.endswith("_REL"):
             if "PTP" in kind:
@@ -76,7 +81,7 @@ class Forms:
         return point
 
     def blend(self, code: Code, kind: str) -> str:
-        """A criterion or none, with the blank before it."""
+        """Return a blending criterion with the blank before it, or an empty text."""
         choices, is_axis = code.choices, "PTP" in kind
         drawn = choices.below(100)
         if drawn < 45:
@@ -94,7 +99,7 @@ class Forms:
     def _form(
         self, code: Code, command: str, point: str, data: str, speed: str, blend: str
     ) -> None:
-        """The head of the fold."""
+        """Write the head of the fold."""
         is_axis = command in ("PTP", "SPTP")
         unit = "%" if is_axis else "m/s"
         cont = " CONT" if blend else ""
@@ -124,7 +129,7 @@ class Forms:
         )
 
     def _set_data(self, code: Code, letter: str, data: str, point: str, speed: str) -> None:
-        """The data sets of the motion come into effect: of PTP (P) or of a path (L)."""
+        """Write the lines that activate the data set of a PTP motion (P) or a path motion (L)."""
         kind = "PTP" if letter == "P" else "CP"
         if self._generation is Generation.KRC1:
             code.line(f"{letter}DAT_ACT={letter}{data}")
@@ -140,7 +145,7 @@ class Forms:
         code.line(f"BAS(#{kind}_PARAMS,{speed})")
 
     def _ptp(self, code: Code) -> bool:
-        """PTP, or SPTP where the release has it."""
+        """Write a PTP, or an SPTP if the release has it."""
         choices = code.choices
         point, data, speed = self.taught.point(), self.taught.axis_set(), choices.pick(_AXIS_SPEEDS)
         if self._has_spline_forms and choices.chance(40):
@@ -159,7 +164,7 @@ class Forms:
         return code.line(";ENDFOLD")
 
     def _lin(self, code: Code) -> bool:
-        """LIN, or SLIN where the release has it."""
+        """Write a LIN, or an SLIN if the release has it."""
         choices = code.choices
         point, data, speed = self.taught.point(), self.taught.path_set(), choices.pick(_PATH_SPEEDS)
         if self._has_spline_forms and choices.chance(30):
@@ -178,7 +183,7 @@ class Forms:
         return code.line(";ENDFOLD")
 
     def _circ(self, code: Code) -> bool:
-        """CIRC with its auxiliary point."""
+        """Write a CIRC with its auxiliary point."""
         choices = code.choices
         aux, point = self.taught.point(again=0), self.taught.point(again=0)
         data, speed = self.taught.path_set(), choices.pick(_PATH_SPEEDS)
@@ -191,7 +196,7 @@ class Forms:
 
 
 def _displacement(code: Code, *, is_full: bool = False) -> str:
-    """A small displacement, as an aggregate."""
+    """Return a small displacement as an aggregate."""
     offset = constant(code, REAL)
     if is_full:
         return f"{{X 0.0,Y 0.0,Z {offset},A 0.0,B 0.0,C 0.0}}"

@@ -1,4 +1,4 @@
-"""Modules of a cell: a program and its data list, each with a head as controllers write it."""
+"""Modules of a cell: a program and its data list, with the head lines that controllers write."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from grammar.generation.choices import Choices
 from grammar.generation.scope import Routine, Scope
 from grammar.semantics.types import INT, REAL
 
-#: Of each kind of name that a program sees of those of the cell.
+#: How many of the cell's names of each kind a program sees.
 _MOST_NAMES: Final = 6
 
 
 class Cell:
-    """What the modules of a cell have in common: how they are written, and what is global.
+    """What the modules of a cell share: dialect, style and global names.
 
-    ``shared`` are modules and integers of theirs that others can import.
+    ``shared`` are pairs of a module and an integer of it that others can import.
     """
 
     def __init__(self, choices: Choices, dialect: Dialect, names: Names) -> None:
@@ -36,25 +36,25 @@ class Cell:
         self.shared: list[tuple[str, str]] = []
 
     def module_name(self) -> str:
-        """A new name for a module."""
+        """Return a new name for a module."""
         return self.names.routine(self.choices.pick(self.names.vocabulary.stations))
 
     def program(self, name: str, *, is_shared: bool = False) -> Program:
-        """The routines of a file, which see a few of the names of the cell.
+        """Return an empty program file that sees a few of the cell's names.
 
-        Those of routines that all programs see are names of the cell themselves.
+        If it ``is_shared``, its routines get names that are unique in the whole cell.
         """
         names = self.names if is_shared else self.names.inner()
         scope = self.scope.some(self.choices, _MOST_NAMES)
         return Program(name, self.choices, self.dialect, self.style, names, scope)
 
     def callable(self) -> list[str]:
-        """The names of procedures without parameters, as they were made."""
+        """Return the names of the procedures without parameters, in the order of their creation."""
         found = self.scope.callable(None, 0)
         return [one.name for one in found if not one.parameters]
 
     def data(self, names: Names, scope: Scope, *, is_global: bool = False) -> Data:
-        """A data list."""
+        """Return an empty data list."""
         return Data(self.choices, self.style, names, scope, is_global=is_global)
 
 
@@ -84,14 +84,14 @@ def _head(cell: Cell, access: str = "RVP") -> Iterator[str]:
 
 
 def as_program(cell: Cell, lines: Iterable[str], access: str = "RVP") -> list[str]:
-    """Routines with the head of a file."""
+    """Return the lines of a program file: head and routines."""
     return [*_head(cell, access), *lines]
 
 
 def as_data_list(
     cell: Cell, name: str, lines: Iterable[str], *, is_public: bool = False
 ) -> list[str]:
-    """Declarations with the head of a file and of a data list."""
+    """Return the lines of a data list file: head, DEFDAT, declarations, ENDDAT."""
     public = " PUBLIC" if is_public else ""
     gap = " " if cell.choices.chance(40) else ""
     return [*_head(cell), f"DEFDAT {gap}{name}{public}", *lines, "ENDDAT"]
@@ -123,7 +123,7 @@ def _data_list(cell: Cell, name: str, data: Data, taught: Taught) -> list[str]:
 
 
 def _finished(cell: Cell, program: Program, data: Data) -> Module:
-    """A program that others can call, with its data list."""
+    """Return the module of a program, which other programs can call from now on."""
     cell.scope.add_routine(Routine(program.name))
     listed = _data_list(cell, program.name, data, program.taught)
     return Module(program.name, as_program(cell, program.lines), listed)
@@ -137,7 +137,7 @@ def _begun(cell: Cell, declarations: int) -> tuple[Program, Data]:
 
 
 def process(cell: Cell) -> Module:
-    """A program that moves: most of its lines are motions and what happens between them."""
+    """Return a program that mostly moves."""
     choices = cell.choices
     program, data = _begun(cell, choices.below(10))
     for _ in range(choices.below(3)):
@@ -153,7 +153,7 @@ def process(cell: Cell) -> Module:
 
 
 def sequence(cell: Cell) -> Module:
-    """A program that decides, counts and calls."""
+    """Return a program that mostly decides, counts and calls."""
     choices = cell.choices
     program, data = _begun(cell, choices.between(4, 24))
     if choices.chance(30):
@@ -167,7 +167,7 @@ def sequence(cell: Cell) -> Module:
 
 
 def library(cell: Cell) -> Module:
-    """Functions and procedures for all programs; the first routine does nothing."""
+    """Return functions and procedures for all programs; the main routine is empty."""
     choices = cell.choices
     program = cell.program(cell.module_name(), is_shared=True)
     data = cell.data(cell.names, program.scope)
@@ -187,7 +187,7 @@ def library(cell: Cell) -> Module:
 
 
 def public_data(cell: Cell) -> Module:
-    """A data list alone, whose types and variables all programs see [SCO-04]."""
+    """Return a data list without a program, whose declarations are global [SCO-04]."""
     name = cell.module_name()
     before = {one.name for one in cell.scope.variables()}
     data = cell.data(cell.names, cell.scope, is_global=True)

@@ -1,4 +1,4 @@
-"""Plausible names, at most 24 characters long and each used once, and comments."""
+"""Plausible names, at most 24 characters long and unique, and comments."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LONGEST = 24
 
 @dataclass(frozen=True, slots=True)
 class Vocabulary:
-    """The words of a language that names and remarks of a cell are made of."""
+    """The words of a language from which names and comments are made."""
 
     trades: tuple[str, ...]
     stations: tuple[str, ...]
@@ -35,7 +35,7 @@ class Vocabulary:
 
 @cache
 def vocabulary(language: str) -> Vocabulary:
-    """The words of a language: ``en`` or ``de``."""
+    """Return the words of a language: ``en`` or ``de``."""
     text = (resources.files(__package__) / "texts" / "words.toml").read_text("utf-8")
     return Vocabulary(
         **{kind: tuple(words) for kind, words in tomllib.loads(text)[language].items()}
@@ -43,7 +43,7 @@ def vocabulary(language: str) -> Vocabulary:
 
 
 class Writing(Enum):
-    """How names are put together from words."""
+    """How a name is composed from words."""
 
     UPPER = "PART_COUNT"
     TYPED = "nPartCount"
@@ -61,9 +61,9 @@ def _prefix(type_: Type) -> str:
 
 
 class Names:
-    """Makes names that are not taken yet; ``outer`` are names that are seen from here.
+    """Makes unique names; ``outer`` are the names of the enclosing scope.
 
-    They are put together from two words or more, so that none is a word of the language.
+    A name consists of two words or more, so none is a keyword.
     """
 
     __slots__ = ("_outer", "_taken", "choices", "vocabulary", "writing")
@@ -78,11 +78,11 @@ class Names:
         self._taken: set[str] = set()
 
     def inner(self, choices: Choices | None = None) -> Names:
-        """Names for a place within, where those of here are seen."""
+        """Return names for an inner scope, which sees the names of this one."""
         return Names(choices or self.choices, self.vocabulary, self.writing, self)
 
     def is_taken(self, name: str) -> bool:
-        """Whether the name is used here or further out, in whatever letters."""
+        """Return whether a name is used here or further out, in any letter case."""
         upper = name.upper()
         names: Names | None = self
         while names is not None:
@@ -92,7 +92,7 @@ class Names:
         return False
 
     def take(self, name: str) -> str:
-        """The name, or one with a number behind it where it is taken."""
+        """Return the name, with a number appended if it is taken, and mark it as used."""
         found, number = name[:LONGEST], 1
         while self.is_taken(found):
             number += 1
@@ -102,7 +102,7 @@ class Names:
         return found
 
     def joined(self, words: Sequence[str], type_: Type | None = None) -> str:
-        """Words put together as this cell does it."""
+        """Return a name composed of the words in the cell's style."""
         if self.writing is Writing.UPPER:
             return "_".join(words).upper()
         name = "".join(word.capitalize() for word in words)
@@ -110,14 +110,14 @@ class Names:
         return f"{_prefix(type_)}{name}" if is_typed and type_ else name
 
     def variable(self, type_: Type, _letter: str = "V") -> str:
-        """A new name for a variable, after something of the trade."""
+        """Return a new name for a variable of a type."""
         element = type_.element if isinstance(type_, Array) else type_
         words = self._words(element, self.vocabulary.stations)
         thing = self.choices.pick(self.vocabulary.things)
         return self.take(self.joined((thing, self.choices.pick(words)), element))
 
     def _words(self, type_: Type | None, others: Sequence[str]) -> Sequence[str]:
-        """What a value of a type is called."""
+        """Return the words for values of a type; ``others`` if it has none of its own."""
         words = self.vocabulary
         if type_ in (INT, REAL):
             return words.integers if type_ == INT else words.reals
@@ -126,30 +126,30 @@ class Names:
         return others
 
     def routine(self, station: str) -> str:
-        """A new name for a routine that does something at a station."""
+        """Return a new name for a routine: a verb and the station."""
         words = self.vocabulary
         return self.take(self.joined((self.choices.pick(words.verbs), station)))
 
     def function(self, result: Type) -> str:
-        """A new name for a function with a result of a type."""
+        """Return a new name for a function with this result type."""
         words = self.vocabulary
         thing, station = self.choices.pick(words.things), self.choices.pick(words.stations)
         last = self.choices.pick(self._words(result, (station,)))
         return self.take(self.joined((thing, last, "of")))
 
     def label(self) -> str:
-        """A new name for a label."""
+        """Return a new name for a label."""
         words = ("again", "next", "retry", "cycle", "ready", "once_more")
         return self.take(
             self.joined((self.choices.pick(words), self.choices.pick(("part", "loop"))))
         )
 
     def remark(self) -> str:
-        """A comment, without its semicolon."""
+        """Return a comment, without its semicolon."""
         return self._filled(self.choices.pick(self.vocabulary.remarks))
 
     def message(self) -> str:
-        """A text for the operator, in its quotes."""
+        """Return a text for the operator, with its quotation marks."""
         return f'"{self._filled(self.choices.pick(self.vocabulary.messages))}"'
 
     def _filled(self, text: str) -> str:

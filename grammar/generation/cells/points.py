@@ -1,11 +1,11 @@
-"""Taught points and the data sets of motions, as they stand in the data list of a program."""
+"""Taught points and the data sets of motions, as a data list has them."""
 
 from __future__ import annotations
 
 from grammar.generation.cells.dialect import Dialect, Generation
 from grammar.generation.choices import Choices
 
-# Status and Turn that belong together on usual robots [POS-04, POS-05, POS-07].
+# Pairs of Status and Turn that usual robots can reach [POS-04, POS-05, POS-07].
 _BRANCHES = ((2, 2), (2, 35), (2, 3), (6, 19), (6, 27), (6, 51), (2, 10), (6, 50))
 _BITS = tuple((f"'B{s:03b}'", f"'B{t:06b}'") for s, t in _BRANCHES)
 _NUMBERS = tuple((str(s), str(t)) for s, t in _BRANCHES)
@@ -17,7 +17,7 @@ _NO_EXTERNAL_AXES = ",".join(f"E{number} 0.0" for number in range(1, 7))
 def pose(
     choices: Choices, centre: tuple[float, float, float] = (400.0, 0.0, 300.0), spread: float = 900
 ) -> tuple[float, ...]:
-    """X, Y, Z in millimetres and A, B, C in degrees of a point near a centre."""
+    """Return a random point near a centre: X, Y, Z in millimetres and A, B, C in degrees."""
     x, y, z = centre
     return (
         x + spread * _signed(choices),
@@ -30,33 +30,33 @@ def pose(
 
 
 def _signed(choices: Choices) -> float:
-    """A number between -0.5 and 0.5."""
+    """Return a number between -0.5 and 0.5."""
     return choices.below(1_000_000) / 1_000_000 - 0.5
 
 
 def frame(choices: Choices) -> str:
-    """A frame as an aggregate."""
+    """Return a random frame as an aggregate."""
     x, y, z, a, b, c = pose(choices)
     return f"{{X {x:.3f},Y {y:.3f},Z {z:.3f},A {a:.3f},B {b:.3f},C {c:.3f}}}"
 
 
 def position(choices: Choices) -> str:
-    """A position with status, turn and external axes."""
+    """Return a random position as an aggregate with status, turn and external axes."""
     return f"{frame(choices)[:-1]},S 2,T 2,{_NO_EXTERNAL_AXES}}}"
 
 
 def axis_position(choices: Choices) -> str:
-    """Angles of all axes."""
+    """Return a random axis position as an aggregate."""
     angles = ",".join(f"A{n} {180 * _signed(choices):.3f}" for n in range(1, 7))
     return f"{{{angles},{_NO_EXTERNAL_AXES}}}"
 
 
 class Taught:
-    """The points of one program and their data sets: made when a motion needs one.
+    """The taught points of one program with their data sets, created when a motion needs one.
 
-    ``lines`` are those of the data list so far, ``frame`` is tool and base as the forms show them.
-    Points are called P1, P2 … in the forms; their variables have an X in front, those of their
-    frames an F.
+    ``lines`` are the lines of the data list so far; ``frame`` is tool and base as the inline forms
+    show them. A form calls its points P1, P2 …; their variables are XP1, XP2 …, and the data of
+    their frames FP1, FP2 ….
     """
 
     def __init__(self, choices: Choices, dialect: Dialect) -> None:
@@ -75,7 +75,7 @@ class Taught:
         self._is_old = dialect.generation in (Generation.KRC1, Generation.KRC2)
 
     def point(self, *, again: int = 15) -> str:
-        """The name of a point, in so many of a hundred cases one that there is."""
+        """Return the name of a point: an existing one with a probability of ``again`` percent."""
         choices = self._choices
         if self.points and choices.chance(again):
             return choices.pick(self.points)
@@ -94,7 +94,7 @@ class Taught:
         return name
 
     def axis_set(self) -> str:
-        """The name of a data set of PTP motions."""
+        """Return the name of a data set for PTP motions."""
         sets, choices = self._axis_sets, self._choices
         if sets and choices.chance(60):
             return choices.pick(sets)
@@ -110,7 +110,7 @@ class Taught:
         return name
 
     def path_set(self) -> str:
-        """The name of a data set of motions on a path."""
+        """Return the name of a data set for path motions."""
         sets, choices = self._path_sets, self._choices
         if sets and choices.chance(60):
             return choices.pick(sets)
@@ -126,7 +126,7 @@ class Taught:
         return name
 
     def suggestion(self) -> str:
-        """The line of what the form suggests next time."""
+        """Return the line with which the form proposes names for the next motion."""
         last = self.points[-1] if self.points else "P0"
         sets = (self._path_sets or ["CPDAT0"])[-1], (self._axis_sets or ["PDAT0"])[-1]
         return (

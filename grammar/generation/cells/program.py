@@ -1,4 +1,4 @@
-"""The routines of a program file: reactions, functions, procedures, and the main one."""
+"""The routines of a program file: reactions, functions, procedures, and the main routine."""
 
 from __future__ import annotations
 
@@ -24,16 +24,15 @@ from grammar.semantics.types import INT, REAL, Array
 _INTERRUPTS: Final = (*range(4, 40), *range(81, 129))
 _LASTING: Final = pattern("<lasting> <AND|OR|AND NOT> $IN[<1-512>]")
 _SIZE: Final = Size(statements=6, depth=2)
-#: Values of a local array that the beginning of a routine sets.
+#: How many elements of a local array a routine initialises at most.
 _MOST_FIRST_VALUES: Final = 12
 
 
 class Program:
-    """The routines of one file while they are written.
+    """The routines of one file while they are generated.
 
-    ``scope`` and ``names`` are those of the module; what the routines are called is in ``names``.
-    Routines stand in the file after the main one, but are written first: each calls only such as
-    are there already, so none calls itself.
+    ``scope`` and ``names`` are those of the module. The other routines follow the main one in the
+    file but are generated first. Each calls only earlier ones, so there is no recursion.
     """
 
     def __init__(
@@ -60,12 +59,12 @@ class Program:
 
     @property
     def lines(self) -> list[str]:
-        """All routines, the last written first: that is the main one."""
+        """The lines of all routines, with the main routine first."""
         main, *others = self._texts[-1:] + self._texts[:-1]
         return [*main, *(line for text in others for line in ("", *text))]
 
     def code(self, *, moving: int = 0, part: Part | None = None) -> Code:
-        """A routine to be written."""
+        """Return an empty routine."""
         return Code(
             self.choices,
             self.style,
@@ -79,7 +78,7 @@ class Program:
     def end(
         self, code: Code, routine: Routine, *, is_global: bool = False, is_called: bool = True
     ) -> Routine:
-        """The routine is complete, and others can call it from now on."""
+        """Complete a routine and return it; from now on others can call it."""
         close = " )" if self.choices.chance(60) else ")"
         self._texts.append(routine_text(code, routine, is_global=is_global, close=close))
         if is_called:
@@ -87,7 +86,7 @@ class Program:
         return routine
 
     def _declare(self, code: Code, given: Sequence[Parameter], count: int) -> None:
-        """The parameters, some variables and their first values."""
+        """Write the parameters, some variables and their initial values."""
         choices = self.choices
         declare_parameters(code, given)
         names = code.names
@@ -102,7 +101,7 @@ class Program:
         begin(code, variables, _MOST_FIRST_VALUES)
 
     def fill(self, code: Code, lines: int) -> None:
-        """Statements of about so many lines."""
+        """Write about ``lines`` lines of statements."""
         code.budget = len(code.lines) + max(lines, 1)
         while code.left() > 0:
             statement(code)
@@ -117,7 +116,7 @@ class Program:
     # ------------------------------------------------------------------------ kinds of routines
 
     def add_quick(self) -> None:
-        """A short routine for triggers and interrupts, without motions."""
+        """Add a short routine without motions, for triggers and interrupts."""
         code = self.code()
         for _ in range(self.choices.between(1, 4)):
             set_output(code)
@@ -125,7 +124,7 @@ class Program:
         self._reactions.append(self.end(code, routine))
 
     def add_brake(self) -> None:
-        """A routine that stops the robot and waits for what was missing."""
+        """Add a routine that stops the robot and waits for a condition."""
         code = self.code()
         code.line(self.choices.pick(("BRAKE", "BRAKE", "BRAKE", "BRAKE F")))
         code.set("$OUT[1]", "FALSE")
@@ -136,7 +135,7 @@ class Program:
         self._reactions.append(self.end(code, routine, is_called=False))
 
     def add_function(self, *, is_global: bool = False) -> Routine:
-        """A function that calculates something."""
+        """Add a function and return it."""
         choices = self.choices
         result = choices.weighted(RESULTS)
         name = self.names.function(result)
@@ -152,7 +151,7 @@ class Program:
         return self.end(code, Routine(name, given, result), is_global=is_global)
 
     def add_array_function(self) -> Routine:
-        """A function over the elements of an array."""
+        """Add a function over the elements of an array and return it."""
         choices, binary = self.choices, self.dialect.binary
         name = self.names.take(self.names.joined((choices.pick(("mean", "sum", "most")), "of_all")))
         code = self.code()
@@ -172,7 +171,7 @@ class Program:
         return self.end(code, Routine(name, given, REAL))
 
     def add_procedure(self, lines: int, *, moving: int, is_global: bool = False) -> Routine:
-        """A procedure with some parameters that others call."""
+        """Add a procedure with some parameters and return it."""
         choices = self.choices
         name = self.names.routine(self._station())
         code = self.code(moving=moving)
@@ -182,7 +181,7 @@ class Program:
         return self.end(code, Routine(name, given), is_global=is_global)
 
     def add_main(self, lines: int, *, moving: int) -> None:
-        """The routine with the name of the file, as it is selected and started."""
+        """Add the main routine, which has the name of the file."""
         code, choices = self.code(moving=moving), self.choices
         if choices.chance(50):
             with code.fold("DECLARATIONS", "DECLARATIONS"):
@@ -205,13 +204,13 @@ class Program:
         self.end(code, Routine(self.name), is_called=False)
 
     def add_empty_main(self) -> None:
-        """A main routine that only carries the name of the file."""
+        """Add a main routine without statements."""
         code = self.code()
         remark(code)
         self.end(code, Routine(self.name), is_called=False)
 
     def _initialise(self, code: Code, interrupts: dict[int, Routine]) -> None:
-        """The fold INI: the reaction to a stop, the defaults, and interrupts of its own."""
+        """Write the fold INI: the reaction to a stop, defaults, the program's interrupts."""
         choices, call = self.choices, self.dialect.call
         word = "GLOBAL " if self.dialect.generation.is_krc4 or choices.chance(20) else ""
 
@@ -231,7 +230,7 @@ class Program:
                     interrupt(number, event, routine.name)
 
     def _body(self, code: Code, lines: int) -> None:
-        """The statements, at times with a label to come back to."""
+        """Write the statements, sometimes with a backward jump around them."""
         if self.choices.chance(13):
             code.guarded(truth(code), "RETURN")
         is_repeated = self.choices.chance(12)

@@ -1,4 +1,4 @@
-"""Modules for one purpose each: long paths, tables, searching, splines, painting, serial lines."""
+"""Modules for one purpose each: long paths, tables, search, splines, painting, serial lines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from grammar.generation.motions import spline_block
 from grammar.generation.scope import Routine
 from grammar.semantics.types import Array, Structure, Type
 
-# A turn by three degrees. Plain arithmetic gives the same digits on every machine.
+# A rotation by three degrees, as constants: the digits are the same on every machine.
 _COS, _SIN = 0.9986295347545738, 0.05233595624294383
 
 
@@ -24,7 +24,7 @@ def _begin(cell: Cell) -> tuple[Program, Code]:
 
 
 def _finish(cell: Cell, program: Program, code: Code, data: Sequence[str]) -> Module:
-    """The module, whose main routine is complete."""
+    """Return the module after completing its main routine."""
     name = program.name
     program.end(code, Routine(name), is_called=False)
     cell.scope.add_routine(Routine(name))
@@ -32,7 +32,7 @@ def _finish(cell: Cell, program: Program, code: Code, data: Sequence[str]) -> Mo
 
 
 def path(cell: Cell) -> Module:
-    """A path as a planning system puts it out: hundreds of LIN with their values in braces."""
+    """Return a path as an offline planning system exports it: hundreds of LIN with aggregates."""
     choices = cell.choices
     program, code = _begin(cell)
     code.call("BAS", "#INITMOV", "0")
@@ -48,7 +48,7 @@ def path(cell: Cell) -> Module:
 
 
 def _turns(cell: Cell, pad: str, count: int, blend: str) -> Iterator[str]:
-    """Points along a spiral with some noise, as a scanned surface has it."""
+    """Yield points along a spiral with some noise, like those of a scanned surface."""
 
     def real() -> float:
         return cell.choices.below(1_000_000) / 1_000_000
@@ -70,7 +70,7 @@ def _turns(cell: Cell, pad: str, count: int, blend: str) -> Iterator[str]:
 
 
 def table_filler(cell: Cell) -> Module:
-    """Fills the tables that all programs see, an element a line."""
+    """Return a program that assigns every element of some global tables."""
     choices = cell.choices
     program, code = _begin(cell)
     arrays = [one for one in cell.scope.variables() if _is_table(one.type)]
@@ -87,7 +87,7 @@ def _is_table(type_: Type) -> bool:
 
 
 def _cells(code: Code, type_: Type, name: str) -> Iterator[tuple[str, str]]:
-    """The parts of a table that are no tables, with a value for each."""
+    """Yield the scalar parts of a table, each with a value."""
     if isinstance(type_, Array) and not type_.is_text:
         for index in elements(type_):
             yield from _cells(code, type_.element, f"{name}[{index}]")
@@ -100,7 +100,7 @@ def _cells(code: Code, type_: Type, name: str) -> Iterator[tuple[str, str]]:
 
 
 def search(cell: Cell) -> Module:
-    """Moves until a sensor answers, then leaves the motion by RESUME [INT-10, INT-12]."""
+    """Return a program that moves until a sensor answers, and ends by RESUME [INT-10, INT-12]."""
     choices, dialect = cell.choices, cell.dialect
     program, code = _begin(cell)
     moving = program.names.routine("part")
@@ -138,7 +138,7 @@ def search(cell: Cell) -> Module:
 
 
 def splines(cell: Cell) -> Module:
-    """Spline blocks, where the release has them."""
+    """Return a program with spline blocks, for releases that have them."""
     program, code = _begin(cell)
     code.call("BAS", "#INITMOV", "0")
     program.forms.home(code)
@@ -153,7 +153,7 @@ def splines(cell: Cell) -> Module:
 
 
 def painting(cell: Cell) -> Module:
-    """Analogue values read and written again and again while the robot moves."""
+    """Return a program with cyclic analogue inputs and outputs during motions."""
     choices, eq, gap = cell.choices, cell.dialect.eq, cell.dialect.gap
     program, code = _begin(cell)
     code.call("BAS", "#INITMOV", "0")
@@ -180,7 +180,7 @@ def painting(cell: Cell) -> Module:
 
 
 def serial(cell: Cell) -> Module:
-    """Asks a device over a serial line."""
+    """Return a program that talks to a device over a serial line."""
     choices, eq = cell.choices, cell.dialect.eq
     program, code = _begin(cell)
     channel = cell.names.take(
@@ -217,9 +217,9 @@ def serial(cell: Cell) -> Module:
 
 
 def old_machine(cell: Cell) -> Module:
-    """What only old controllers have: imported data, EXT for every routine, asynchronous axes.
+    """Return a program with features of old controllers: IMPORT, EXT, asynchronous axes.
 
-    Needs a module whose data it can import.
+    The cell must already have a module whose data can be imported.
     """
     choices = cell.choices
     program, code = _begin(cell)

@@ -1,4 +1,7 @@
-"""Statements that only cells have: outputs by form, messages to the operator, remarks, folds."""
+"""Statements that only cells have: outputs by form, operator messages, comments, folds.
+
+As in `grammar.generation.statements`, a function writes into a `Code` and returns whether it could.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ def _dialect(code: Code) -> Dialect:
 
 
 def set_output(code: Code) -> bool:
-    """An output switched, the advance run held or not, at times by an inline form."""
+    """Write an output assignment, sometimes by an inline form or after CONTINUE."""
     choices, dialect = code.choices, _dialect(code)
     name, state = output(code), choices.pick(("TRUE", "FALSE"))
     is_ahead = choices.chance(14)
@@ -43,7 +46,7 @@ def set_output(code: Code) -> bool:
 
 
 def message(code: Code) -> bool:
-    """A message to the operator."""
+    """Write a message to the operator."""
     text = _names(code).message()
     match code.choices.below(10):
         case 0 | 1 | 2 | 3 | 4 | 5:
@@ -56,7 +59,7 @@ def message(code: Code) -> bool:
 
 
 def ask(code: Code) -> bool:
-    """A question to the operator."""
+    """Write a question to the operator."""
     found = target(code, INT)
     if found is None:
         return False
@@ -65,7 +68,7 @@ def ask(code: Code) -> bool:
 
 
 def careful(code: Code) -> bool:
-    """Reads what may have no value yet [TYP-13]; releases before KSS 8 cannot."""
+    """Write a read access to what may have no value [TYP-13]; needs KSS 8."""
     if not _dialect(code).generation.is_krc4:
         return False
     code.call("ERR_CLEAR", "$ERR")
@@ -73,7 +76,7 @@ def careful(code: Code) -> bool:
 
 
 def remark(code: Code) -> bool:
-    """A comment, an empty line, or an old line that somebody has taken out of use."""
+    """Write a comment, an empty line, or a statement that is commented out."""
     match code.choices.below(10):
         case 0 | 1 | 2 | 3 | 4:
             return code.line(f";{code.spelling.gap}{_names(code).remark()}")
@@ -84,7 +87,7 @@ def remark(code: Code) -> bool:
 
 
 def fold(code: Code) -> bool:
-    """Statements in a fold."""
+    """Write a fold with statements."""
     if code.left() < 4:
         return False
     with code.fold(_names(code).remark()):

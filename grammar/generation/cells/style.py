@@ -1,4 +1,4 @@
-"""The style of cells: programs as people and panels write them, made for one dialect."""
+"""The style of cells: programs as people and teach pendants write them, for one dialect."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SELECTORS: Final = Weighted[Type | None]((60, INT), (35, None), (5, CHAR))
 
 
 def _literals(dialect: Dialect) -> Literals:
-    """What constants a cell has."""
+    """Return the constants that a cell uses."""
     return Literals(
         integers=(*(str(number % 100) for number in range(180)), "250", "999", *_BITS),
         reals=tuple(_REALS.split()),
@@ -52,7 +52,7 @@ def _literals(dialect: Dialect) -> Literals:
 
 
 def _any_enumeration(code: Code, type_: Type | None, otherwise: Type) -> Type:
-    """The type, or in place of ``None`` one of the enumerations that have variables here."""
+    """Return the type; instead of ``None``, a random enumeration that has variables here."""
     if type_ is not None:
         return type_
     found = code.scope.enumerations()
@@ -65,7 +65,7 @@ def _parameter(choices: Choices, _has_arrays: bool) -> Parameter:
 
 
 def _value(code: Code, place: str, type_: Type) -> str:
-    """What a place is given: often one more, often a constant."""
+    """Return a value for a variable: often an increment, often a constant."""
     choices = code.choices
     if type_ == INT and choices.chance(30):
         return code.spelling.binary(place, "+", "1")
@@ -174,7 +174,7 @@ _STATEMENTS: Final = Weighted[StatementRule](
 
 
 def style_of(dialect: Dialect, names: Names, forms: Forms) -> Style:
-    """The style of a cell; motions go to the points of the forms."""
+    """Return the style of a cell; its motions go to the points of ``forms``."""
 
     def remark_behind(choices: Choices) -> str:
         return f" ;{names.remark()}" if choices.chance(6) else ""

@@ -1,4 +1,4 @@
-"""Files that every controller has: globals, machine data, the system's routines."""
+"""Files that every controller has: global data, machine data, system routines."""
 
 from __future__ import annotations
 
@@ -52,13 +52,13 @@ def _text(name: str) -> list[str]:
 
 
 def _written(cell: Cell, *names: str) -> list[str]:
-    """Lines that all cells share, with the indentation of this one."""
+    """Return the lines of text files that all cells share, with the cell's indentation."""
     lines = [line for name in names for line in _text(name)]
     return list(_indented(lines, cell.dialect))
 
 
 def _indented(lines: Iterable[str], dialect: Dialect) -> Iterator[str]:
-    """Lines that were written without indentation, with that of a dialect."""
+    """Yield the lines, which have no indentation, with that of a dialect."""
     depth = 0
     for line in lines:
         word = line.split(" ", 1)[0]
@@ -72,7 +72,7 @@ def _indented(lines: Iterable[str], dialect: Dialect) -> Iterator[str]:
 
 
 def globals_of_cell(cell: Cell) -> Module:
-    """The data list that all programs see; what it declares goes into the scope of the cell."""
+    """Return $CONFIG, whose declarations go into the cell's scope."""
     lines = [*_text("config.dat"), *_frames(cell), ";FOLD USER GLOBALS", *_signals(cell)]
     data = cell.data(cell.names, cell.scope)
     data.some(cell.choices.between(10, 60))
@@ -123,7 +123,7 @@ def _signals(cell: Cell) -> Iterator[str]:
 
 
 def controller(cell: Cell) -> Iterator[tuple[str, Module]]:
-    """The machine data, each with its folder."""
+    """Yield the machine data modules, each with its folder."""
     choices = cell.choices
     version = f"V{choices.between(1, 9)}.{choices.below(30)}.{choices.below(9)}"
     yield "STEU/Mada", _machine_data(cell, "$machine", _interface(cell))
@@ -174,7 +174,7 @@ def _custom(cell: Cell) -> list[str]:
 
 
 def system_routines(cell: Cell) -> Iterator[Module]:
-    """The routines that programs call, known to the cell from now on."""
+    """Yield the system's modules that programs call."""
     spline = ["bas_spline.src"] * (cell.dialect.generation is Generation.KRC4_SPLINE)
     yield Module("bas", program=_written(cell, "bas.src", *spline))
     yield Module("ir_stopm", program=_written(cell, "ir_stopm.src"))
@@ -187,7 +187,7 @@ def system_routines(cell: Cell) -> Iterator[Module]:
 
 
 def submit(cell: Cell) -> Module:
-    """The program that runs beside the robot's, in a loop and without motions."""
+    """Return the submit program, which runs beside the robot program, in a loop without motions."""
     program = cell.program("SPS")
     code = program.code()
     # programs that move are no business of the submit interpreter [SUB-05]
@@ -206,7 +206,7 @@ def submit(cell: Cell) -> Module:
 
 
 def cell_program(cell: Cell) -> Module:
-    """What the line controller starts: calls the programs by their numbers."""
+    """Return the program that a line controller starts; it calls programs by number."""
     names = cell.callable()
     program = cell.program("CELL")
     code = program.code()

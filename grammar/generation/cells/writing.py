@@ -1,4 +1,4 @@
-"""Writes synthetic cells into a folder until there is as much as was asked for."""
+"""Writing synthetic cells into a folder until it has a given size."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from support.parallel.progress import Progress, no_progress
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """How much was written."""
+    """What was written: numbers of cells, files and bytes."""
 
     cells: int
     files: int
@@ -23,11 +23,11 @@ class Written:
 def write_cells(
     folder: Path, size: int, seed: int = 1, on_bytes: Progress = no_progress
 ) -> Written:
-    """Write cells below ``folder`` until they have ``size`` bytes, or less than a file more.
+    """Write cells below ``folder`` until they have ``size`` bytes, the last file included.
 
-    The same size and seed give the same files everywhere, and a larger size the same and more.
-    ``on_bytes`` is called with the bytes of each file once it is written. Memory does not grow with
-    the size. Raises OSError when a file cannot be written.
+    The same size and seed give the same files on every machine; a larger size gives the same files
+    and more. ``on_bytes`` is called with the size of each file after it is written. Memory use does
+    not depend on ``size``. Raises `OSError` if a file cannot be written.
     """
     written = number_of_files = 0
     for cell in count(1):

@@ -1,1 +1,1 @@
-"""Closed programs for the fuzzer: they run to their end alone and use much of the language."""
+"""Closed programs for differential fuzzing: they terminate without input and use most of KRL."""

@@ -1,4 +1,4 @@
-"""Texts from values and values from texts: SWRITE and SREAD [FCT-10]."""
+"""SWRITE and SREAD: conversions between values and texts [FCT-10]."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ _LETTERS: Final = "diuxefgcsXq"
 
 
 def _specification(code: Code, width_only: bool = False) -> str:
-    """Any specification, seldom a wrong one: it need not fit its value."""
+    """Return a random format specification, rarely an invalid one; it need not fit its value."""
     pick = code.choices.pick
     flags, precision = ("", "") if width_only else (pick(_FLAGS), pick(_PRECISIONS))
     return f"%{flags}{pick(_WIDTHS)}{precision}{pick(_LETTERS)}"
 
 
 def format_text(code: Code) -> bool:
-    """SWRITE: texts from values; now and then a format does not fit its value."""
+    """Write an SWRITE; sometimes a format does not fit its value."""
     place, state = array(code, TEXT), target(code, STATE)
     offset = target(code, INT)
     if not place or state is None or offset is None:
@@ -67,7 +67,7 @@ def format_text(code: Code) -> bool:
 
 
 def scan_text(code: Code) -> bool:
-    """SREAD: values from texts."""
+    """Write an SREAD."""
     state, offset = target(code, STATE), target(code, INT)
     if state is None or offset is None:
         return False

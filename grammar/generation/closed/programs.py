@@ -1,6 +1,6 @@
-"""Whole closed programs: files, data lists, routines that call one another and terminate.
+"""Whole closed programs: files, data lists, and routines that call one another and terminate.
 
-Routines are made before those that call them, so that what a call costs is known.
+A routine is generated before its callers, so the cost of a call is known.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """A program: its files by path, the first being the one to begin with."""
+    """A program: its files by path; the first one has the main routine."""
 
     files: tuple[tuple[str, str], ...]
 
     @property
     def main(self) -> str:
-        """The path of the file to begin with."""
+        """The path of the file with the main routine."""
         return self.files[0][0]
 
 
 def seeded(seed: int, number: int, size: Size | None = None) -> Sample:
-    """The program of a number under a seed, always the same."""
+    """Return the program with this number under a seed; it is always the same."""
     return generate(SeededChoices(f"{seed}/{number}"), size)
 
 
 def generate(choices: Choices, size: Size | None = None) -> Sample:
-    """A program that the checker finds no error in, and that ends; most are small."""
+    """Return a program that has no error and terminates; most are small."""
     return _Programs(choices, size or choices.weighted(_SIZES)).sample()
 
 
@@ -81,30 +81,30 @@ _SIGNALS: Final[tuple[tuple[str, Type, str, bool], ...]] = (
     ("GRP_IN", INT, "$IN[9] TO $IN[12]", False),
     ("GRP_OUT", INT, "$OUT[17] TO $OUT[24]", True),
 )
-#: How often a routine may call itself.
+#: Greatest depth of recursion of a routine.
 _DEEPEST: Final = 80
-#: So many parts of a local variable are given a value at the beginning.
+#: How many parts of a local variable a routine initialises at most.
 _MOST_FIRST_VALUES, _FEW_FIRST_VALUES = 12, 4
 
 
 class _Numbered:
-    """Names that are a letter and a number."""
+    """Names that consist of a letter and a number."""
 
     def __init__(self) -> None:
         self._count = 0
 
     def variable(self, _type: Type, letter: str = "V") -> str:
-        """A new name."""
+        """Return a new name."""
         self._count += 1
         return f"{letter}{self._count}"
 
     def label(self) -> str:
-        """A new name for a label."""
+        """Return a new name for a label."""
         return self.variable(INT, "L")
 
 
 class _Programs:
-    """Makes one program."""
+    """Generates one program."""
 
     def __init__(self, choices: Choices, size: Size) -> None:
         self.choices = choices
@@ -116,7 +116,7 @@ class _Programs:
     # ----------------------------------------------------------------------- files
 
     def sample(self) -> Sample:
-        """All files."""
+        """Return the files of the program."""
         choices = self.choices
         shared = Scope()
         files: list[tuple[str, str]] = []
@@ -141,7 +141,7 @@ class _Programs:
         )
 
     def _types(self) -> list[str]:
-        """The types of the user, for all to see."""
+        """Return the declarations of global types."""
         return [
             *(enumeration(one, is_global=True) for one in (COLOUR, MODE)),
             *(structure_definition(self.choices, one, is_global=True) for one in (POINT, RECORD)),
@@ -174,7 +174,7 @@ class _Programs:
         return [self.choices.pick(items) for _ in range(self.choices.below(most + 1))]
 
     def _library(self, shared: Scope) -> list[tuple[str, str]]:
-        """A module of its own, with what others can call and see."""
+        """Return the files of a library module, whose declarations go into ``shared``."""
         inner = shared.inner()
         kept = ["GLOBAL INT KEPT=7", "DECL GLOBAL REAL RATIO=0.75"]
         inner.add(Variable("KEPT", INT, is_local=False))
@@ -190,7 +190,7 @@ class _Programs:
     # ----------------------------------------------------------------------- routines
 
     def _source(self, name: str, scope: Scope, count: int, *, is_library: bool = False) -> str:
-        """A source file; the first routine is made last, as it may call all others."""
+        """Return a source file; its main routine is generated last, as it may call all others."""
         written: list[str] = []
         for number in range(count):
             routine_name = f"{name}_R{number}"
@@ -240,7 +240,7 @@ class _Programs:
         return routine_text(code, routine, is_global=is_global)
 
     def _recursive(self, name: str, scope: Scope, *, is_library: bool) -> list[str]:
-        """A routine that calls itself as often as its first parameter says."""
+        """Return a recursive routine; its first parameter limits the depth."""
         choices = self.choices
         result = choices.pick((INT, REAL, None))
         given = [Parameter(DEPTH, INT, is_out=False)]
@@ -280,7 +280,10 @@ class _Programs:
         )
 
     def _declare(self, code: Code, given: Sequence[Parameter]) -> list[Variable]:
-        """Declarations of parameters and of what is local; nothing local has a value yet."""
+        """Declare the parameters and local variables, and return the local variables.
+
+        None of them has a value yet.
+        """
         declare_parameters(code, given)
         code.passes = [f"W{number}" for number in range(1, 6 if code.part.is_main else 4)]
         code.line(f"INT {','.join(code.passes)}")
@@ -291,7 +294,7 @@ class _Programs:
             wanted += [INT, REAL, BOOL, CHAR]
 
         def name_of(type_: Type) -> str:
-            """A new name, or now and then that of a datum, which is hidden then [SCO-05]."""
+            """Return a new name, or now and then that of a datum, which is hidden then [SCO-05]."""
             data = [one.name for one in code.scope.variables() if _can_be_hidden(one)]
             if data and self.choices.chance(5):
                 return self.choices.pick(data)
@@ -300,7 +303,7 @@ class _Programs:
         return declare(code, wanted, name_of)
 
     def _begin(self, code: Code, variables: Sequence[Variable], most: int) -> None:
-        """Give local variables their first values, each in so many parts at most."""
+        """Write the initial values of local variables, at most ``most`` parts of each."""
         code.line(f"{code.passes[0]}=0")
         code.spend()
         begin(code, variables, most)

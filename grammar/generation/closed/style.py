@@ -1,4 +1,4 @@
-"""The style of closed programs: all of the language, in small programs that run to their end."""
+"""The style of closed programs: all of the language, in small programs that terminate."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _compared(code: Code) -> Type:
 
 
 def _goal(code: Code, kind: str) -> str:
-    """A position: written out, a variable, frames composed, what a function gives."""
+    """Return a motion target: an aggregate, a variable, composed frames, or a function call."""
     choices = code.choices
     is_axis = "PTP" in kind
     if choices.chance(40):
@@ -124,9 +124,9 @@ _SWITCHED: Final = line("<$FLAG|$OUT>[<1-16>]:=<BOOL>")
 
 
 def _course(code: Code) -> bool:
-    """Motions behind one another, begun as programs of real robots begin: tool, base, a full PTP.
+    """Write a sequence of motions as real programs have it: tool, base, a full PTP, then more.
 
-    Most rules of motions are about what only such a course has together.
+    Most rules about motions only apply to such a sequence.
     """
     choices, eq = code.choices, code.spelling.eq
     code.spend(4)
@@ -143,12 +143,12 @@ def _course(code: Code) -> bool:
     return True
 
 
-#: Variables that the controller computes, in conditions.
+#: Conditions on variables that the controller computes.
 _ASKED: Final = (
     *("<$VEL_ACT|$DISTANCE|$DIST_NEXT|$AXIS_ACT.A1|$POS_INT.X>>=0.0", "$ACT_ADVANCE<$NUM_AX"),
     *("$ROB_STOPPED", "$MODE_OP==#T1", "$PRO_MODE1==#GO", "$VEL_MA.CP>=$ACC_MA.CP"),
 )
-#: Variables of the controller: of INT small values, as they are numbers, times and percentages.
+#: Assignments to system variables; an INT gets a small value, as it is a number, time or share.
 _SETTINGS: Final = (
     (7, line("<$OUT|$OUT|$FLAG|$TIMER_STOP>[<1-16>]:=<BOOL>", "$STOPNOAPROX:=<BOOL>")),
     (3, line("<$VEL.CP|$VEL.ORI1|$ACC.CP|$APO.CDIS|$APO.CORI|$ANOUT[1]>:=<REAL>")),

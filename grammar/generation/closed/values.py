@@ -1,4 +1,4 @@
-"""Values that closed programs assign: small numbers, conversions, and sometimes one too large."""
+"""Values that closed programs assign: small numbers, conversions, and sometimes an overflow."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from grammar.generation.code import Code
 from grammar.generation.expressions import atom, expression, operand, read
 from grammar.semantics.types import CHAR, INT, REAL, Type
 
-#: What is too large for an INT, or for a REAL, or nearly so.
+#: Expressions at and beyond the limits of INT and REAL.
 _TOO_LARGE: Final = (
     *("2147483647+?", "?-2147483647-2", "99999*99999+?", "-2147483647-1-?", "1.0E30*1.0E30+?"),
     *("46341*46341+?", "3.0E38+3.0E38+?", "-(-2147483647-1)", "2147483647.0+?", "0.5E-30*1.0E-30"),
@@ -16,7 +16,7 @@ _TOO_LARGE: Final = (
 
 
 def assigned_value(code: Code, _place: str, type_: Type) -> str:
-    """A value for a variable of a type, converted now and then."""
+    """Return a value for a variable of a type, sometimes one that has to be converted."""
     choices = code.choices
     depth = choices.between(1, code.size.depth)
     if type_ in (INT, REAL) and code.risks():
