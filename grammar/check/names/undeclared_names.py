@@ -18,6 +18,7 @@ from grammar.check.names.unresolved_names import (
     SLUGS,
     WORDS,
     Declared,
+    LooseConstant,
     UnresolvedName,
     slipped_declaration,
 )
@@ -29,7 +30,7 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.scopes import Found, MaybeElsewhere, Module, NotFound, Reason
 from grammar.semantics.symbols import Access, Kind, Symbol, Table
-from grammar.semantics.types import CHAR, SCALARS, Array, Structure
+from grammar.semantics.types import CHAR, SCALARS, Array, Enumeration, Structure
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
@@ -241,6 +242,26 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
     return (*_members(context), *_constants(context), *others)
 
 
+def loose_constants(context: Context) -> Iterator[LooseConstant]:
+    """The constants in places where no enumeration at hand decides which there are."""
+    loose: dict[str, list[ast.EnumConstant]] = {}
+    for node in context.types:
+        if type(node) is ast.EnumConstant and node.name.key not in _system_constants():
+            to = context.enumerations.get(node)
+            if to is None or to.is_open:
+                loose.setdefault(node.name.key, []).append(node)
+    found = {finding.region for _, _, finding in context.unknown_constants}
+    for some in loose.values():
+        first = some[0]
+        region = Region.of(context.source, first.span)
+        if region in found:
+            continue
+        to = context.enumerations.get(first)
+        known = _system_constants().values() if to is None else to.constants
+        near = _constant_typos(tuple(known)).meant(first.name.text)
+        yield LooseConstant(first.name.text, context.source.path, region, len(some), near)
+
+
 def _constants(context: Context) -> Iterator[UnresolvedName]:
     """The constants that enumerations of the project lack."""
     for enumeration, name, finding in context.unknown_constants:
@@ -257,6 +278,18 @@ def _constants(context: Context) -> Iterator[UnresolvedName]:
             declared=replace(at, constant=near[0].upper()) if at and len(near) == 1 else None,
             finding=finding,
         )
+
+
+@cache
+def _system_constants() -> Mapping[str, str]:
+    """The constants of all enumerations of the controller, by themselves in upper case."""
+    known = (one for one in System.load().types.values() if isinstance(one, Enumeration))
+    return {name.upper(): name for one in known for name in one.constants}
+
+
+@cache
+def _constant_typos(names: tuple[str, ...]) -> Typos:
+    return Typos(names, 3, series=Series.DIGITS)
 
 
 def _members(context: Context) -> Iterator[UnresolvedName]:

@@ -117,6 +117,21 @@ class UnresolvedName:
         return self.called, self.declared
 
 
+@dataclass(frozen=True, slots=True)
+class LooseConstant:
+    """A constant in a place where no enumeration at hand decides which there are.
+
+    ``region`` is the first place of ``count`` in the file at ``path``; ``near`` are constants of
+    the controller that it may be a slip of.
+    """
+
+    name: str
+    path: str
+    region: Region
+    count: int
+    near: tuple[str, ...]
+
+
 def slipped_declarations(
     found: Iterable[UnresolvedName], used: Set[str], file_of: FileOf, spelling: Spelling
 ) -> dict[tuple[_Called, Declared | None], Diagnostic]:
@@ -217,6 +232,40 @@ def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[
                 yield _undeclared(reference, reported[key])
         elif key[0]:
             yield _from_elsewhere(some, counts[key])
+
+
+def of_constants(
+    found: Iterable[LooseConstant], declared: Callable[[], Iterable[str]]
+) -> Iterator[Diagnostic]:
+    """A warning for each constant that is a slip of another, which is declared or used more often.
+
+    ``declared`` gives those of all enumerations of the project.
+    """
+    uses: dict[str, list[LooseConstant]] = {}
+    for one in found:
+        uses.setdefault(one.name.upper(), []).append(one)
+    names = {name.upper(): name for name in declared()} if uses else {}
+    counts = {key: sum(one.count for one in some) for key, some in uses.items()}
+    usual = [some[0].name for key, some in uses.items() if counts[key] > 1 and key not in names]
+    typos = Typos([*names.values(), *usual])
+    for key, some in uses.items():
+        if key in names or counts[key] > _MOST_SLIPS:
+            continue
+        near = some[0].near or tuple(
+            one
+            for one in typos.meant(some[0].name)
+            if one.upper() in names or counts[one.upper()] > counts[key]
+        )
+        for one in some if 0 < len(near) < _SERIES else ():
+            message = f"no enumeration has the constant #{one.name}"
+            yield diagnose(
+                "no-such-constant",
+                one.path,
+                one.region,
+                message,
+                severity="warning",
+                fix=one_of([f"#{name}" for name in near]),
+            )
 
 
 def _is_usual(

@@ -19,8 +19,10 @@ from grammar.check.limits import name_limits, value_limits
 from grammar.check.names import duplicate_names, undeclared_names
 from grammar.check.names.unresolved_names import (
     FileOf,
+    LooseConstant,
     UnresolvedName,
     misspelt_declarations,
+    of_constants,
     slipped_declarations,
 )
 from grammar.check.names.unresolved_names import of_project as of_names
@@ -31,9 +33,11 @@ from grammar.semantics.link import Project, Workspace
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Module
+from grammar.semantics.symbols import Kind, TypeSymbol
 from grammar.semantics.types import Enumeration, Type
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
+from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
@@ -63,13 +67,15 @@ class Findings:
     """What the check of one file found.
 
     ``references`` are names that other files may declare, ``uses`` those in upper case that the
-    file uses and some file declares, ``effects`` what other files rely on.
+    file uses and some file declares, ``effects`` what other files rely on, ``constants`` those
+    whose enumeration is not known.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     references: tuple[UnresolvedName, ...]
     effects: Effects = NO_EFFECTS
     uses: frozenset[str] = frozenset()
+    constants: tuple[LooseConstant, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,6 +127,7 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
             undeclared_names.references(context),
             effects(context),
             undeclared_names.uses(context),
+            tuple(undeclared_names.loose_constants(context)),
         ),
         context.resolution,
         context.types,
@@ -149,8 +156,21 @@ def check_project(
     found += (one for one in unused if (one.path, one.region) not in at_slips)
     rest = (one for one in references if not one.finding and one.slip not in slips)
     found += of_names(rest, spelling)
+    found += of_constants(
+        (constant for one in kept for constant in one.constants),
+        partial(_constants_of, file_of, spelling.files),
+    )
     found += of_effects(one.effects for one in kept)
     return in_order(found)
+
+
+def _constants_of(file_of: FileOf, paths: Iterable[str]) -> Iterator[str]:
+    """The constants of the enumerations that some files declare at their first level."""
+    for path in paths:
+        table = (file_of(path) or (None, None))[0]
+        for symbol in table.table.spaces[Space.TYPE].values() if table else ():
+            if isinstance(symbol, TypeSymbol) and symbol.kind is Kind.ENUMERATION:
+                yield from (member.name for member in symbol.members.values())
 
 
 def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[Diagnostic]:
