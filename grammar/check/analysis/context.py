@@ -18,7 +18,7 @@ from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.rules import is_confirmed
 from grammar.semantics.scopes import Found, Module, Scope
 from grammar.semantics.symbols import ModuleTable, RoutineTable
-from grammar.semantics.types import Enumeration, Type, Verdict
+from grammar.semantics.types import Enumeration, Structure, Type, Verdict
 from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
 from grammar.syntax.references import Space
@@ -66,8 +66,8 @@ class Context:
     ``resolution`` has what its names mean. ``types``, ``enumerations`` and ``values`` are filled by
     the first check, `grammar.check.types.statements`: the type of each expression but literals, the
     enumeration of each constant, the values of expressions that have to be constant, and the
-    ``constants`` that names without a declaration would be with a #; ``unknown_constants`` are
-    those that an enumeration lacks. ``accesses`` are those that `analysis.accesses` has worked out.
+    ``constants`` that names without a declaration would be with a #; ``lacking`` are the constants
+    and components that a type lacks, ``accesses`` those that `analysis.accesses` has worked out.
     ``is_lacking``: the data list of the program is not at hand, and may declare what is found in
     other files.
     """
@@ -81,7 +81,7 @@ class Context:
     enumerations: dict[ast.EnumConstant, Enumeration] = field(default_factory=dict)
     values: dict[Node, Any] = field(default_factory=dict)
     constants: dict[ast.Name, str] = field(default_factory=dict)
-    unknown_constants: list[tuple[Enumeration, str, Diagnostic]] = field(default_factory=list)
+    lacking: list[tuple[Enumeration | Structure, str, Diagnostic]] = field(default_factory=list)
     accesses: dict[Node, Any] = field(default_factory=dict)
     is_lacking: bool = False
     suggestions: NameSuggestions = field(default_factory=NameSuggestions)

@@ -28,6 +28,7 @@ from grammar.semantics.types import (
     Array,
     Constant,
     Enumeration,
+    Structure,
     Type,
     Verdict,
     without_index,
@@ -191,10 +192,18 @@ class TypeChecker:
         severity: Severity = "warning" if is_known else "note"
         self.report("integer-division", node, message, fix=fix, severity=severity)
 
-    def reject_part(self, where: Node, verdict: Verdict, type_: Type, fix: Fix | None) -> None:
-        """What a type of the controller lacks that one release alone describes may be elsewhere."""
+    def reject_part(self, name: ast.Name, verdict: Verdict, type_: Type, fix: Fix | None) -> None:
+        """Note a component that a type lacks, which may have a slip where it is declared.
+
+        What a type of the controller lacks that one release alone describes may be elsewhere.
+        """
         is_unconfirmed = not self.is_described(type_)
-        self.reject("no-such-component", where, verdict, fix, is_unconfirmed=is_unconfirmed)
+        found = self.context.refusal(
+            "no-such-component", name, verdict, fix=fix, is_unconfirmed=is_unconfirmed
+        )
+        self.diagnostics.append(found)
+        if isinstance(type_, Structure):
+            self.context.lacking.append((type_, name.text, found))
 
     def reject_constant(
         self,
@@ -211,7 +220,7 @@ class TypeChecker:
         fix = self.context.suggestions.suggest(constant.name, to.constants, mark="#")
         found = self.context.refusal(slug, where, verdict, fix=fix, is_unconfirmed=is_unconfirmed)
         self.diagnostics.append(found)
-        self.context.unknown_constants.append((to, constant.name, found))
+        self.context.lacking.append((to, constant.name, found))
 
     def is_described(self, type_: Type) -> bool:
         """Whether more than one release describes a type of the controller."""

@@ -103,16 +103,23 @@ def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
 def uses(context: Context) -> frozenset[str]:
     """The names in upper case that a file uses and some file declares, or that cannot be read.
 
-    Constants of enumerations are among them with a #.
+    Constants of enumerations are among them with a #, components of structures with a dot.
     """
-    constants = {f"#{node.name.key}" for node in context.types if type(node) is ast.EnumConstant}
     declared = {found.symbol.key for found in context.used if found.module}
-    return frozenset(declared | constants | uses_of_unread(context.module.words or ()))
+    parts = set()
+    for node in context.types:
+        if type(node) is ast.EnumConstant:
+            parts.add(f"#{node.name.key}")
+        elif type(node) is ast.Member:
+            parts.add(f".{node.name.key}")
+        elif type(node) is ast.Aggregate:
+            parts.update(f".{one.name.key}" for one in node.components)
+    return frozenset(declared | parts | uses_of_unread(context.module.words or ()))
 
 
 def uses_of_unread(words: Iterable[str]) -> frozenset[str]:
     """What text that cannot be read may use, given its words in upper case."""
-    return frozenset(written for word in words for written in (word, f"#{word}"))
+    return frozenset(written for word in words for written in (word, f"#{word}", f".{word}"))
 
 
 def _near_system_names(context: Context) -> Iterator[Diagnostic]:
@@ -239,7 +246,7 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
     unused = _unused(context, [data.table.table]) if data is not None and data.table else {}
     swapped = Typos((symbol.name for symbol in unused.values()), series=Series.NONE)
     others = _others(context, open_, own, swapped, prefixes)
-    return (*_members(context), *_constants(context), *others)
+    return (*_members(context), *_parts(context), *others)
 
 
 def loose_constants(context: Context) -> Iterator[LooseConstant]:
@@ -250,7 +257,7 @@ def loose_constants(context: Context) -> Iterator[LooseConstant]:
             to = context.enumerations.get(node)
             if to is None or to.is_open:
                 loose.setdefault(node.name.key, []).append(node)
-    found = {finding.region for _, _, finding in context.unknown_constants}
+    found = {finding.region for _, _, finding in context.lacking}
     for some in loose.values():
         first = some[0]
         region = Region.of(context.source, first.span)
@@ -262,20 +269,24 @@ def loose_constants(context: Context) -> Iterator[LooseConstant]:
         yield LooseConstant(first.name.text, context.source.path, region, len(some), near)
 
 
-def _constants(context: Context) -> Iterator[UnresolvedName]:
-    """The constants that enumerations of the project lack."""
-    for enumeration, name, finding in context.unknown_constants:
-        at = _declared(context, Space.TYPE, enumeration.name)
-        near = Typos(enumeration.constants, 3, series=Series.DIGITS).meant(name)
+def _parts(context: Context) -> Iterator[UnresolvedName]:
+    """The constants that enumerations of the project lack, and the components of structures."""
+    for type_, name, finding in context.lacking:
+        at = _declared(context, Space.TYPE, type_.name)
+        if isinstance(type_, Enumeration):
+            mark, known = "#", type_.constants
+        else:
+            mark, known = ".", tuple(one.name for one in type_.members)
+        near = Typos(known, 3, series=Series.DIGITS).meant(name)
         yield UnresolvedName(
             Space.TYPE,
-            f"{enumeration.name}#{name}",
+            f"{type_.name}{mark}{name}",
             finding.path,
             finding.region,
             1,
             False,
             near,
-            declared=replace(at, constant=near[0].upper()) if at and len(near) == 1 else None,
+            declared=replace(at, part=mark + near[0].upper()) if at and len(near) == 1 else None,
             finding=finding,
         )
 

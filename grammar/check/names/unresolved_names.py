@@ -43,6 +43,9 @@ WORDS: Mapping[Space | None, str] = {
     Space.CHANNEL: "channel",
 }
 
+#: The code of a part that its type lacks, by the mark before it.
+_PARTS = {"#": "no-such-constant", ".": "no-such-component"}
+
 # A slip is made once or twice; what is written more often is called so.
 _MOST_SLIPS = 2
 # So many names that are near one and the same are a series.
@@ -58,17 +61,20 @@ _MOST_MODULES = 2
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """What a file at ``path`` declares, in upper case; a ``constant`` is one of an enumeration."""
+    """What a file at ``path`` declares, in upper case.
+
+    A ``part`` is a constant of an enumeration, with #, or a component of a structure, with a dot.
+    """
 
     path: str
     space: Space
     key: str
-    constant: str = ""
+    part: str = ""
 
     @property
     def used(self) -> str:
         """What the names that are used have in them if it is."""
-        return f"#{self.constant}" if self.constant else self.key
+        return self.part or self.key
 
     def region(self, file_of: FileOf) -> Region | None:
         """Where it is declared; ``None`` where the file does not any more."""
@@ -76,8 +82,8 @@ class Declared:
         if file is None or (table := file[0]) is None:
             return None
         symbol = table.table.find(self.space, self.key)
-        if self.constant and isinstance(symbol, TypeSymbol):
-            symbol = symbol.members.get(self.constant)
+        if self.part and isinstance(symbol, TypeSymbol):
+            symbol = symbol.members.get(self.part[1:])
         return Region.of(file[1](), symbol.span) if symbol else None
 
 
@@ -90,7 +96,7 @@ class UnresolvedName:
     ``is_swapped`` with one that the data list declares and the program does not use. ``declared``
     is where a file at hand declares the only one near. ``is_all_read``: no file is missing that
     could declare it; ``is_certain``: the data list of the program is among those that are there.
-    A constant that its enumeration lacks is found in its file already, as ``finding``.
+    A part that its type lacks is found in its file already, as ``finding``.
     """
 
     space: Space | None
@@ -289,7 +295,9 @@ def _slipped(
     at = first.declared
     if at is None or at.used in used or REST in used:
         return None
-    called = first.name.rpartition("#")[2]
+    type_, called = first.name, first.name
+    if at.part:
+        type_, _, called = first.name.rpartition(at.part[0])
     if count < _MOST_SLIPS and not spelling.is_likelier(called, first.near[0]):
         return None
     region = at.region(file_of)
@@ -298,8 +306,9 @@ def _slipped(
     is_certain = all(one.is_all_read and one.is_certain for one in some)
     slug, written, name = SLUGS[at.space], first.near[0], first.name
     if first.finding:
-        slug, is_certain = "no-such-constant", first.finding.severity == "error"
-        written, name = f"#{written} of {name.partition('#')[0]}", f"#{called}"
+        slug, is_certain = _PARTS[at.part[0]], first.finding.severity == "error"
+        mark = at.part[0].removeprefix(".")
+        written, name = f"{mark}{written} of {type_}", f"{mark}{called}"
     return slipped_declaration(slug, at.path, region, written, name, count, is_certain=is_certain)
 
 

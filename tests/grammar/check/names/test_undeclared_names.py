@@ -374,6 +374,40 @@ def test_a_slip_in_a_constant_is_reported_where_it_is_declared(agrees: Agrees) -
     agrees({"$config.dat": ENUM, "a.src": PLACES, "b.src": b}, is_complete=None)
 
 
+def test_a_slip_in_a_component_is_reported_where_it_is_declared(agrees: Agrees) -> None:
+    """A component that nothing uses, and that all uses spell otherwise, is one finding."""
+    data = "STRUC PART BOOL FUOND, INT SIZE ;> KSS2125\nDECL PART P={FOUND FALSE,SIZE 0}\n"
+    list_ = f"DEFDAT CELL\n{data}ENDDAT\n"
+    cell = "DEF CELL()\nP.FOUND = TRUE\nIF P.FOUND THEN\nHALT\nENDIF\nEND"
+    agrees({"cell.dat": list_, "cell.src": cell}, is_complete=None)
+    lines = [f"{line} ;> KSS2125" if "P.FOUND" in line else line for line in cell.split("\n")]
+    lines[1:1] = ["P.FUOND = TRUE"]
+    data = data.replace(" ;> KSS2125", "").replace("SIZE 0}", "SIZE 0} ;> KSS2125")
+    agrees(
+        {"cell.dat": f"DEFDAT CELL\n{data}ENDDAT\n", "cell.src": "\n".join(lines)},
+        is_complete=None,
+    )
+
+
+def test_a_slip_in_a_constant_whose_enumeration_is_missing(agrees: Agrees) -> None:
+    """It is one slip away from one that is used more often, or declared, or of the controller."""
+    cell = """DEF CELL()
+  MOVE_TO(#STATION_LEFT) ;> KRL701-
+  MOVE_TO(#STATION_LEFT)
+  MOVE_TO(#STATOIN_LEFT) ;> KSS2296?
+  MOVE_TO(#STATION_RIGHT)
+  MOVE_TO(#PLCAE) ;> KSS2296?
+  MOVE_TO(#PTP_PARAMSS) ;> KSS2296?
+  BAS(#PTP_PARRAMS, 10) ;> KRL701- KSS2296?
+  BAS(#PTP_PARAMS, 10)
+END"""
+    places = "DEFDAT PLACES PUBLIC\nGLOBAL ENUM JOB PICK, PLACE\nENDDAT\n"
+    agrees({"cell.src": cell, "places.dat": places}, is_complete=None)
+    series = "\n".join(f"MOVE_TO(#PLACE_{one})" for one in ("1", "2", "2", "A", "B", "B"))
+    told = series.replace("1)", "1) ;> KRL701-")
+    agrees({"cell.src": f"DEF CELL()\n{told}\nEND"}, is_complete=None)
+
+
 def test_each_list_has_its_own_slips(agrees: Agrees) -> None:
     """What one list declares is not what other programs call alike."""
     files: dict[str, str] = {}
