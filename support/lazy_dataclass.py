@@ -102,6 +102,12 @@ def _compared(cls: Any, name: str) -> str:
     return "".join(f"{name}.{one.name}, " for one in dataclasses.fields(cls) if one.compare)
 
 
+def _hashed(cls: Any) -> str:
+    fields = dataclasses.fields(cls)
+    hashed = (one.name for one in fields if (one.compare if one.hash is None else one.hash))
+    return "".join(f"self.{name}, " for name in hashed)
+
+
 def _eq(cls: Any) -> tuple[str, dict[str, Any]]:
     mine, others = _compared(cls, "self"), _compared(cls, "other")
     is_same = "other.__class__ is self.__class__"
@@ -110,7 +116,7 @@ def _eq(cls: Any) -> tuple[str, dict[str, Any]]:
 
 
 def _hash(cls: Any) -> tuple[str, dict[str, Any]]:
-    return f"def __hash__(self):\n return hash(({_compared(cls, 'self')}))", {}
+    return f"def __hash__(self):\n return hash(({_hashed(cls)}))", {}
 
 
 @cache

@@ -50,6 +50,12 @@ class _Ordered:
     second: str
 
 
+@lazy_dataclass.dataclass(frozen=True, slots=True)
+class _Unhashed:
+    value: int
+    table: dict[int, int] = field(hash=False)
+
+
 @lazy_dataclass.dataclass(frozen=True, eq=False, repr=False)
 class _Hidden:
     value: int
@@ -128,3 +134,9 @@ def test_order_goes_by_the_fields() -> None:
 def test_a_class_may_keep_the_text_of_any_object() -> None:
     """Without ``repr`` no field is shown: a whole file may be in one."""
     assert object.__repr__(hidden := _Hidden(3)) == repr(hidden)
+
+
+def test_a_field_may_be_left_out_of_the_hash() -> None:
+    """What is compared and not hashed may be a value that has no hash."""
+    assert hash(_Unhashed(1, {2: 3})) == hash(_Unhashed(1, {}))
+    assert _Unhashed(1, {2: 3}) != _Unhashed(1, {})
