@@ -44,7 +44,7 @@ _ROBOTS: Final = ("none", "kinematic", "mujoco")
 _STEM: Final = re.compile(r"[a-z][a-z0-9_]{0,23}")
 _LONGEST: Final = 100
 #: For expectations with these beginnings, words of which the clause they rest on must have one.
-_SPOKEN_OF: Final = {
+_CLAUSE_WORDS: Final = {
     "path line": "line",
     "path circle": "circle CIRC",
     "path joint": "axes",
@@ -96,9 +96,9 @@ def lint(root: Path = CASES) -> list[str]:
     cases = find_cases(root, unreadable.append)
     found = [str(error) for error in unreadable]
     for case in cases:
-        found += [f"{case.name}: {fault}" for fault in _faults(case)]
-    found += _repeated(cases)
-    found += _strays(cases, root)
+        found += [f"{case.name}: {fault}" for fault in _defects(case)]
+    found += _duplicate_titles(cases)
+    found += _unused_files(cases, root)
     if root == CASES:
         found += [f"{rule.id}: no case shows it" for rule in coverage(cases).uncovered]
         names = [case.name for case in cases]
@@ -111,7 +111,7 @@ def lint(root: Path = CASES) -> list[str]:
     return found
 
 
-def _faults(case: Case) -> Iterator[str]:
+def _defects(case: Case) -> Iterator[str]:
     if not case.title or case.title.endswith(".") or len(case.title) > _LONGEST:
         yield "the title is one sentence without a full stop"
     for one in dict.fromkeys((case.basis, *(each.basis for each in case.expectations))):
@@ -134,12 +134,12 @@ def _faults(case: Case) -> Iterator[str]:
         Script.read("\n".join(case.io), "io")
     except ScriptError as error:
         yield str(error)
-    yield from _of_text(case)
-    yield from _of_expectations(case)
-    yield from _of_clauses(case)
+    yield from _text_defects(case)
+    yield from _expectation_defects(case)
+    yield from _clause_defects(case)
 
 
-def _of_text(case: Case) -> Iterator[str]:
+def _text_defects(case: Case) -> Iterator[str]:
     for source in case.sources:
         text = source.text
         if not text.isascii() or "\r" in text or not text.endswith("\n") or "\t" in text:
@@ -150,7 +150,7 @@ def _of_text(case: Case) -> Iterator[str]:
             yield f"{source.path}: it is not grammatical, so its phase is parse"
 
 
-def _of_expectations(case: Case) -> Iterator[str]:
+def _expectation_defects(case: Case) -> Iterator[str]:
     said = set()
     for one in case.expectations:
         if case.phase not in KINDS[one.kind].phases:
@@ -171,13 +171,13 @@ def _of_expectations(case: Case) -> Iterator[str]:
         yield "it is accepted and refused"
 
 
-def _of_clauses(case: Case) -> Iterator[str]:
+def _clause_defects(case: Case) -> Iterator[str]:
     """Yield what a hard expectation says and its clause does not."""
     for one in case.expectations:
         clause = basis(one.basis or case.basis or case.rules[0])
         if case.unconfirmed or not clause.may_fail:
             continue
-        for begins, words in _SPOKEN_OF.items():
+        for begins, words in _CLAUSE_WORDS.items():
             is_meant = one.text.startswith(begins)
             if is_meant and not any(word in clause.statement for word in words.split()):
                 yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
@@ -210,14 +210,14 @@ def _numbers_of(case: Case) -> set[int]:
     return found
 
 
-def _repeated(cases: Sequence[Case]) -> Iterator[str]:
+def _duplicate_titles(cases: Sequence[Case]) -> Iterator[str]:
     titles = Counter(case.title for case in cases)
     for case in cases:
         if titles[case.title] > 1:
             yield f"{case.name}: another case has the same title"
 
 
-def _strays(cases: Sequence[Case], root: Path) -> Iterator[str]:
+def _unused_files(cases: Sequence[Case], root: Path) -> Iterator[str]:
     """Yield files that belong to no case."""
     used = {case.path for case in cases}
     used |= {case.path.with_name(source.path) for case in cases for source in case.sources}

@@ -51,7 +51,7 @@ def parsers(wanted: Sequence[str]) -> Iterator[Mapping[str, Parser]]:
     command. The file name replaces ``{}`` in a command, or is appended to it; status 0 means that
     the file was accepted.
     """
-    found: dict[str, Parser] = {OWN: _own}
+    found: dict[str, Parser] = {OWN: _own_parser}
     with TemporaryDirectory() as folder:
         for number, one in enumerate(wanted):
             name, equals, what = one.partition("=")
@@ -64,7 +64,7 @@ def parsers(wanted: Sequence[str]) -> Iterator[Mapping[str, Parser]]:
         yield found
 
 
-def _own(source: Source) -> str:
+def _own_parser(source: Source) -> str:
     read = read_module(source.text, source.path)
     return f"line {read[0].line}: {read[0].reason or ''}" if isinstance(read, list) else ""
 
@@ -84,7 +84,7 @@ def _compiled(path: Path, folder: Path) -> Parser:
         raise ParserError(f"{path}: {error}") from error
     sys.path.insert(0, str(folder))
     try:
-        lexer, parser = (_imported(f"{named[1]}{part}") for part in ("Lexer", "Parser"))
+        lexer, parser = (_class_of_module(f"{named[1]}{part}") for part in ("Lexer", "Parser"))
     except (ImportError, AttributeError) as error:
         raise ParserError(f"{path}: what ANTLR made of it cannot be used: {error}") from error
     finally:
@@ -99,7 +99,7 @@ def _compiled(path: Path, folder: Path) -> Parser:
     return reads
 
 
-def _imported(name: str) -> Any:
+def _class_of_module(name: str) -> Any:
     """Return the class of a module with the same name, even if another grammar had this name."""
     sys.modules.pop(name, None)
     invalidate_caches()

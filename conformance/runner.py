@@ -212,7 +212,7 @@ def run_cases(
     ) -> list[CaseResult]:
         """Run each case by itself, because one of them killed its process."""
         singles = (([case], lacking, known) for case in share)
-        found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_dead)
+        found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_process_died)
         return [result for results in found for result in results]
 
     done: list[CaseResult] = []
@@ -234,7 +234,7 @@ def _run_share(
     return [repeated(partial(run_case, case, setups, known, absent=absent)) for case in cases]
 
 
-def _dead(
+def _process_died(
     cases: Sequence[Case], lacking: Mapping[Setup, str], _known: KnownFailures
 ) -> list[CaseResult]:
     reason = "the process died"

@@ -84,7 +84,7 @@ class _Shard:
 
 
 @dataclass(frozen=True, slots=True)
-class _Outcome:
+class _ShardResult:
     findings: list[Finding]
     counts: Counts
     ends: Counter[str]
@@ -145,7 +145,7 @@ _shards_run = count(1)
 
 
 @contextmanager
-def _unlittered() -> Iterator[None]:
+def _gc_relaxed() -> Iterator[None]:
     """Collect garbage less often within this context, and ignore objects that existed before.
 
     Syntax trees are many small objects, so this saves a third of the time.
@@ -161,18 +161,18 @@ def _unlittered() -> Iterator[None]:
         gc.unfreeze()
 
 
-def _run(shard: _Shard) -> _Outcome:
+def _run(shard: _Shard) -> _ShardResult:
     absent = [name for name in shard.executors if not is_available(name)]
     if absent:
         raise WorkersError(f"a worker on {node()} has no executor {min(absent)}")
     if next(_shards_run) % _LIFE == 0:
         builder.cache_clear()
-    with _unlittered():
+    with _gc_relaxed():
         return _run_all(shard)
 
 
-def _run_all(shard: _Shard) -> _Outcome:
-    found = _Outcome([], Counter(), Counter(), 0)
+def _run_all(shard: _Shard) -> _ShardResult:
+    found = _ShardResult([], Counter(), Counter(), 0)
     facts = 0
     for number in range(shard.first, shard.end):
         files = seeded(shard.seed, number).files
@@ -192,7 +192,7 @@ def _run_all(shard: _Shard) -> _Outcome:
         found.counts.update(("rule", rule) for rule in reached(shard.rules, executed))
         found.ends[str(expected[-1][0])] += 1
         facts += len(expected)
-    return _Outcome(found.findings, found.counts, found.ends, facts)
+    return _ShardResult(found.findings, found.counts, found.ends, facts)
 
 
 def _reduced(finding: Finding, seed: int, reference: str) -> Finding:

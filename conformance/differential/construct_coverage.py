@@ -74,18 +74,18 @@ def needs(cases: Iterable[Case]) -> Needs:
     found: dict[str, frozenset[tuple[str, str]]] = {}
     for case in cases:
         if case.phase == "run":
-            used = frozenset(_used(case))
+            used = frozenset(_constructs_of_case(case))
             found[case.basis] = found.get(case.basis, used) & used
     return {rule: used for rule, used in sorted(found.items()) if used}
 
 
-def _used(case: Case) -> Iterator[tuple[str, str]]:
+def _constructs_of_case(case: Case) -> Iterator[tuple[str, str]]:
     known = language()
     for source in case.sources:
         module = read_module(source.text, source.path)
         if not isinstance(module, list) and isinstance(module.content, ast.Program):
             for routine in module.content.routines:
-                for kind, name in (each for node in walk(routine) for each in _of(node)):
+                for kind, name in (each for node in walk(routine) for each in _constructs_of(node)):
                     if name in known.get(kind, (name,)):  # names and headers are not executed
                         yield kind, name
 
@@ -108,7 +108,7 @@ def counted(program: Prepared, facts: Sequence[Fact]) -> Counts:
 
 
 #: Nodes without a line of their own in a trace; they count if their routine was executed.
-_UNTOLD: Final = (
+_WITHOUT_LINE: Final = (
     ast.Definition | ast.Label | ast.CaseBranch | ast.TimeBlock | ast.ConstantVelocity
 )  # fmt: skip
 _SLUGS: Final = {kind.text: slug for slug, kind in FAULTS.items()}
@@ -124,7 +124,7 @@ def _nodes(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[tuple[
         path = unit.module.path
         if isinstance(syntax.content, ast.DataList):
             for item in syntax.content.items:
-                yield from _all_of(item)
+                yield from _constructs_below(item)
             continue
         for routine in syntax.content.routines:
             if (path, unit.line(routine.body[0])) not in executed and not any(
@@ -132,16 +132,16 @@ def _nodes(program: Prepared, executed: set[tuple[str, int]]) -> Iterator[tuple[
             ):
                 continue
             for node in walk(routine):
-                if isinstance(node, _UNTOLD) or (path, unit.line(node)) in executed:
-                    yield from _of(node)
+                if isinstance(node, _WITHOUT_LINE) or (path, unit.line(node)) in executed:
+                    yield from _constructs_of(node)
 
 
-def _all_of(item: ast.Node) -> Iterator[tuple[str, str]]:
+def _constructs_below(item: ast.Node) -> Iterator[tuple[str, str]]:
     for node in walk(item):
-        yield from _of(node)
+        yield from _constructs_of(node)
 
 
-def _of(node: ast.Node) -> Iterator[tuple[str, str]]:
+def _constructs_of(node: ast.Node) -> Iterator[tuple[str, str]]:
     yield "node", type(node).__name__
     match node:
         case ast.Binary():

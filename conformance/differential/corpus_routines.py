@@ -95,7 +95,7 @@ def trials(
         called |= {(path, routine): name for name, routine in made.called.items()}
     if called:
         programs, unread = load_all(by_path.values())
-    on_found(len(unread) + sum(len(_own(program)) for program in programs))
+    on_found(len(unread) + sum(len(_own_routines(program)) for program in programs))
     for path, reason in unread:
         yield Unread(path, reason)
     projects: dict[int, list[CheckedProgram]] = {}
@@ -105,7 +105,7 @@ def trials(
         yield from _Project(members, called, executors, effort or Effort()).trials()
 
 
-def _own(program: CheckedProgram) -> list[Routine]:
+def _own_routines(program: CheckedProgram) -> list[Routine]:
     """Return the routines of the main file, without added callers."""
     return [one for one in program.routines_of(program.main) if not _is_added(one)]
 
@@ -147,7 +147,7 @@ class _Project:
         for program in self._programs:
             main = program.main
             findings = check_module(program.project, main.module, main.source).findings
-            for routine in _own(program):
+            for routine in _own_routines(program):
                 yield self._trial(program, routine, findings)
 
     def _trial(self, program: CheckedProgram, routine: Routine, findings: Findings) -> Trial:
@@ -163,7 +163,7 @@ class _Project:
         first = seen[self._executors[0]]
         differences = {**self._disturbed(program, start), **self._differences(seen)}
         endings = {name: _ending(one) for name, one in seen.items()}
-        why = _why(first)
+        why = _reason_of_ending(first)
         return Trial(path, line, routine.name, stage, reason, endings, differences, why)
 
     def _stage(self, routine: Routine, findings: Findings) -> tuple[Stage, str]:
@@ -192,18 +192,20 @@ class _Project:
     def _disturbed(self, program: CheckedProgram, start: Routine) -> dict[str, str]:
         """Return the differences of runs in a world that interferes, as the fuzzer's does."""
         first, *others = (
-            (name, facts_of(partial(self._made, name, program, start), str(self._effort.seed)))
+            (name, facts_of(partial(self._executor, name, program, start), str(self._effort.seed)))
             for name in self._executors
         )
         found = (divergence.difference(name, first[1], facts) for name, facts in others)
-        return self._in_words(found)
+        return self._as_texts(found)
 
     def _observed(self, executor: str, program: CheckedProgram, start: Routine) -> Observed:
         world = QuietWorld(self._effort.seed, self._values)
-        make = partial(self._made, executor, program, start)
+        make = partial(self._executor, executor, program, start)
         return observe(make, world, self._effort.requests)
 
-    def _made(self, executor: str, program: CheckedProgram, start: Routine, sink: Sink) -> Executor:
+    def _executor(
+        self, executor: str, program: CheckedProgram, start: Routine, sink: Sink
+    ) -> Executor:
         if executor == "tree":
             return TreeExecutor(program, start.name, self._limits, sink)
         assert self._verified is not None, "only what is verified runs"
@@ -217,9 +219,9 @@ class _Project:
 
     def _differences(self, seen: Mapping[str, Observed]) -> dict[str, str]:
         first, *others = self._executors
-        return self._in_words(difference(name, seen[first], seen[name]) for name in others)
+        return self._as_texts(difference(name, seen[first], seen[name]) for name in others)
 
-    def _in_words(self, found: Iterable[divergence.Difference | None]) -> dict[str, str]:
+    def _as_texts(self, found: Iterable[divergence.Difference | None]) -> dict[str, str]:
         first = self._executors[0]
         return {
             one.executor: f"fact {one.place}: {one.expected_text} by {first}, {one.actual_text}"
@@ -246,7 +248,7 @@ def _ending(observed: Observed) -> Ending:
     return "unlinked"
 
 
-def _why(observed: Observed) -> str:
+def _reason_of_ending(observed: Observed) -> str:
     if observed.is_cut:
         return "it asks the world on and on"
     match observed.last:

@@ -52,11 +52,11 @@ class RandomWorld:
         self._has_faults = has_faults
         self._values: dict[Path, Any] = {}
         self._system = System.load()
-        self._looks = 0
+        self._polls = 0
 
     def reply(self, request: Request) -> Any:
         """Return the reply to a request, which is a `Fault` now and then without a reason."""
-        self._looks = self._looks + 1 if isinstance(request, Poll) and not request.is_first else 0
+        self._polls = self._polls + 1 if isinstance(request, Poll) and not request.is_first else 0
         if not isinstance(request, Read | Write | Invoke | Move | MoveSpline):
             return None
         if self._has_faults and not self._random.randrange(_SELDOM):
@@ -68,7 +68,7 @@ class RandomWorld:
                 case Write():
                     self._write(request.path, request.value)
                 case Invoke():
-                    return self._invoked(request)
+                    return self._invoke(request)
         except Fault as error:
             return error
         return None
@@ -80,7 +80,7 @@ class RandomWorld:
     def read(self, path: Path) -> Value:
         """Return a system variable or a part of one; faults ``index``, ``uninitialised``."""
         if path[0] in _INPUTS:
-            return self._drawn(path)
+            return self._input(path)
         key, members = _split(path)
         value = self._values.get(key)
         if value is None:
@@ -111,21 +111,21 @@ class RandomWorld:
         else:
             raise fault("invalid")
 
-    def _invoked(self, request: Invoke) -> Outcome:
+    def _invoke(self, request: Invoke) -> Outcome:
         """Return a random result, and random values for arguments passed :OUT without a value."""
         function = self._system.functions[request.name]
         given = zip(function.parameters, request.arguments, strict=False)
         changes = {
-            place: self._made(getattr(value, "type", parameter.type))
+            place: self._new_value(getattr(value, "type", parameter.type))
             for place, (parameter, value) in enumerate(given)
             if parameter.is_out and not has_value(value)
         }
-        result = None if function.result is None else self._made(function.result)
+        result = None if function.result is None else self._new_value(function.result)
         return result, changes
 
     # ----------------------------------------------------------------------- values
 
-    def _drawn(self, path: Path) -> Value:
+    def _input(self, path: Path) -> Value:
         """Return the value of an input, a new one at each access."""
         if path[0] == "$ANIN":
             return self.below(9) / 4 - 1
@@ -134,11 +134,11 @@ class RandomWorld:
         if len(path) == 4:  # ("$IN", 9, "TO", 12)
             return self.below(16)
         drawn = self.below(2) == 1
-        return drawn or self._looks >= _PATIENCE
+        return drawn or self._polls >= _PATIENCE
 
     def _first(self, key: Path) -> Any:
         """Return the initial value of a variable that was never written."""
-        return self._made(self._type(key))
+        return self._new_value(self._type(key))
 
     def _type(self, key: Path) -> Type:
         entry = self._system.variables.get(str(key[0]))
@@ -153,18 +153,18 @@ class RandomWorld:
             return type_.element
         return type_
 
-    def _made(self, type_: Type) -> Any:
+    def _new_value(self, type_: Type) -> Any:
         """Return a random value of a type; texts are short and numbers small."""
         match type_:
             case Structure():
-                return StructureValue(type_, [self._made(one.type) for one in type_.members])
+                return StructureValue(type_, [self._new_value(one.type) for one in type_.members])
             case Array():
                 sizes = tuple(_LARGEST_WHOLE if one is None else one for one in type_.sizes)
                 known = Array(INT if type_.element == UNKNOWN else type_.element, sizes)
                 made = empty(known)
                 assert isinstance(made, ArrayValue)
                 for place in range(min(len(made), 3)):
-                    made.elements[place] = self._made(known.element)
+                    made.elements[place] = self._new_value(known.element)
                 return made
             case Enumeration():
                 return EnumValue(type_, self.below(len(type_.constants)))
@@ -195,13 +195,13 @@ class QuietWorld(RandomWorld):
             value = _member(value, step)
         return copied(value)
 
-    def _made(self, type_: Type) -> Any:
+    def _new_value(self, type_: Type) -> Any:
         match type_:
             case Array():
                 sizes = tuple(_LARGEST_WHOLE if one is None else one for one in type_.sizes)
                 return zero(Array(INT if type_.element == UNKNOWN else type_.element, sizes))
             case Structure():
-                return StructureValue(type_, [self._made(one.type) for one in type_.members])
+                return StructureValue(type_, [self._new_value(one.type) for one in type_.members])
         return 0 if type_ == UNKNOWN else zero(type_)
 
 

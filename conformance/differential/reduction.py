@@ -36,13 +36,13 @@ def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_5
     ``holds`` is called at most ``most`` times, also with programs that do not parse.
     """
     search = _Search(files, holds, most)
-    goes_on = True
-    while goes_on:
-        goes_on = False
+    has_changed = True
+    while has_changed:
+        has_changed = False
         while search.blank_lines():
-            goes_on = True
+            has_changed = True
         while search.simplify():
-            goes_on = True
+            has_changed = True
     search.tidy()
     return Reduced(search.files, statements_of(search.files))
 
@@ -55,11 +55,11 @@ def statements_of(files: Files) -> int:
         for module in [read_module(text, path)]
         if isinstance(module, ast.Module) and isinstance(module.content, ast.Program)
         for routine in module.content.routines
-        for node in _below(routine)
+        for node in _statements(routine)
     )
 
 
-def _below(routine: ast.Routine) -> Iterator[ast.Node]:
+def _statements(routine: ast.Routine) -> Iterator[ast.Node]:
     """Yield all statements, including those in blocks, but no assignments after WITH."""
     todo: list[ast.Node] = list(routine.body)
     while todo:
@@ -75,7 +75,7 @@ class _Search:
         self._holds = holds
         self._most = most
 
-    def _takes(self, files: Files) -> bool:
+    def _try(self, files: Files) -> bool:
         """Replace the files if the property holds for the new ones; return whether it does."""
         if self.tried >= self._most or files == self.files:
             return False
@@ -91,13 +91,13 @@ class _Search:
         """Try to blank everything removable, large units first; return whether anything was."""
         before = self.files
         for number in range(len(self.files) - 1, 0, -1):
-            self._takes(self.files[:number] + self.files[number + 1 :])
+            self._try(self.files[:number] + self.files[number + 1 :])
         for number, lines in _units(self.files):
             path, text = self.files[number]
             rows = text.split("\n")
             if any(rows[line - 1].strip() for line in lines):
                 kept = ("" if n in lines else row for n, row in enumerate(rows, start=1))
-                self._takes(_with(self.files, number, path, "\n".join(kept)))
+                self._try(_with_text(self.files, number, path, "\n".join(kept)))
         return self.files != before
 
     def tidy(self) -> None:
@@ -107,7 +107,7 @@ class _Search:
             (path, "\n".join(row for row in text.split("\n") if row.strip()) + "\n")
             for path, text in self.files
         )
-        self._takes(files)
+        self._try(files)
 
     # ----------------------------------------------------------------------- expressions
 
@@ -117,12 +117,12 @@ class _Search:
         for number, (path, text) in enumerate(before):
             for first, end, simpler in _replacements(text, path):
                 # The spans are valid only for the text in which they were found.
-                if self._takes(_with(before, number, path, text[:first] + simpler + text[end:])):
+                if self._try(_with_text(before, number, path, text[:first] + simpler + text[end:])):
                     return True
         return False
 
 
-def _with(files: Files, number: int, path: str, text: str) -> Files:
+def _with_text(files: Files, number: int, path: str, text: str) -> Files:
     return (*files[:number], (path, text), *files[number + 1 :])
 
 

@@ -51,7 +51,7 @@ _CHANCES: Final = 6
 Factory = Callable[[Prepared, Limits, Sink], Executor]
 
 
-def _made(name: str) -> Factory:
+def _factory(name: str) -> Factory:
     return lambda prepared, limits, sink: prepared.executor(name, limits, sink)
 
 
@@ -61,11 +61,13 @@ def untraced(name: str) -> Factory:
 
 
 #: The factories of executors by name, the reference first.
-EXECUTORS: Mapping[str, Factory] = {name: _made(name) for name in (*executors.EXECUTORS, COMPILED)}
+EXECUTORS: Mapping[str, Factory] = {
+    name: _factory(name) for name in (*executors.EXECUTORS, COMPILED)
+}
 
 
 @dataclass(slots=True)
-class _Known:
+class _CodeHandles:
     """The code that the driver may enter or evaluate, as far as requests have shown it."""
 
     interrupts: dict[int, DeclareInterrupt] = field(default_factory=dict)
@@ -106,7 +108,7 @@ class _Driver:
         self.allowed = allowed
         self.world = world
         self.trace = trace
-        self.known = _Known()
+        self.known = _CodeHandles()
         #: For each running action: the depth when it was entered, and the depth RESUME returns to.
         self.inside: list[tuple[int, int]] = []
         self.entered = 0

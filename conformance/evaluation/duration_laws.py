@@ -44,11 +44,11 @@ _SPLINE_JERKS: Final = (500e3, 50e3)
 _RAMP: Final = 0.08
 
 
-def delays(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+def duration_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield motions with an implausible duration, in a run whose override is 100."""
     for one in motions:
-        yield from _is_quick(one)
-    yield from _compared(motions)
+        yield from _motion_violations(one)
+    yield from _sequence_violations(motions)
 
 
 def seconds_of(length: float, speed: float, acceleration: float, jerk: float) -> float:
@@ -68,7 +68,7 @@ def seconds_of(length: float, speed: float, acceleration: float, jerk: float) ->
     return 2.0 * ramp(low)
 
 
-def _is_quick(one: EndedMotion) -> Iterator[Violation]:
+def _motion_violations(one: EndedMotion) -> Iterator[Violation]:
     """Yield a PTP that differs from the time of its axes [MOT-20], or an implausible LIN or CIRC.
 
     Implausible is faster than speed and acceleration allow, or for a LIN slower although all axes
@@ -81,14 +81,18 @@ def _is_quick(one: EndedMotion) -> Iterator[Violation]:
     is_free = True
     if motion.kind in ("PTP", "SPTP"):
         wanted, law, rule = (
-            _of_axes(one, one.ends[1] - one.ends[0]),
+            _seconds_of_axes(one, one.ends[1] - one.ends[0]),
             "a PTP is as quick as its axes allow",
             "MOT-20",
         )
         is_free = not motion.settings.is_reduced
     else:
-        wanted, law, rule = _of_path(one), "a path takes what its speed and acceleration allow", ""
-        is_free = took > wanted and "CIRC" not in motion.kind and _most_used(one) < _IDLE
+        wanted, law, rule = (
+            _seconds_of_path(one),
+            "a path takes what its speed and acceleration allow",
+            "",
+        )
+        is_free = took > wanted and "CIRC" not in motion.kind and _largest_load(one) < _IDLE
     rounding = wanted * _SHARE + _ENDS
     if max(took, wanted) < _SHORTEST:
         return
@@ -96,7 +100,7 @@ def _is_quick(one: EndedMotion) -> Iterator[Violation]:
         yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
 
 
-def _of_axes(one: EndedMotion, way: Array) -> float:
+def _seconds_of_axes(one: EndedMotion, way: Array) -> float:
     """Return the seconds that the slowest axis needs; 0 if unknown."""
     most, way = one.axis_rates, np.abs(way)
     moved = way > ROUNDING
@@ -105,7 +109,7 @@ def _of_axes(one: EndedMotion, way: Array) -> float:
     return seconds_of(1.0, *(float((row[moved] / way[moved]).min()) for row in most))
 
 
-def _of_path(one: EndedMotion) -> float:
+def _seconds_of_path(one: EndedMotion) -> float:
     """Return the seconds of a path: of translation, swivel or rotation; 0 if unknown."""
     motion, settings, most = one.motion, one.motion.settings, one.machine
     first, last = one.poses(one.ends)
@@ -137,7 +141,7 @@ def _of_path(one: EndedMotion) -> float:
     return seconds_of(1.0, v, a, j if motion.kind[0] == "S" else a / _RAMP)
 
 
-def _most_used(one: EndedMotion) -> float:
+def _largest_load(one: EndedMotion) -> float:
     """Return the largest fraction of a limit of speed, acceleration or jerk that an axis uses."""
     rows, most = one.path.axes[one.rows], one.axis_rates
     if most is None or len(rows) < 5:
@@ -152,7 +156,7 @@ def _most_used(one: EndedMotion) -> float:
 # ------------------------------------------------------------------------------ rows of motions
 
 
-def _rows(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
+def _sequences(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
     """Yield the sequences of blended motions from rest to rest; most have a single motion."""
     row: list[EndedMotion] = []
     for one in motions:
@@ -161,14 +165,14 @@ def _rows(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
             yield tuple(row)
 
 
-def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+def _sequence_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield sequences whose duration contradicts that of other sequences of the same run.
 
     A motion back takes as long as the motion there. Blended motions are no slower than the same
     motions with exact stops, and, if all were planned before the first began and lie on a straight
     line, hardly slower than a single motion.
     """
-    rows = [row for row in _rows(motions) if not any(one.motion.parts for one in row)]
+    rows = [row for row in _sequences(motions) if not any(one.motion.parts for one in row)]
     if not rows:
         return
     ends = np.array([(row[0].ends[0], row[-1].ends[1]) for row in rows])  # (rows, 2, axes)
@@ -177,23 +181,23 @@ def _compared(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     for row, way, took in compress(zip(rows, ends, times, strict=True), is_far):
         one = row[0]
         if len(row) == 1:
-            for other, known in _between(way[::-1], rows, ends, times):
-                if _is_alike(one, other, is_back=True) and took > known * (1.0 + _BACK):
+            for other, known in _single_motions(way[::-1], rows, ends, times):
+                if _is_same_motion(one, other, is_back=True) and took > known * (1.0 + _BACK):
                     law = "a way back takes the time of the way there"
                     yield one.broken(law, f"{took} us, not {known} us")
         elif row[-1].planned < one.start:
-            for other, known in _between(way, rows, ends, times):
+            for other, known in _single_motions(way, rows, ends, times):
                 if took > known * _STRAIGHT and _is_straight((*row, other)):
                     law = "points on a straight way cost no time"
                     yield one.broken(law, f"{took} us, not {known} us")
     for row, took in zip(rows, times, strict=True):
-        stops = _exact(rows, row) if len(row) > 1 else None
+        stops = _time_with_exact_stops(rows, row) if len(row) > 1 else None
         if stops is not None and took > stops * _SLOWER:
             law = "blended motions are no slower than exact ones"
             yield row[0].broken(law, f"{took} us, not {stops} us")
 
 
-def _between(
+def _single_motions(
     way: Array, rows: Sequence[Sequence[EndedMotion]], ends: Array, times: Sequence[int]
 ) -> Iterator[tuple[EndedMotion, int]]:
     """Yield single motions between two positions of the axes (2, axes), with their µs."""
@@ -203,7 +207,7 @@ def _between(
             yield row[0], took
 
 
-def _is_alike(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) -> bool:
+def _is_same_motion(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) -> bool:
     """Return whether two motions have the same kind, settings, auxiliary point and target."""
     first, second = one.motion, other.motion
     return (
@@ -240,12 +244,14 @@ def _is_straight(row: Sequence[EndedMotion]) -> bool:
     return bool(off < ROUNDING * 100.0 and (np.diff(shares[:-2]) > -ROUNDING).all())
 
 
-def _exact(rows: Sequence[Sequence[EndedMotion]], row: Sequence[EndedMotion]) -> int | None:
+def _time_with_exact_stops(
+    rows: Sequence[Sequence[EndedMotion]], row: Sequence[EndedMotion]
+) -> int | None:
     """Return the µs of the same motions with exact stops, if the run has them."""
     for place in range(len(rows) - len(row) + 1):
         same = rows[place : place + len(row)]
         are_alike = all(
-            len(other) == 1 and _is_alike(one, other[0])
+            len(other) == 1 and _is_same_motion(one, other[0])
             for one, other in zip(row, same, strict=True)
         )
         if are_alike and np.abs(same[0][0].ends[0] - row[0].ends[0]).max() < NEAR_DEGREES:

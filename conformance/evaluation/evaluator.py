@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Literal
 
-from conformance.evaluation.duration_laws import delays
-from conformance.evaluation.motion_laws import misdeeds
+from conformance.evaluation.duration_laws import duration_violations
+from conformance.evaluation.motion_laws import motion_violations
 from conformance.evaluation.motions import ended
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
-from conformance.evaluation.path_laws import deviations
-from conformance.evaluation.place_laws import misplaced, mistimed
-from conformance.evaluation.run_laws import violations
+from conformance.evaluation.path_laws import path_violations
+from conformance.evaluation.place_laws import blend_violations, trigger_violations
+from conformance.evaluation.run_laws import run_violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation
@@ -53,21 +53,23 @@ _ROBOTS = ("none", "kinematic", "mujoco")
 def evaluate(case: Case, seen: Observation) -> list[Check]:
     """Return the checks of a case in the order of its lines, then those of every case."""
     is_run = case.phase == "run"
-    found = evaluate_run(case.expectations, seen) if is_run else _said_all(case, seen)
+    found = evaluate_run(case.expectations, seen) if is_run else _check_findings(case, seen)
     said = [
         replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
         for check, one in zip(found, case.expectations, strict=True)
     ]
     ended = evaluate_ending(case.expectations, seen, case.main)
-    every = chain(_unsaid_outputs(case, seen), ended) if is_run else _unsaid(case, seen)
+    every = (
+        chain(_unexpected_outputs(case, seen), ended) if is_run else _unexpected_errors(case, seen)
+    )
     return [
         *said,
         *(replace(one, is_sure=case.may_fail or seen.ending == "crash") for one in every),
-        *_unsaid_laws(case, seen),
+        *_law_violations(case, seen),
     ]
 
 
-def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
+def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield violations of laws that hold in every case: limits, shapes, order of events."""
     if not seen.is_exact:  # a recording has neither all events nor the machine data of its arm
         return
@@ -75,17 +77,22 @@ def _unsaid_laws(case: Case, seen: Observation) -> Iterator[Check]:
     slow = any("OV_PRO" in text.upper() for text in texts)
     motions = tuple(ended(seen))
     free = [one for one in motions if not one.is_held]
-    broken = [deviations(seen), violations(seen), misdeeds(seen, motions), misplaced(free)]
+    broken = [
+        path_violations(seen),
+        run_violations(seen),
+        motion_violations(seen, motions),
+        blend_violations(free),
+    ]
     if not slow:
-        broken += [delays(free), mistimed(seen, free)]
+        broken += [duration_violations(free), trigger_violations(seen, free)]
     for one in chain(*broken):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail
         yield Check(file or case.main, line, one.law, "unmet", one.actual, is_sure, one.rule)
 
 
-def _said_all(case: Case, seen: Observation) -> list[Check]:
-    return [_said(one, seen) for one in case.expectations]
+def _check_findings(case: Case, seen: Observation) -> list[Check]:
+    return [_check_finding(one, seen) for one in case.expectations]
 
 
 def evaluate_run(expectations: Sequence[Expectation], seen: Observation) -> list[Check]:
@@ -121,19 +128,19 @@ def _check(one: Expectation, state: State, actual: str = "") -> Check:
 # ------------------------------------------------------------------------------------- findings
 
 
-def _said(one: Expectation, seen: Observation) -> Check:
+def _check_finding(one: Expectation, seen: Observation) -> Check:
     if seen.watched is not None:
-        return _recorded(one, seen)
+        return _check_recorded_finding(one, seen)
     there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
     actual = "; ".join(f"{found.severity} {found.code}" for found in there) or "nothing"
     match one.kind:
         case "accepted":
             grave = [found for found in seen.findings if found.severity != "note"]
-            return _check(one, "unmet" if grave else "met", _list(grave))
+            return _check(one, "unmet" if grave else "met", _listed(grave))
         case "syntax":
             first = seen.findings[0] if seen.findings else None
             is_met = first is not None and (first.file, first.line) == (one.file, one.line)
-            return _check(one, "met" if is_met else "unmet", _list(seen.findings) or "accepted")
+            return _check(one, "met" if is_met else "unmet", _listed(seen.findings) or "accepted")
         case "silent":
             is_met = all(found.code != one.arguments[0] for found in there)
             return _check(one, "met" if is_met else "unmet", actual)
@@ -141,7 +148,7 @@ def _said(one: Expectation, seen: Observation) -> Check:
     return _check(one, "met" if is_met else "unmet", actual)
 
 
-def _recorded(one: Expectation, seen: Observation) -> Check:
+def _check_recorded_finding(one: Expectation, seen: Observation) -> Check:
     """Check an expectation about findings against a recording of a real controller.
 
     A controller has its own numbers, so only the line is compared. It may report an error at the
@@ -149,7 +156,7 @@ def _recorded(one: Expectation, seen: Observation) -> Check:
     """
     places = (one.line, one.line + 1)
     there = [each for each in seen.findings if each.file == one.file and each.line in places]
-    actual = _list(seen.findings) or "accepted"
+    actual = _listed(seen.findings) or "accepted"
     code = one.arguments[0] if one.arguments else ""
     if one.kind in ("note", "silent") or code.startswith("KRL6"):
         return _check(one, "open", "only our checker reports this")
@@ -160,11 +167,11 @@ def _recorded(one: Expectation, seen: Observation) -> Check:
     return _check(one, "met" if is_met else "unmet", actual)
 
 
-def _list(findings: list[Finding] | tuple[Finding, ...]) -> str:
+def _listed(findings: list[Finding] | tuple[Finding, ...]) -> str:
     return "; ".join(f"{one.file}:{one.line} {one.severity} {one.code}" for one in findings)
 
 
-def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
+def _unexpected_errors(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield a check for each error that is not expected."""
     said = {(one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")}
     if case.phase == "parse" and said:
@@ -177,7 +184,7 @@ def _unsaid(case: Case, seen: Observation) -> Iterator[Check]:
             yield Check(found.file, found.line, text, "unmet", f"{found.code} {found.message}")
 
 
-def _unsaid_outputs(case: Case, seen: Observation) -> Iterator[Check]:
+def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield a check for each unexpected change of an output that has expected changes."""
     said = {
         (*one.arguments, one.file, one.line)

@@ -164,7 +164,7 @@ def _run(
     """Run a case; a program that cannot begin is observed as a fault without a line."""
     program = prepared(case)
     if isinstance(program, LinkError):
-        return _refused(program)
+        return _link_fault(program)
     if executor is not None:
         program = _ThirdParty(program.program, executor)
     profile = _profile(case.profile)
@@ -184,7 +184,7 @@ def _run(
     try:
         return observed(session.run_program(program, wanted), wanted)
     except LinkError as error:
-        return _refused(error)
+        return _link_fault(error)
     except ScriptError as error:
         return Observation(ending="crash", note=f"the script of inputs: {error}")
 
@@ -214,7 +214,7 @@ def prepared(case: Case) -> Prepared | LinkError:
         return error
 
 
-def _refused(error: LinkError) -> Observation:
+def _link_fault(error: LinkError) -> Observation:
     fields = {"slug": "link", "number": None, "text": str(error)}
     return Observation(events=(Event(0, "robot", "fault", "", 0, fields),), ending="fault")
 

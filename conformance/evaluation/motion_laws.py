@@ -39,18 +39,18 @@ _POINT: Final = ("X", "Y", "Z")
 _ANGLES: Final = ("A", "B", "C")
 
 
-def misdeeds(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+def motion_violations(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield what the motions of a run do against their program."""
     path, machine = seen.path, seen.machine
     if path is not None and machine is not None:
-        yield from _displaced(path, machine)
+        yield from _wrong_tool_pose(path, machine)
     for one in motions:
-        laws = (_arrives, _has_posture, _passes_auxiliary, _passes_points)
-        for law in laws if one.is_held else (*laws, _stands, _keeps_speed):
+        laws = (_wrong_end, _wrong_posture, _wrong_circle, _missed_points)
+        for law in laws if one.is_held else (*laws, _not_at_rest, _too_fast):
             yield from law(one)
 
 
-def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
+def _wrong_tool_pose(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
     """Yield the first set-point whose tool is not where machine data and axes put it [POS-11]."""
     flanges = flanges_of(machine.chain, path.axes[:, :ROBOT_AXES])
     bounds = [int(np.searchsorted(path.times, time)) for time, _ in path.placements]
@@ -74,7 +74,7 @@ def _displaced(path: PathRecord, machine: MachineData) -> Iterator[Violation]:
                 return
 
 
-def _arrives(one: EndedMotion) -> Iterator[Violation]:
+def _wrong_end(one: EndedMotion) -> Iterator[Violation]:
     """Yield components of the target that a motion does not reach [MOT-20]."""
     motion = one.motion
     target = dict(motion.target)
@@ -99,7 +99,7 @@ def _arrives(one: EndedMotion) -> Iterator[Violation]:
             yield one.broken("a motion ends at its target", f"turned {off:.4f} beside it", "MOT-20")
 
 
-def _stands(one: EndedMotion) -> Iterator[Violation]:
+def _not_at_rest(one: EndedMotion) -> Iterator[Violation]:
     """Yield a motion that is not at rest when it begins after, or ends with, an exact stop.
 
     At a distance of t from rest, an axis can have moved by at most j·t³/6, with the largest jerk j.
@@ -126,7 +126,7 @@ def _has_six(machine: MachineData) -> bool:
     return machine.palletising is None and len(machine.chain.joints) == ROBOT_AXES
 
 
-def _has_posture(one: EndedMotion) -> Iterator[Violation]:
+def _wrong_posture(one: EndedMotion) -> Iterator[Violation]:
     """Yield a PTP that ends with another Status or Turn [POS-03, POS-04, POS-05, POS-07]."""
     target, machine = one.motion.target, one.machine
     if not one.stops or one.motion.kind not in ("PTP", "SPTP") or not {"X", "Y", "Z"} & set(target):
@@ -134,7 +134,7 @@ def _has_posture(one: EndedMotion) -> Iterator[Violation]:
     axes = one.ends[1].tolist()
     status = target.get("S")
     if status is not None and machine.own_chain is None and _has_six(machine):
-        behind = _ahead(machine, axes[:ROBOT_AXES])
+        behind = _wrist_ahead(machine, axes[:ROBOT_AXES])
         for bit, rule, value in (
             (1, "POS-03", -behind),
             (2, "POS-04", axes[2] - machine.elbow),
@@ -153,7 +153,7 @@ def _has_posture(one: EndedMotion) -> Iterator[Violation]:
             )
 
 
-def _ahead(machine: MachineData, axes: Sequence[float]) -> float:
+def _wrist_ahead(machine: MachineData, axes: Sequence[float]) -> float:
     """Return how far the wrist centre is in front of axis 1 in mm, along the turned X axis."""
     chain = machine.chain
     wrist = Chain(chain.joints[:4], Pose.of())
@@ -162,7 +162,7 @@ def _ahead(machine: MachineData, axes: Sequence[float]) -> float:
     return float(centre[0, 3])
 
 
-def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
+def _wrong_circle(one: EndedMotion) -> Iterator[Violation]:
     """Yield a CIRC whose auxiliary or end point is not on its circle [MOT-20]."""
     motion = one.motion
     points = [motion.auxiliary or {}, motion.target]
@@ -184,7 +184,7 @@ def _passes_auxiliary(one: EndedMotion) -> Iterator[Violation]:
         yield one.broken(law, f"{off:.4f} mm off", "MOT-20")
 
 
-def _passes_points(one: EndedMotion) -> Iterator[Violation]:
+def _missed_points(one: EndedMotion) -> Iterator[Violation]:
     """Yield a spline block that does not pass through one of its points [SPL-03]."""
     motion = one.motion
     parts = motion.parts if one.stops else motion.parts[:-1]  # a blend may cut the last part
@@ -201,7 +201,7 @@ def _passes_points(one: EndedMotion) -> Iterator[Violation]:
                 yield one.broken("a spline passes its points", f"{off:.4f} mm beside one", "SPL-03")
 
 
-def _keeps_speed(one: EndedMotion) -> Iterator[Violation]:
+def _too_fast(one: EndedMotion) -> Iterator[Violation]:
     """Yield a path faster than programmed [MOT-04], or a PTP with a faster axis [MOT-02]."""
     motion, settings = one.motion, one.motion.settings
     if motion.kind == "PTP_SPLINE" or one.rows.stop - one.rows.start < 3:

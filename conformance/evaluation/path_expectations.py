@@ -47,7 +47,7 @@ _TRACKING: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _MotionPath:
     """The motion of a line, with times in µs.
 
     ``entered`` is the end of the blend before it, or its start. ``leave`` and ``join`` are the
@@ -101,7 +101,7 @@ def evaluate_on_path(one: Expectation, seen: Observation, marks: Marks) -> Evalu
     """Return whether an expectation about the path is met, with what was observed."""
     if seen.path is None:
         return "open", "no path was recorded"
-    part = _part(one, seen, seen.path)
+    part = _motion_path(one, seen, seen.path)
     if part is None:
         return "unmet", "the motion did not begin and end"
     if one.kind in ("pose", "axes"):
@@ -109,10 +109,10 @@ def evaluate_on_path(one: Expectation, seen: Observation, marks: Marks) -> Evalu
     return _EVALUATORS[one.kind](one, seen, part)
 
 
-def _part(one: Expectation, seen: Observation, path: PathRecord) -> _Part | None:
+def _motion_path(one: Expectation, seen: Observation, path: PathRecord) -> _MotionPath | None:
     if not one.file:
         first, last = int(path.times[0]), int(path.times[-1])
-        return _Part(path, first, last, first, None, None, is_whole=True)
+        return _MotionPath(path, first, last, first, None, None, is_whole=True)
     starts = seen.on_line(one.file, one.line, "motion_start")
     if not starts:
         return None
@@ -127,7 +127,7 @@ def _part(one: Expectation, seen: Observation, path: PathRecord) -> _Part | None
     entered = times.get(("blend_end", number))
     leave = times.get(("blend_start", number))
     join = None if leave is None else times.get(("blend_end", number + 1))
-    return _Part(path, start, end, start if entered is None else entered, leave, join)
+    return _MotionPath(path, start, end, start if entered is None else entered, leave, join)
 
 
 # ------------------------------------------------------------------------------------- places
@@ -143,12 +143,14 @@ def _numbers(one: Expectation) -> Array:
     return np.array(found)
 
 
-def _near(one: Expectation, off: float, unit: str = "mm", usual: float = TOLERANCE_MM) -> Evaluated:
+def _within_tolerance(
+    one: Expectation, off: float, unit: str = "mm", usual: float = TOLERANCE_MM
+) -> Evaluated:
     margin = usual if one.tolerance is None else one.tolerance
     return ("met" if off <= margin else "unmet"), f"{off:.4f} {unit} off"
 
 
-def _path(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+def _path(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
     numbers = _numbers(one).reshape(-1, 3)
     match one.arguments[0]:
         case "joint":
@@ -164,10 +166,10 @@ def _path(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
             points, off = part.own(), from_line(part.own(), *numbers)
     if not len(points):
         return "unmet", "there is no part of the path between the blends"
-    return _near(one, float(off.max()))
+    return _within_tolerance(one, float(off.max()))
 
 
-def _joint(one: Expectation, part: _Part) -> Evaluated:
+def _joint(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check that all axes always have covered the same fraction of their way [MOT-01]."""
     last = part.end if part.leave is None else part.leave
     axes = part.path.axes[part.within(part.entered, last)][:, :6]
@@ -176,10 +178,10 @@ def _joint(one: Expectation, part: _Part) -> Evaluated:
     off = from_synchronous(axes)
     if off is None:
         return "unmet", "no axis moves"
-    return _near(one, off, "degrees", TOLERANCE_DEGREES)
+    return _within_tolerance(one, off, "degrees", TOLERANCE_DEGREES)
 
 
-def _distance(part: _Part, point: Array) -> float:
+def _distance(part: _MotionPath, point: Array) -> float:
     """Return the smallest distance of the tool from a point, including the blend that follows."""
     if part.is_whole:
         stretches = [_refined(part, rows) for rows in part.stretches()]
@@ -189,13 +191,13 @@ def _distance(part: _Part, point: Array) -> float:
     return float(np.linalg.norm(points - point, axis=1).min())
 
 
-def _refined(part: _Part, rows: slice) -> Array:
+def _refined(part: _MotionPath, rows: slice) -> Array:
     """Return the points of some rows with interpolated points between them, at least two."""
     times, points = part.path.times[rows], part.points[rows]
     return refined(times, points, float(times[0]), float(times[-1]), 4 * len(times) + 2)
 
 
-def _avoids(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+def _avoids(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
     """Check that the tip of the tool stays out of a zone in $WORLD, also between samples."""
     numbers = _numbers(one)
     zone, frame = (numbers[:-6], numbers[-6:]) if "in" in one.arguments else (numbers, np.zeros(6))
@@ -215,18 +217,18 @@ def _avoids(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     return "met", ""
 
 
-def _passes(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
-    return _near(one, _distance(part, _numbers(one)))
+def _passes(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+    return _within_tolerance(one, _distance(part, _numbers(one)))
 
 
-def _misses(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+def _misses(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
     *point, wanted = _numbers(one)
     off = _distance(part, np.array(point))
     margin = wanted * 0.05 if one.tolerance is None else one.tolerance
     return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm away"
 
 
-def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+def _leaves(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
     moment = part.leave if one.kind == "leaves" else part.join
     if moment is None:
         return "unmet", "there is no blend"
@@ -236,7 +238,7 @@ def _leaves(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm before or behind it"
 
 
-def _position(one: Expectation, seen: Observation, part: _Part, marks: Marks) -> Evaluated:
+def _position(one: Expectation, seen: Observation, part: _MotionPath, marks: Marks) -> Evaluated:
     moment = part.end
     if one.when is not None:
         try:
@@ -263,10 +265,10 @@ def _continuous(poses: Array) -> Array:
 # ------------------------------------------------------------------------------------- speeds
 
 
-def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+def _speed(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
     kept = part.within(part.start, part.end if part.join is None else part.join)
     if part.is_whole:
-        return _fastest(one, part)
+        return _speed_of_run(one, part)
     if one.arguments[0] == "drops":
         if part.leave is None or part.join is None:
             return "unmet", "there is no blend"
@@ -286,7 +288,7 @@ def _speed(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
     return ("met" if slowest < wanted else "unmet"), f"{slowest:.4f} m/s"
 
 
-def _fastest(one: Expectation, part: _Part) -> Evaluated:
+def _speed_of_run(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check the highest speed of the tool in $WORLD during the whole run."""
     wanted, fastest, when = float(one.arguments[-1]), 0.0, 0
     for rows in part.stretches():
@@ -303,7 +305,7 @@ def _fastest(one: Expectation, part: _Part) -> Evaluated:
     return ("met" if is_met else "unmet"), f"{fastest:.4f} m/s at {when / 1e6:.6f} s"
 
 
-def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
+def _limits(one: Expectation, seen: Observation, part: _MotionPath) -> Evaluated:
     """Check that no axis exceeds its speed limit, or with ``smooth`` its acceleration limit."""
     if seen.machine is None:
         return "open", "the limits of the arm are not known"
@@ -324,17 +326,17 @@ def _limits(one: Expectation, seen: Observation, part: _Part) -> Evaluated:
     return ("met" if float(worst.max()) <= RATE_MARGIN else "unmet"), actual
 
 
-def _tracks(one: Expectation, _seen: Observation, part: _Part) -> Evaluated:
+def _tracks(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
     """Check that the measured tool is near its set-points."""
     measured = part.path.points_measured
     if measured is None:
         return "open", "nothing was measured"
     kept = part.within(part.start, part.end)
     off = np.linalg.norm(measured[kept, :3] - part.points[kept], axis=1)
-    return _near(one, float(off.max()), usual=_TRACKING)
+    return _within_tolerance(one, float(off.max()), usual=_TRACKING)
 
 
-_EVALUATORS: Final[Mapping[str, Callable[[Expectation, Observation, _Part], Evaluated]]] = {
+_EVALUATORS: Final[Mapping[str, Callable[[Expectation, Observation, _MotionPath], Evaluated]]] = {
     "path": _path,
     "passes": _passes,
     "misses": _misses,

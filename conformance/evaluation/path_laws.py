@@ -30,19 +30,19 @@ _FEWEST: Final = 4
 _LIMITS: Final = "set-points keep the limits of the axes"
 
 
-def deviations(seen: Observation) -> Iterator[Violation]:
+def path_violations(seen: Observation) -> Iterator[Violation]:
     """Yield violations of axis limits, at most one of each kind, and motions of a wrong shape.
 
     Yield nothing if there is no path, and no limits if the machine data is unknown.
     """
     path = seen.path
     if path is not None and len(path.times) >= _FEWEST:
-        yield from _excesses(seen, path)
-        yield from _drifts(seen, path)
-        yield from _strays(seen, path)
+        yield from _limit_violations(seen, path)
+        yield from _drift_violations(seen, path)
+        yield from _shape_violations(seen, path)
 
 
-def _excesses(seen: Observation, path: PathRecord) -> Iterator[Violation]:
+def _limit_violations(seen: Observation, path: PathRecord) -> Iterator[Violation]:
     """Check software limits [MOT-15], speeds [MOT-06], accelerations [MOT-02] and jerks."""
     if seen.machine is None:
         return
@@ -77,7 +77,7 @@ def _violation(seen: Observation, time: int, law: str, actual: str, rule: str) -
     return Violation(begun[-1] if begun else None, law, f"{actual} at {time / 1e6:.3f} s", rule)
 
 
-def _drifts(seen: Observation, path: PathRecord) -> Iterator[Violation]:
+def _drift_violations(seen: Observation, path: PathRecord) -> Iterator[Violation]:
     """Yield the first movement of the arm between motions, up to a BRAKE or RESUME."""
     since: int | None = 0
     for one in seen.of_kind("motion_start", "motion_end", "brake", "resume", "end"):
@@ -95,7 +95,7 @@ def _drifts(seen: Observation, path: PathRecord) -> Iterator[Violation]:
             return
 
 
-def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:
+def _shape_violations(seen: Observation, path: PathRecord) -> Iterator[Violation]:
     """Yield motions that are no line, no circle, or not synchronous [MOT-01] between their blends.
 
     With a fixed tool, the base relative to the tool has the shape [ORI-07]; it is not checked.
@@ -105,7 +105,7 @@ def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:
     # A change of frames, or a motion of an interrupt routine in between, changes the shape.
     changes = [time for time, _ in path.placements]
     changes += [one.time for one in seen.of_kind("motion_start") if one.time is not None]
-    for start, first, last in _own_parts(seen):
+    for start, first, last in _unblended_parts(seen):
         kept = (path.times >= first) & (path.times <= last)
         if kept.sum() < _FEWEST or any(first < time < last for time in changes):
             continue
@@ -126,7 +126,7 @@ def _strays(seen: Observation, path: PathRecord) -> Iterator[Violation]:
             yield _violation(seen, start.time or 0, law, f"{off:.4f} off", rule)
 
 
-def _own_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:
+def _unblended_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:
     """Yield each ended motion with the times in µs between which it was in no blend."""
     found: dict[tuple[str, object], Event] = {}
     for one in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end"):

@@ -34,7 +34,7 @@ _HALF: Final = 0.5
 
 
 @dataclass(frozen=True)
-class _Way:
+class _ProgrammedPath:
     """The programmed path of a motion: axes (n, axes) of a PTP if known, and tool points (n, 3)."""
 
     axes: Array | None
@@ -61,10 +61,10 @@ class _Way:
         return float(self.sums[place] + shares[place] * np.sqrt(squares[place]))
 
 
-def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+def blend_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield blends that use more of a motion than their criteria say, or less of both [BLD-07]."""
     law = "a blend takes of both motions what its criteria say"
-    for (one, way), (other, further) in pairwise(_ways(motions)):
+    for (one, way), (other, further) in pairwise(_programmed_paths(motions)):
         if one.stops or other.begins or not one.motion.criteria or not follows(one, other):
             continue
         is_path, leads_on = (not each.motion.kind.endswith("PTP") for each in (one, other))
@@ -83,7 +83,12 @@ def misplaced(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
 
 
 def _excess(
-    one: EndedMotion, way: _Way | None, criterion: str, first: EndedMotion, *, at_end: bool
+    one: EndedMotion,
+    way: _ProgrammedPath | None,
+    criterion: str,
+    first: EndedMotion,
+    *,
+    at_end: bool,
 ) -> float | None:
     """Return by how many tolerances a blend uses too much of a motion; ``None`` if unknown.
 
@@ -109,7 +114,9 @@ def _excess(
     return float(max(found)) if found else None
 
 
-def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | None]]:
+def _programmed_paths(
+    motions: Sequence[EndedMotion],
+) -> Iterator[tuple[EndedMotion, _ProgrammedPath | None]]:
     """Yield each motion with its programmed path, ``None`` if that is not completely numeric."""
     axes: Array | None = None
     point: Array | None = None
@@ -125,16 +132,16 @@ def _ways(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, _Way | 
         origin, point = point, _point(one, one.motion.target, point)
         if axes is not None:
             point = _tool(one, axes)[0]
-        yield one, _way(one, start, axes, origin, point)
+        yield one, _programmed_path(one, start, axes, origin, point)
 
 
-def _way(
+def _programmed_path(
     one: EndedMotion,
     start: Array | None,
     end: Array | None,
     origin: Array | None,
     last: Array | None,
-) -> _Way | None:
+) -> _ProgrammedPath | None:
     """Return the path between axes for a PTP, else between points; ``None`` if unknown."""
     motion = one.motion
     is_plain = not motion.parts and motion.angle is None and one.machine.palletising is None
@@ -143,15 +150,15 @@ def _way(
     match motion.kind:
         case "PTP" | "SPTP" if start is not None and end is not None:
             axes = start + _SHARES * (end - start)
-            return _Way(axes, _tool(one, axes))
+            return _ProgrammedPath(axes, _tool(one, axes))
         case "LIN" | "SLIN" if origin is not None and last is not None:
-            return _Way(None, np.array([origin, last]))
+            return _ProgrammedPath(None, np.array([origin, last]))
         case "CIRC" | "SCIRC" if origin is not None and last is not None:
             middle = _point(one, motion.auxiliary, origin)
             return (
                 None
                 if middle is None
-                else _Way(None, drawn("circle", np.array([origin, middle, last]), 501))
+                else _ProgrammedPath(None, drawn("circle", np.array([origin, middle, last]), 501))
             )
     return None
 
@@ -184,7 +191,7 @@ def _point(one: EndedMotion, target: Target | None, before: Array | None) -> Arr
 # -------------------------------------------------------------------------------------- triggers
 
 
-def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+def trigger_violations(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield triggers that switch at a time that contradicts the path [TRG-02, TRG-04, TRG-08].
 
     Yield nothing if some of their motions did not come to their end, or belong to a spline block.
@@ -200,7 +207,7 @@ def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
         return
     neighbours = zip((None, *motions), motions, (*motions[1:], None), strict=False)
     spans = sorted(
-        _moments(place, one, before if not one.begins else None, after if not one.stops else None)
+        _period(place, one, before if not one.begins else None, after if not one.stops else None)
         for before, one, after in neighbours
         for place in one.motion.places
     )
@@ -216,7 +223,7 @@ def mistimed(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Viol
             spans.remove(min(fitting, key=itemgetter(1)))
 
 
-def _moments(
+def _period(
     place: Place, one: EndedMotion, before: EndedMotion | None, after: EndedMotion | None
 ) -> tuple[float, float]:
     """Return the period in µs in which a place is passed, its delay included."""
@@ -226,7 +233,7 @@ def _moments(
     if place.kind == "PATH":
         times = np.linspace(earliest, latest, 8 * (one.rows.stop - one.rows.start) + 64)
         rows = between(one.path.times, one.path.axes, times)
-        sums = _Way(None, _tool(one, rows)).sums
+        sums = _ProgrammedPath(None, _tool(one, rows)).sums
         wanted = float(np.interp(end, times, sums)) + place.position
         near = np.clip([wanted - _NEAR_MM, wanted + _NEAR_MM], 0.0, sums[-1])
         moments = np.interp(near, np.maximum.accumulate(sums), times)

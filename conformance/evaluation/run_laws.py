@@ -29,7 +29,7 @@ class Violation:
     rule: str = ""
 
 
-def violations(seen: Observation) -> Iterator[Violation]:
+def run_violations(seen: Observation) -> Iterator[Violation]:
     """Yield the first violation of each law, in a run whose events are all known."""
     for law in (_in_time, _changes, _levels, _motions, _ahead, _faults, _ends):
         found = next(law(seen.events), None)

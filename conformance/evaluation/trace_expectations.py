@@ -78,7 +78,7 @@ def unwatched(one: Expectation, seen: Observation) -> str:
 
 def evaluate_on_trace(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """Return whether an expectation about the trace is met, with what was observed."""
-    return _EVALUATORS.get(one.kind, _happens)(one, seen, marks)
+    return _EVALUATORS.get(one.kind, _event)(one, seen, marks)
 
 
 # ------------------------------------------------------------------------------------- values
@@ -100,7 +100,7 @@ def _value(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     actual = " ".join(map(_formatted, found))
     expected = [_literal(word) for word in wanted]
     is_met = len(found) == len(expected) and all(
-        _alike(left, right, one.tolerance) for left, right in zip(expected, found, strict=True)
+        _matches(left, right, one.tolerance) for left, right in zip(expected, found, strict=True)
     )
     return ("met" if is_met else "unmet"), actual
 
@@ -143,7 +143,7 @@ def _literal(word: str) -> Any:
     return float(word) if re.search(r"[.eE]", word) else int(word)
 
 
-def _alike(wanted: Any, found: Any, tolerance: float | None) -> bool:
+def _matches(wanted: Any, found: Any, tolerance: float | None) -> bool:
     if isinstance(wanted, float) and isinstance(found, float):
         margin = abs(wanted) * _REAL if tolerance is None else tolerance
         return abs(wanted - found) <= max(margin, 1e-37)
@@ -234,7 +234,7 @@ def _lasts(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
 # ------------------------------------------------------------------------------- what happens
 
 
-def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
+def _event(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """Check that an event happens at its time, or never, or so many times."""
     events = _events(one, seen)
     words = one.arguments
@@ -245,22 +245,24 @@ def _happens(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
         if not events and far:
             return ("met" if "never" in words else "unmet"), f"{far} away"
     if "never" in words:
-        return ("unmet" if events else "met"), _seen(one, events)
+        return ("unmet" if events else "met"), _times_and_lines(one, events)
     if "times" in words:
         wanted = int(words[words.index("times") + 1])
-        observed = f"{len(events)}: {_seen(one, events)}" if events else "0"
+        observed = f"{len(events)}: {_times_and_lines(one, events)}" if events else "0"
         return ("met" if len(events) == wanted else "unmet"), observed
     if not events:
         return "unmet", "it never happened"
     if one.when is None:
-        return "met", _seen(one, events)
+        return "met", _times_and_lines(one, events)
     if any(event.time is None for event in events):
         return "open", "the time was not measured"
     try:
-        is_met = any(_is_then(event, one.when, one.tolerance, seen, marks) for event in events)
+        is_met = any(_is_in_time(event, one.when, one.tolerance, seen, marks) for event in events)
     except LookupError as error:
         return "unmet", str(error.args[0])
-    return ("met" if is_met else "unmet"), f"{_seen(one, events)}{_moments(one.when, seen, marks)}"
+    return (
+        "met" if is_met else "unmet"
+    ), f"{_times_and_lines(one, events)}{_moments(one.when, seen, marks)}"
 
 
 def _events(one: Expectation, seen: Observation) -> list[Event]:
@@ -328,7 +330,7 @@ _FITS: Final[Mapping[str, tuple[str, Callable[[Expectation, Event], bool]]]] = {
 }
 
 
-def _is_then(
+def _is_in_time(
     event: Event, when: When, tolerance: float | None, seen: Observation, marks: Marks
 ) -> bool:
     assert event.time is not None, "the caller looked"
@@ -372,7 +374,7 @@ def _times(events: Sequence[Event]) -> str:
     return ", ".join("?" if e.time is None else f"{e.time / 1e6:.6f} s" for e in events[:8])
 
 
-def _seen(one: Expectation, events: Sequence[Event]) -> str:
+def _times_and_lines(one: Expectation, events: Sequence[Event]) -> str:
     """Return the times of events as text, with their lines if the expectation names no line."""
     if one.file:
         return _times(events)

@@ -43,12 +43,12 @@ _SAME: Final = 1e-3
 #: Tolerance of times that must not increase, as a fraction.
 _LATER: Final = 1e-3
 #: Tolerance in degrees between a point and the other path, which is sampled and joined by chords.
-_BESIDE: Final = 0.05
+_NEAR: Final = 0.05
 
 
 def same_trace(left: Observation, right: Observation) -> str:
     """Compare the whole trace including times, except line numbers."""
-    return _first(left, right, _whole)
+    return _first_difference(left, right, _timed)
 
 
 def same_trace_renamed(names: Mapping[str, str]) -> Compare:
@@ -63,9 +63,9 @@ def same_trace_renamed(names: Mapping[str, str]) -> Compare:
             if event.kind == "assign":
                 root, *rest = _split(str(fields["name"]))
                 fields["name"] = "".join((names.get(root.upper(), root), *rest))
-            return _whole(Event(event.time, event.task, event.kind, "", 0, fields))
+            return _timed(Event(event.time, event.task, event.kind, "", 0, fields))
 
-        return _first(left, right, _whole, old)
+        return _first_difference(left, right, _timed, old)
 
     return compare
 
@@ -77,7 +77,7 @@ def same_effects(left: Observation, right: Observation) -> str:
     """
     for task in ("robot", "submit"):
         one, other = (_of_task(run, task, _EFFECTS) for run in (left, right))
-        difference = _first(one, other, _untimed)
+        difference = _first_difference(one, other, _untimed)
         if difference:
             return difference
     return ""
@@ -87,14 +87,14 @@ def same_outputs(left: Observation, right: Observation) -> str:
     """Compare the outputs in their order, and the path of the arm, but not times."""
     kinds = frozenset({"out", "anout", "motion_end", "fault"})
     one, other = (_of_task(run, "robot", kinds) for run in (left, right))
-    return _first(one, other, _untimed) or same_geometry(left, right)
+    return _first_difference(one, other, _untimed) or same_geometry(left, right)
 
 
 def same_axes(left: Observation, right: Observation) -> str:
     """Compare the axes at each set-point, and the trace except assignments."""
     kinds = _EFFECTS - {"assign"}
     one, other = (_of_task(run, "robot", kinds) for run in (left, right))
-    difference = _first(one, other, lambda event: (event.time, *_untimed(event)))
+    difference = _first_difference(one, other, lambda event: (event.time, *_untimed(event)))
     if difference or left.path is None or right.path is None:
         return difference
     if len(left.path.times) != len(right.path.times):
@@ -118,11 +118,11 @@ def same_geometry(left: Observation, right: Observation) -> str:
         return ""
     one, other = (_thinned(run.path.axes) for run in (left, right) if run.path is not None)
     # The last set-point is that of the last cycle, which is slightly before the end.
-    if max(np.abs(one[place] - other[place]).max() for place in (0, -1)) > _BESIDE:
+    if max(np.abs(one[place] - other[place]).max() for place in (0, -1)) > _NEAR:
         return "the path does not begin and end where it did"
     for mine, theirs, which in ((one, other, "old"), (other, one, "new")):
-        off = _beside(mine, theirs)
-        if off.max() > _BESIDE:
+        off = _distances(mine, theirs)
+        if off.max() > _NEAR:
             place = mine[int(np.argmax(off))]
             return f"the {which} path has {_axes(place)}, {off.max():.4f} degrees beside the other"
     return ""
@@ -130,7 +130,7 @@ def same_geometry(left: Observation, right: Observation) -> str:
 
 def no_sooner(left: Observation, right: Observation) -> str:
     """Check that the last motion of the changed program ends no earlier than before."""
-    one, other = _ended(left), _ended(right)
+    one, other = _end_of_motion(left), _end_of_motion(right)
     if one is None or other is None or one <= other * (1.0 + _LATER):
         return ""
     return f"motions end after {one / 1e6:.4f} s, then after {other / 1e6:.4f} s"
@@ -138,13 +138,13 @@ def no_sooner(left: Observation, right: Observation) -> str:
 
 def at_most_twice(left: Observation, right: Observation) -> str:
     """Check that its motions end no earlier than before, and take at most twice as long."""
-    one, other = _ended(left), _ended(right)
+    one, other = _end_of_motion(left), _end_of_motion(right)
     if one is None or other is None or other <= 2.0 * one * (1.0 + _LATER):
         return no_sooner(left, right)
     return f"motions end after {one / 1e6:.4f} s, then after {other / 1e6:.4f} s"
 
 
-def _ended(run: Observation) -> int | None:
+def _end_of_motion(run: Observation) -> int | None:
     """Return when the last motion ended in µs; ``None`` if the run did not come to its end."""
     times = [one.time for one in run.of_kind("motion_end") if one.time is not None]
     return max(times, default=0) if run.ending == "end" else None
@@ -153,7 +153,7 @@ def _ended(run: Observation) -> int | None:
 # ------------------------------------------------------------------------------------ events
 
 
-def _first(
+def _first_difference(
     left: Observation,
     right: Observation,
     old: Callable[[Event], Any],
@@ -177,7 +177,7 @@ def _of_task(run: Observation, task: str, kinds: Iterable[str]) -> Observation:
     return Observation(events=events, ending=run.ending, note=run.note)
 
 
-def _whole(event: Event) -> Any:
+def _timed(event: Event) -> Any:
     return event.time, event.task, event.kind, _fields(event)
 
 
@@ -214,7 +214,7 @@ def _thinned(axes: Array) -> Array:
     return axes[np.concatenate(([True], moves))]
 
 
-def _beside(points: Array, path: Array) -> Array:
+def _distances(points: Array, path: Array) -> Array:
     """Return the distance of each point from a path, following both in the same direction."""
     if len(path) < 2:
         return np.asarray(np.abs(points - path[0]).max(axis=1))
@@ -230,7 +230,7 @@ def _beside(points: Array, path: Array) -> Array:
         nearest = int(np.argmin(off))
         found[number] = off[nearest]
         # Continue at the first place that is near: a path that reverses passes a place twice.
-        near = np.flatnonzero(off <= max(off[nearest], _BESIDE))
+        near = np.flatnonzero(off <= max(off[nearest], _NEAR))
         first += max(0, int(near[0]) - 1)
     return found
 

@@ -32,7 +32,7 @@ Statements = tuple[ast.Statement, ...]
 _MOST_FOLDED: Final = 1_000
 
 
-def _simply(change: Change) -> Callable[[Program, Random], Program | None]:
+def _in_all_routines(change: Change) -> Callable[[Program, Random], Program | None]:
     return lambda program, _random: program.rewritten(lambda _routine: change)
 
 
@@ -45,10 +45,10 @@ def _if(condition: ast.Expression, *body: ast.Statement) -> ast.If:
 
 def _for_to_while(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
     """Replace a FOR whose last value and step are literals, so that no pass can change them."""
-    if not isinstance(node, ast.For) or _is_down(node.last) is None:
+    if not isinstance(node, ast.For) or _is_negative(node.last) is None:
         return node
     step = node.step or integer(1)
-    is_down, counter = _is_down(step), ast.Variable(MADE, node.counter)
+    is_down, counter = _is_negative(step), ast.Variable(MADE, node.counter)
     if is_down is None:
         return node
     test = ast.Binary(MADE, ">=" if is_down else "<=", counter, node.last)
@@ -57,7 +57,7 @@ def _for_to_while(node: ast.Node) -> ast.Node | tuple[ast.Node, ...]:
     return ast.Assignment(MADE, counter, node.first), ast.While(MADE, test, body)
 
 
-def _is_down(number: ast.Expression) -> bool | None:
+def _is_negative(number: ast.Expression) -> bool | None:
     """Return whether a number is negative; ``None`` if the expression is no literal."""
     is_down = isinstance(number, ast.Unary) and number.operator == "-"
     digits = number.operand if isinstance(number, ast.Unary) else number
@@ -275,7 +275,7 @@ LAWS: Final[Sequence[Law]] = (
         "FOR counts by its step, with a test before each pass",
         ("CTL-01", "CTL-05"),
         same_effects,
-        _simply(_for_to_while),
+        _in_all_routines(_for_to_while),
     ),
     Law(
         "GOTO in place of a loop",
@@ -289,7 +289,7 @@ LAWS: Final[Sequence[Law]] = (
         "SWITCH is a chain of IF in the order of its cases",
         ("CTL-03", "CTL-04"),
         same_effects,
-        _simply(_switch_to_if),
+        _in_all_routines(_switch_to_if),
     ),
     Law(
         "inlining",

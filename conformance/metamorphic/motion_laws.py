@@ -281,7 +281,7 @@ def _is_for_batches(program: Program) -> bool:
     )
 
 
-def _where_all_blends(compare: Compare) -> Compare:
+def _unless_blends_fail(compare: Compare) -> Compare:
     """Return a comparison that makes an exception for two kinds of programs.
 
     One are those in which a blend has failed: in a batch, all blends are known in time. The other
@@ -348,7 +348,7 @@ LAWS: Final[Sequence[Law]] = (
         "batches",
         "motions executed in batches go the same way and switch the same outputs, at other times",
         ("ADV-01", "BLD-09"),
-        _where_all_blends(same_outputs),
+        _unless_blends_fail(same_outputs),
         None,
         _KINEMATIC,
         Run(robot="kinematic", motion="batch"),

@@ -195,7 +195,7 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     front = _front_matter(source)
     rules = tuple(word.strip() for word in front.get("rule", [""])[0].split(","))
     for rule in rules:
-        _known(rule, path)
+        _check_rule(rule, path)
     wanted = front.get("phase", [""])[0]
     phase = next((one for one in PHASES if one == wanted), None)
     if phase is None:
@@ -203,10 +203,10 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     machine = front.get("machine", [""])[0]
     sources = (source, *_companions(path, front.get("with", [""])[0]))
     if machine:
-        sources = (*sources, Source(_beside(path, machine).text, "$machine.dat"))
+        sources = (*sources, Source(_companion(path, machine).text, "$machine.dat"))
     expectations = tuple(one for each in sources for one in _expectations(each, path))
     for one in expectations:
-        _known(one.basis or rules[0], path)
+        _check_rule(one.basis or rules[0], path)
     if not expectations:
         raise CaseError(f"{path}: it expects nothing")
     try:
@@ -232,7 +232,7 @@ def read_case(path: Path, root: Path = CASES) -> Case:
     )
 
 
-def _known(rule: str, path: Path) -> None:
+def _check_rule(rule: str, path: Path) -> None:
     try:
         basis(rule)
     except KeyError:
@@ -266,10 +266,10 @@ def _companions(path: Path, named: str) -> Iterator[Source]:
     wanted = [path.with_name(name) for name in names]
     yield from (_read(one) for one in wanted if one.is_file() and not _is_case(one))
     for name in filter(None, (word.strip() for word in named.split(","))):
-        yield _beside(path, name)
+        yield _companion(path, name)
 
 
-def _beside(path: Path, name: str) -> Source:
+def _companion(path: Path, name: str) -> Source:
     """Return a file in the folder of a case by its name; raise `CaseError` if it does not exist."""
     if not re.fullmatch(r"[$\w][\w.-]*", name) or not path.with_name(name).is_file():
         raise CaseError(f"{path}: {name!r} is not beside it")

@@ -127,9 +127,9 @@ class TreeExecutor:
 
     def enter(self, code: CodeHandle) -> None:
         """Push an action, which runs before the program continues."""
-        handed, run = self._run.handed(code), self._run
-        frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
-        node: Any = handed.node
+        deferred, run = self._run.deferred(code), self._run
+        frame = deferred.frame.for_code(deferred.frame.unit.line(deferred.node))
+        node: Any = deferred.node
         steps = Statements(run, frame).action(node)
         interrupted = _Interrupted(
             self._open, self._resumed, run.guard, self._final, self._resumed_at_end
@@ -144,12 +144,12 @@ class TreeExecutor:
         A function called in the condition may only compute and read; anything else raises
         `LinkError`.
         """
-        handed, guard = self._run.handed(code), self._run.guard
+        deferred, guard = self._run.deferred(code), self._run.guard
         depth, cells, skips = self._run.depth, self._run.cells, self._run.skips
         self._run.guard = Guard.OFF  # it applies to statements, not to a condition
         self._run.skips = False
-        frame = handed.frame.for_code(handed.frame.unit.line(handed.node))
-        node: Any = handed.node
+        frame = deferred.frame.for_code(deferred.frame.unit.line(deferred.node))
+        node: Any = deferred.node
         stack = [_Active(Statements(self._run, frame).truth(node), frame)]
         reply: Any = None
         try:

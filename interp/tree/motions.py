@@ -98,7 +98,7 @@ class Motions(Calls):
                 value = yield from self._optional(node.value)
                 return SplineRange("TIME_BLOCK", node.edge, value, on_start=False)
         place = yield from self.real(node.place)
-        return SplineStop(place, node.on_start, self.run.hand(node.condition, self.frame))
+        return SplineStop(place, node.on_start, self.run.defer(node.condition, self.frame))
 
     # ----------------------------------------------------------------------- triggers
 
@@ -111,7 +111,7 @@ class Motions(Calls):
         delay = yield from self.real(node.delay)
         output = yield from self._output(node.action)
         priority = None if node.priority is None else (yield from self.integer(node.priority))
-        action = self.run.hand(node.action, self.frame)
+        action = self.run.defer(node.action, self.frame)
         return SetTrigger(
             *(self.at(), node.place_kind, place, node.on_start, delay, action, output, priority)
         )
@@ -136,8 +136,8 @@ class Motions(Calls):
     def interrupt_declaration(self, node: ast.InterruptDeclaration) -> Steps[None]:
         """Declare an interrupt [INT-01]."""
         number = yield from self.integer(node.number)
-        condition = self.run.hand(node.condition, self.frame)
-        action = self.run.hand(node.action, self.frame)
+        condition = self.run.defer(node.condition, self.frame)
+        action = self.run.defer(node.action, self.frame)
         yield DeclareInterrupt(self.at(), number, node.is_global, condition, action)
 
     def interrupt_switch(self, node: ast.InterruptSwitch) -> Steps[None]:
@@ -154,7 +154,7 @@ class Motions(Calls):
         delay = yield from self._optional(node.delay)
         minimum = yield from self._optional(node.minimum)
         maximum = yield from self._optional(node.maximum)
-        cycle = self.run.hand(node.assignment, self.frame)
+        cycle = self.run.defer(node.assignment, self.frame)
         yield SwitchSignal(*(self.at(), node.keyword, True, name, cycle, delay, minimum, maximum))
 
     def signal_off(self, node: ast.SignalOff) -> Steps[None]:

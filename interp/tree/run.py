@@ -70,7 +70,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
-class Handed:
+class DeferredCode:
     """The code that a `CodeHandle` refers to, with the frame in which it was defined."""
 
     node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
@@ -126,7 +126,7 @@ class ProgramState:
         self.due = self.limits.per_slice
         self.changes = 0
         self._sizes: dict[Routine, int] = {}
-        self._codes: list[Handed] = []
+        self._codes: list[DeferredCode] = []
         self._numbers: dict[tuple[ast.Node, Frame], int] = {}
 
     def at(self, frame: Frame) -> At:
@@ -177,16 +177,16 @@ class ProgramState:
             size = self._sizes[routine] = cells_of_routine(self.program, routine)
         return size
 
-    def hand(
+    def defer(
         self, node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake, frame: Frame
     ) -> CodeHandle:
         """Return the handle of code that is to run later in this frame; equal for equal code."""
         number = self._numbers.setdefault((node, frame), len(self._codes))
         if number == len(self._codes):
-            self._codes.append(Handed(node, frame))
+            self._codes.append(DeferredCode(node, frame))
         return CodeHandle(number)
 
-    def handed(self, code: CodeHandle) -> Handed:
+    def deferred(self, code: CodeHandle) -> DeferredCode:
         """Return the code that a handle refers to."""
         return self._codes[code.number]
 

@@ -291,7 +291,7 @@ class Statements(Motions):
         if is_left_out(place):
             raise fault("uninitialised")
         if isinstance(place, SystemPlace) and place.path[0] == "$CYCFLAG" and len(place.path) == 2:
-            condition = self.run.hand(node.value, self.frame)
+            condition = self.run.defer(node.value, self.frame)
             yield requests.SetCyclicFlag(self.at(), int(place.path[1]), condition)
             return
         yield from self.store(place, (yield from self.value(node.value, place.type)))

@@ -8,12 +8,12 @@ from typing import Final
 import numpy as np
 import pytest
 
-from conformance.evaluation.duration_laws import delays, seconds_of
+from conformance.evaluation.duration_laws import duration_violations, seconds_of
 from conformance.evaluation.execution import Setup, observe
-from conformance.evaluation.motion_laws import misdeeds
+from conformance.evaluation.motion_laws import motion_violations
 from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
-from conformance.evaluation.place_laws import misplaced, mistimed
+from conformance.evaluation.place_laws import blend_violations, trigger_violations
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
 from interp.robot.arm import Approximation, Place, SplinePart
@@ -106,10 +106,10 @@ def broken(run: Observation) -> list[tuple[str, int]]:
     """Rules and lines of what is broken."""
     motions = tuple(ended(run))
     found = (
-        *misdeeds(run, motions),
-        *misplaced(motions),
-        *delays(motions),
-        *mistimed(run, motions),
+        *motion_violations(run, motions),
+        *blend_violations(motions),
+        *duration_violations(motions),
+        *trigger_violations(run, motions),
     )
     return [(one.rule, one.event.line if one.event else 0) for one in found]
 
@@ -154,7 +154,7 @@ def test_a_motion_ends_at_its_target(line: int, target: dict[str, float], rule: 
 def test_the_arm_is_at_rest_at_exact_stops() -> None:
     """Set-points that come two cycles late still move there."""
     late = with_path(lambda path: replace(path, axes=path.axes[[0, 0, *range(len(path.axes) - 2)]]))
-    laws = [one.law for one in misdeeds(late, tuple(ended(late)))]
+    laws = [one.law for one in motion_violations(late, tuple(ended(late)))]
     assert any("at rest" in law for law in laws)
 
 
@@ -283,13 +283,17 @@ def test_what_a_brake_holds_and_what_comes_behind_it_is_judged(line: int) -> Non
     assert run.path is not None
     assert [9] == [one.event.line for one in ended(run) if one.is_held]
     free = tuple(one for one in ended(run) if not one.is_held)
-    assert [] == [*misdeeds(run, tuple(ended(run))), *misplaced(free), *delays(free)]
+    assert [] == [
+        *motion_violations(run, tuple(ended(run))),
+        *blend_violations(free),
+        *duration_violations(free),
+    ]
     motions = [
         (time, replace(motion, target={"Y": 101.0}) if motion.at.line == line else motion)
         for time, motion in run.path.motions
     ]
     changed = replace(run, path=replace(run.path, motions=tuple(motions)))
-    found = misdeeds(changed, tuple(ended(changed)))
+    found = motion_violations(changed, tuple(ended(changed)))
     assert [("MOT-20", line)] == [(one.rule, one.event.line) for one in found if one.event]
 
 

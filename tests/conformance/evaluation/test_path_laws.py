@@ -8,7 +8,7 @@ import pytest
 
 from conformance.evaluation.evaluator import evaluate
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.path_laws import deviations
+from conformance.evaluation.path_laws import path_violations
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
 from interp.robot.models import default_machine
@@ -38,7 +38,7 @@ def turned(turn: Any) -> list[str]:
     """The rules that are broken where axis 1 turns so, in degrees by seconds."""
     axes = STILL.copy()
     axes[:, 0] = turn(TIMES / 1e6)
-    return [one.rule for one in deviations(seen("PTP", axes=axes))]
+    return [one.rule for one in path_violations(seen("PTP", axes=axes))]
 
 
 def test_a_path_keeps_the_limits_of_the_axes() -> None:
@@ -66,7 +66,7 @@ def test_the_arm_stands_between_motions(until: int, count: int) -> None:
         replace(last, time=int(TIMES[until - 1])),
         Event(2_000_000, "robot", "end", "", 0),
     )
-    found = deviations(replace(seen("PTP", axes=axes), events=ends))
+    found = path_violations(replace(seen("PTP", axes=axes), events=ends))
     assert count == sum(one.law.startswith("the arm stands") for one in found)
 
 
@@ -89,7 +89,7 @@ BULGE = np.sin(np.linspace(0.0, np.pi, COUNT))[:, None]
 )
 def test_a_motion_has_its_shape(kind: str, points: Any, law: str) -> None:
     """Lines are straight, circles are round; a spline has a shape of its own."""
-    assert [law] * bool(law) == [one.law for one in deviations(seen(kind, points))]
+    assert [law] * bool(law) == [one.law for one in path_violations(seen(kind, points))]
 
 
 def _late() -> Observation:
@@ -105,8 +105,8 @@ def test_a_motion_is_synchronous() -> None:
     share = np.linspace(0.0, 1.0, COUNT)
     axes = STILL.copy()
     axes[:, 0], axes[:, 5] = 20 * share, 10 * share
-    assert [] == [*deviations(seen("PTP", axes=axes))]
-    assert ["MOT-01.b"] == [one.rule for one in deviations(_late())][-1:]
+    assert [] == [*path_violations(seen("PTP", axes=axes))]
+    assert ["MOT-01.b"] == [one.rule for one in path_violations(_late())][-1:]
 
 
 def test_a_broken_law_fails_every_case_unless_its_clause_is_unconfirmed() -> None:
