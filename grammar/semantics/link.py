@@ -96,8 +96,11 @@ class Project:
         system: SystemScope,
         is_complete: bool | None,
         packages: frozenset[str] | None = None,
+        *,
+        takes_copies: bool = False,
     ) -> None:
         self.root = root
+        self.takes_copies = takes_copies
         self.system = system
         self.is_controller = is_controller
         self.modules = tuple(modules)
@@ -111,7 +114,7 @@ class Project:
         self._hidden: dict[Space, dict[str, Found]] = {space: {} for space in Space}
         self._gap: dict[Space, Reason] = {}
         unread = {space: _words_in_unread(modules, space) for space in Space}
-        self._globals = Globals(self._names, self._hidden, self._gap, unread, system)
+        self._globals = Globals(self._names, self._hidden, self._gap, unread, system, takes_copies)
         self._collect()
         if is_complete is None:
             is_complete = _has_all(modules) and not any(map(self._misses, modules))
@@ -294,8 +297,13 @@ def _is_of(files: Sequence[File], project: Project) -> bool:
     )
 
 
-def extended(project: Project, files: Iterable[File]) -> Project:
-    """Return the project with more files; a file replaces the one with the same path."""
+def extended(
+    project: Project, files: Iterable[File], *, takes_copies: bool | None = None
+) -> Project:
+    """Return the project with more files; a file replaces the one with the same path.
+
+    ``takes_copies`` says whether one of several equally near declarations of a name is taken.
+    """
     by_path = {module.path: module for module in project.modules}
     by_path |= {file.path: _module(file) for file in files}
     modules = list(by_path.values())
@@ -306,6 +314,7 @@ def extended(project: Project, files: Iterable[File]) -> Project:
         project.system,
         project.is_complete,
         project.packages,
+        takes_copies=project.takes_copies if takes_copies is None else takes_copies,
     )
 
 

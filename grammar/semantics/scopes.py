@@ -323,7 +323,8 @@ class Globals:
 
     ``names`` can have several declarations of a name. ``hidden`` are declarations that are not
     GLOBAL. ``gap`` says by space why a name without a declaration may still be declared; a space
-    without a reason is completely known. ``unread`` are the words of unreadable files.
+    without a reason is completely known. ``unread`` are the words of unreadable files. With
+    ``takes_copies`` one of several declarations is taken where none is nearer than the others.
     """
 
     names: Mapping[Space, dict[str, list[Found]]]
@@ -331,6 +332,7 @@ class Globals:
     gap: Mapping[Space, Reason]
     unread: Mapping[Space, frozenset[str]]
     system: SystemScope
+    takes_copies: bool = False
     _copies: dict[tuple[Space, str], Mapping[str, Answer]] = field(default_factory=dict)
 
     def forget(self) -> None:
@@ -352,7 +354,7 @@ class Globals:
             return found[0]
         if found:
             if (space, key) not in self._copies:
-                self._copies[space, key] = _by_folder(found)
+                self._copies[space, key] = _by_folder(found, takes_copies=self.takes_copies)
             return _seen_from(self._copies[space, key], folder)
         answer = self.system.find(space, key)
         if isinstance(answer, Found):
@@ -411,19 +413,27 @@ def nearest(found: Sequence[Found], folder: str) -> Answer:
     return _seen_from(_by_folder(found), folder)
 
 
-def _by_folder(found: Sequence[Found]) -> dict[str, Answer]:
+def _by_folder(found: Sequence[Found], *, takes_copies: bool = False) -> dict[str, Answer]:
     """Return the answer for each folder above a declaration.
 
-    With this index many copies cost no more than one.
+    With this index many copies cost no more than one. Of equally near copies the one whose file has
+    the name of the declaration is taken, then the one in the fewest folders, if one is to be taken.
     """
     below: dict[str, list[Found]] = {}
     for one in found:
         for folder in _upwards(one.module.folder if one.module else ""):
             below.setdefault(folder, []).append(one)
     return {
-        folder: some[0] if len(some) == 1 else MaybeElsewhere(Reason.AMBIGUOUS, tuple(some))
+        folder: min(some, key=_rank_of_copy)
+        if takes_copies or len(some) == 1
+        else MaybeElsewhere(Reason.AMBIGUOUS, tuple(some))
         for folder, some in below.items()
     }
+
+
+def _rank_of_copy(found: Found) -> tuple[bool, int, str]:
+    name, path = (found.module.name, found.module.path) if found.module else ("", "")
+    return name != found.symbol.key, path.count("/"), path
 
 
 def _seen_from(below: Mapping[str, Answer], folder: str) -> Answer:

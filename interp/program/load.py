@@ -347,6 +347,8 @@ def _checked(
 ) -> CheckedProgram:
     stand_ins: tuple[StandIn, ...] = ()
     if stands_in:
+        if project.clashes:  # people keep copies beside their programs
+            project = extended(project, (), takes_copies=True)
         whole = complete(project, sources)
         project, stand_ins = with_returns(whole.project), tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}

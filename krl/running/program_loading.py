@@ -1,7 +1,8 @@
 """The program that a file on the command line means: with all files of its project."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from itertools import chain
 from pathlib import Path, PurePath, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
@@ -15,10 +16,15 @@ if TYPE_CHECKING:
 
 #: Folders that lie directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
+_OF_CONTROLLERS = frozenset({*_PARTS, "SYSTEM", "MADA"})
 _ENDINGS = frozenset({".src", ".dat", ".sub"})
 #: Of a project that is larger, only what is named is read: 16 MB take some 20 s.
 _MOST_FILES, _MOST_BYTES = 20_000, 1 << 24
 _MOST_SHOWN = 5
+#: So many files at most are looked at to find out whether a folder holds mostly KRL.
+_MOST_BELOW = 2_000
+#: Behind a name in a comment nothing is called, but that does not matter here.
+_CALL = re.compile(r"\b([A-Z_]\w*)[ \t]*\(", re.IGNORECASE | re.ASCII)
 
 _T = TypeVar("_T")
 _P = TypeVar("_P", bound=PurePath)
@@ -136,7 +142,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     root = archive or project_root(file)
     is_mixed = archive is None and not _is_project(root)
     with as_input_errors(IngestError):
-        roots = _near(root, _Disk()) if is_mixed else [root]
+        roots = _Disk().below(root) or _near(root, _Disk()) if is_mixed else [root]
         found = [one for one in discover(roots) if isinstance(one, Found)]
     if archive is None:
         found = [one for one in found if one.member is None]
@@ -146,7 +152,9 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     if asked is None:
         raise InputError(f"{file}: no KRL program")
     if archive is not None:
-        inside = _root_around(paths[asked].parent, _Listing(paths.values()))
+        inside = _root_around(
+            paths[asked].parent, _Listing({path: one for one, path in paths.items()})
+        )
         root = archive / inside
         found = [one for one, path in paths.items() if path.is_relative_to(inside)]
     main = _shown(asked, root)
@@ -255,7 +263,8 @@ def project_root(path: Path) -> Path:
 
     That is what lies around R1 or STEU, or around a drive of another name (`is_drive`). A folder
     without such a layout around it is a project itself; the files of one that lies in a folder of
-    KRL, Program for instance, belong to that. A folder with a few programs among much else is not
+    KRL, Program for instance, belong to that, and so do those of folders beside it that have what
+    its programs call (`_calling`). A folder with a few programs among much else is not
     taken for one: of that a program has what it names (`read_sources`).
     """
     path = path.resolve()
@@ -268,6 +277,10 @@ class _Folders(Protocol[_Folder_contra]):
     def folders_in(self, folder: _Folder_contra) -> list[str]: ...
 
     def is_of_krl(self, folder: _Folder_contra) -> bool: ...
+
+    def below(self, folder: _Folder_contra) -> Sequence[PurePath]: ...
+
+    def calls(self, file: PurePath) -> Set[str]: ...
 
 
 def _root_around(folder: _P, folders: _Folders[_P]) -> _P:
@@ -284,7 +297,33 @@ def _root_around(folder: _P, folders: _Folders[_P]) -> _P:
             return one
     while folder != folder.parent and folders.is_of_krl(folder.parent):
         folder = folder.parent
-    return folder
+    return _calling(folder, folders)
+
+
+def _calling(folder: _P, folders: _Folders[_P]) -> _P:
+    """The folder around it that also holds what its programs call and do not have.
+
+    One that holds mostly files of the same names is a copy, or another controller.
+    """
+    own = folders.below(folder)
+    names = {path.stem.upper() for path in own}
+    called = {name for path in own for name in folders.calls(path)}
+    found = folder
+    for outer in folder.parents:
+        every = folders.below(outer)
+        more = [path for path in every if found not in path.parents]
+        others = {path.stem.upper() for path in more}
+        is_copy = more and 2 * len(others & names) >= min(len(others), len(names))
+        if is_copy or not every or any(_is_of_controller(one.relative_to(outer)) for one in more):
+            break
+        if called & (others - names):
+            found, names = outer, names | others
+    return found
+
+
+def _is_of_controller(path: PurePath) -> bool:
+    """Whether a file lies in a folder that every controller has."""
+    return not _OF_CONTROLLERS.isdisjoint(part.upper() for part in path.parts[:-1])
 
 
 def _is_controller(root: Path) -> bool:
@@ -296,7 +335,9 @@ def _is_controller(root: Path) -> bool:
 
 def _is_project(root: Path) -> bool:
     """Whether all KRL below the root of a project belongs to it."""
-    return _is_controller(root) or _Disk().is_of_krl(root)
+    disk = _Disk()
+    is_whole = disk.is_of_krl(root) or (not any(map(os.DirEntry.is_file, _entries(root))))
+    return _is_controller(root) or (is_whole and bool(disk.below(root)))
 
 
 def _near(folder: Path, disk: "_Disk") -> list[Path]:
@@ -343,6 +384,27 @@ class _Disk:
         files = [_is_krl(Path(one)) for one in _entries(folder) if one.is_file()]
         return 0 < len(files) <= 2 * sum(files)
 
+    def below(self, folder: Path) -> list[Path]:
+        """The KRL files in it and in its folders; none where there is much else, or a link."""
+        todo, seen = [folder], list[Path]()
+        while todo:
+            for one in _entries(todo.pop()):
+                if one.is_symlink() or len(seen) + len(todo) > _MOST_BELOW:
+                    return []
+                (todo if one.is_dir() else seen).append(Path(one))
+        files = [*filter(_is_krl, seen)]
+        return files if len(seen) <= 2 * len(files) else []
+
+    def calls(self, file: PurePath) -> Set[str]:
+        """The routines that a file calls, in upper case."""
+        from support.files.decode import Decoded, decode
+
+        try:
+            read = decode(Path(file).read_bytes())
+        except OSError:
+            return frozenset()
+        return _calls(read.text) if isinstance(read, Decoded) else frozenset()
+
 
 def _entries(folder: Path) -> "list[os.DirEntry[str]]":
     try:
@@ -352,14 +414,19 @@ def _entries(folder: Path) -> "list[os.DirEntry[str]]":
         return []
 
 
+def _calls(text: str) -> Set[str]:
+    return {name.upper() for name in _CALL.findall(text)}
+
+
 def _is_krl(path: Path) -> bool:
     return path.suffix.lower() in _ENDINGS
 
 
 class _Listing:
-    """Folders as the paths of the KRL files in an archive have them."""
+    """Folders as the paths of the KRL files in an archive have them, with these files."""
 
-    def __init__(self, files: Iterable[PurePosixPath]) -> None:
+    def __init__(self, files: "Mapping[PurePosixPath, Found]") -> None:
+        self._files = files
         self._with_krl: set[PurePosixPath] = set()
         self._folders: dict[PurePosixPath, dict[str, None]] = {}
         for file in files:
@@ -373,3 +440,12 @@ class _Listing:
 
     def is_of_krl(self, folder: PurePosixPath) -> bool:
         return folder in self._with_krl
+
+    def below(self, folder: PurePosixPath) -> list[PurePosixPath]:
+        return [one for one in self._files if folder in one.parents]
+
+    def calls(self, file: PurePath) -> Set[str]:
+        from support.files.discovery import SourceFile, read_source
+
+        read = read_source(self._files[PurePosixPath(file)])
+        return _calls(read.text) if isinstance(read, SourceFile) else frozenset()

@@ -97,6 +97,53 @@ def test_folder_above(tmp_path: Path, files: tuple[str, ...]) -> None:
     assert [tmp_path if is_taken else tmp_path / "cell"] == project_paths(inside)
 
 
+SIBLINGS = {
+    "one/cell/job/main.src": "DEF main ( )\ngrip ( )\nEND\n",
+    "one/cell/parts/lib/grip.src": "DEF grip ( )\nEND\n",
+    "one/cell/parts/other/idle.src": "DEF idle ( )\nEND\n",
+}
+
+
+def _written(folder: Path, files: dict[str, str]) -> Path:
+    for path, text in files.items():
+        (file := folder / path).parent.mkdir(exist_ok=True, parents=True)
+        file.write_text(text, "utf-8")
+    return folder
+
+
+def test_folders_beside_that_have_what_is_called(tmp_path: Path) -> None:
+    """The smallest folder around that has it is the project, on disk and in an archive."""
+    cell = _written(tmp_path, SIBLINGS) / "one" / "cell"
+    files = ["job/main.src", "parts/lib/grip.src", "parts/other/idle.src"]
+    assert files == _files(cell / "job" / "main.src")
+    assert [cell] == project_paths(cell / "job" / "main.src")
+    assert ["idle.src"] == _files(cell / "parts" / "other" / "idle.src")
+    with ZipFile(tmp_path / "cell.zip", "w") as archive:
+        for path in SIBLINGS:
+            archive.write(tmp_path / path, path)
+    assert files == _files(tmp_path / "cell.zip" / "one" / "cell" / "job" / "main.src")
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"one/cell/parts/main.src": "DEF main ( )\nEND\n"},  # another robot
+        {f"one/cell/notes/{number}.txt": "" for number in range(4)},  # much else
+    ],
+)
+def test_folders_beside_that_are_left_alone(tmp_path: Path, more: dict[str, str]) -> None:
+    """Programs of the same names, or other files for the most part, are no part of a project."""
+    _written(tmp_path, SIBLINGS | more)
+    assert ["main.src"] == _files(tmp_path / "one" / "cell" / "job" / "main.src")
+
+
+def test_link_beside_a_program(tmp_path: Path) -> None:
+    """A folder with links in it is no backup."""
+    _written(tmp_path, SIBLINGS)
+    (tmp_path / "one" / "cell" / "latest").symlink_to(tmp_path / "one" / "cell" / "job")
+    assert ["main.src"] == _files(tmp_path / "one" / "cell" / "job" / "main.src")
+
+
 def test_program_among_other_files(tmp_path: Path) -> None:
     """Of a folder in which other files are the most a program has what it names."""
     for name in (*MIXED, "lib/Lib/part.src", "lib/own.src", "text/more/far.src", "main.src"):
@@ -105,7 +152,7 @@ def test_program_among_other_files(tmp_path: Path) -> None:
     (tmp_path / "main.src").write_text("DEF main ( )\nhelp ( )\npart ( )\nEND\n", "utf-8")
     sources, _, left = read_sources(tmp_path / "main.src")
     assert ["help.src", "lib/Lib/part.src", "main.src"] == sorted(one.path for one in sources)
-    assert ["2 of 5 files that the program does not name"] == left
+    assert ["3 of 6 files that the program does not name"] == left
 
 
 def test_archive(tmp_path: Path) -> None:

@@ -464,6 +464,17 @@ def test_constants_that_are_only_passed() -> None:
     assert [1] == [event.fields["number"] for event in run.events if event.kind == "out"]
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_copies_of_a_routine(executor: str) -> None:
+    """Of equally near copies the one counts whose file has its name and lies highest."""
+    names = ["old/lib/grip", "lib/grip - Copy", "lib/grip", "new/grip"]
+    files = {"main.src": "DEF main ( )\ngrip ( )\nEND\n"}
+    for number, name in enumerate(names, start=1):
+        files[f"{name}.src"] = f"DEF grip ( )\n$OUT[{number}]=TRUE\nEND\n"
+    run = _run(_program(files), executor)
+    assert [3] == [event.fields["number"] for event in run.events if event.kind == "out"]
+
+
 def test_index_that_is_counted() -> None:
     """What counts the elements of an array begins with the first one."""
     run = _run(_main("BUFFER[HEAD]=5\nHEAD=HEAD+1\n$OUT[HEAD]=TRUE\n"))
