@@ -1,1 +1,1 @@
-"""Failures grouped by the edit that mends them, and edits tried."""
+"""Clustering: failures grouped by the grammar edit that repairs them, and the trial of edits."""

@@ -1,4 +1,4 @@
-"""Causes: lines that fail for one reason, and edits that would mend them."""
+"""Causes: groups of lines that fail for one reason, and the edits that repair them."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from grammar.notation.edits import Edit
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """An edit that was tried.
+    """Edits with the result of their trial.
 
-    ``mended`` are the lines that can be read with it, ``advanced`` those that fail further on;
-    ``breadth`` says how much it accepts besides, and ``accepts_negatives`` counts programs that
-    must stay rejected and no longer would be.
+    ``mended`` are the lines that can be read with them, ``advanced`` those that fail at a later
+    token. ``breadth`` estimates how much else they accept, and ``accepts_negatives`` is the number
+    of programs that must stay rejected and would be accepted.
     """
 
     edits: tuple[Edit, ...]
@@ -26,17 +26,17 @@ class Proposal:
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """Lines with one cause, and what would mend it, the best first."""
+    """Lines with one cause, and the proposals that repair them, the best first."""
 
     lines: tuple[int, ...]
     proposals: tuple[Proposal, ...]
 
 
-#: How many negatives the grammar would accept with the edits.
+#: Returns how many negatives the grammar would accept with the edits.
 NegativeCounter = Callable[[Sequence[Edit]], int]
 
 
 def no_negatives(edits: Sequence[Edit]) -> int:
-    """Count none, where there are no negatives."""
+    """Return 0: the `NegativeCounter` for a survey without negatives."""
     del edits
     return 0

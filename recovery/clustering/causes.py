@@ -1,13 +1,14 @@
-"""Causes: failing lines grouped by the edit that mends them.
+"""Finding causes: failing lines are grouped by the edit that repairs them.
 
-Two failures have one cause when the same edit mends both. Signatures give a first grouping; then,
-heaviest group first, the best edit is sought for its lines (`recovery.clustering.search`). It takes
-every line it mends, whatever its signature; lines of the group that it does not mend are searched
-again.
+Two failures have one cause if the same edit repairs both. Signatures give a first grouping. Then,
+for each group, heaviest first, the best edit for its lines is sought
+(`recovery.clustering.search`). It takes every line it repairs, whatever its signature; lines of the
+group that it does not repair are searched again.
 
-At the end causes are merged that one edit answers: one that is searched anew for causes whose lines
-begin with the same word, or made of the edits of two (`recovery.clustering.edit_merging`); and
-those whose lines fail for the same reason (`recovery.clustering.reason`).
+At the end, causes are merged if one edit repairs the lines of both: an edit sought anew for causes
+whose lines begin with the same word, or one made from the edits of two causes
+(`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
+(`recovery.clustering.reason`) are merged as well.
 """
 
 from __future__ import annotations
@@ -56,11 +57,11 @@ def find_causes(
     parsed_files: ParsedFiles = no_parsed_files,
     reasons: Sequence[Reason] = (),
 ) -> list[Cause]:
-    """Group ``lines`` by cause.
+    """Return the causes of ``lines``.
 
-    ``weights[i]`` is what line ``i`` holds back, ``reasons[i]`` why it fails; ``groups`` partition
-    the indices of the lines, the heaviest first. ``on_done`` gets each group dealt with.
-    ``file_trial`` has the files in which the lines fail, ``parsed_files`` those that can be read.
+    ``weights[i]`` is the number of files with line ``i``, ``reasons[i]`` why it fails. ``groups``
+    partition the indices of the lines, the heaviest group first. ``on_done`` is called after each
+    group. ``file_trial`` has the files in which the lines fail, ``parsed_files`` those that parse.
     """
     search = CauseSearch(recognizer, lines, weights, count_negatives, file_trial, parsed_files)
     causes: list[Cause] = []
@@ -74,7 +75,7 @@ def find_causes(
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:
-    """The causes of a group, one after the other; lines without any are one of their own."""
+    """Yield the causes of a group; lines for which no edit is found form a cause of their own."""
     left = [n for n in group if n in search.open]
     for _ in range(CAUSES_PER_GROUP):
         cause = search.best_for(left) if left else None
@@ -94,9 +95,10 @@ def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:
 
 
 def merged_by_first_word(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:
-    """The causes, those whose lines begin with the same word merged where one edit mends them.
+    """Return the causes; those whose lines begin with the same word are merged if one edit fits.
 
-    Each was searched for its own lines alone: what reads all of them may never have been tried.
+    Each cause was sought for its own lines alone, so an edit for all of them may never have been
+    tried.
     """
     led: dict[str, list[Cause]] = defaultdict(list)
     for cause in causes[:MOST_COMPARED]:
@@ -117,7 +119,7 @@ def merged_by_first_word(search: CauseSearch, causes: Sequence[Cause]) -> list[C
 def _found_for_all(
     search: CauseSearch, causes: Sequence[Cause]
 ) -> tuple[Cause | None, list[Cause]]:
-    """A cause in place of several of the causes, and which; nothing where there is none."""
+    """Return a cause that replaces several of the causes, and these; ``None`` if there is none."""
     lines = sorted(n for cause in causes for n in cause.lines)
     found = search.best_from_scratch(lines)
     if found is None:
@@ -139,9 +141,9 @@ def _found_for_all(
 def merged_by_reason(
     search: CauseSearch, causes: Sequence[Cause], reasons: Sequence[Reason]
 ) -> list[Cause]:
-    """The causes, those merged most of whose lines fail for the same reason.
+    """Return the causes; those most of whose lines fail for the same reason are merged.
 
-    The proposals of one are in the order of what they mend of all of its lines.
+    The proposals of a merged cause are sorted by what they repair of all its lines.
     """
     alike: dict[Reason | int, list[Cause]] = defaultdict(list)
     for place, cause in enumerate(causes):
@@ -167,7 +169,7 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
 
 
 def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:
-    """The causes, those merged that lack the same in several places."""
+    """Return the causes; those whose edits are one change in several places are merged."""
     out: list[Cause] = []
     for cause in causes:
         for place, other in enumerate(out[:MOST_COMPARED] if cause.proposals else ()):
@@ -181,7 +183,7 @@ def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]
 
 
 def _as_one(search: CauseSearch, first: Cause, second: Cause) -> Cause | None:
-    """The two as one cause, where one edit mends what the best edits of both mend."""
+    """Return both causes as one if one edit repairs what their best edits repair, else ``None``."""
     one, other = first.proposals[0], second.proposals[0]
     negatives = one.accepts_negatives + other.accepts_negatives
     lines = tuple(sorted({*first.lines, *second.lines}))
@@ -196,7 +198,7 @@ def _as_one(search: CauseSearch, first: Cause, second: Cause) -> Cause | None:
 def _for_both(
     profile: GrammarProfile, one: Proposal, other: Proposal
 ) -> Iterator[tuple[tuple[Edit, ...], int]]:
-    """Edits that might do what two proposals do."""
+    """Yield edits, with their breadth, that may do what two proposals do together."""
     if changed_rules(one.edits) == changed_rules(other.edits):
         yield other.edits, other.breadth
     pair = [Candidate(p.edits, p.breadth) for p in (one, other)]
@@ -210,7 +212,10 @@ def _for_both(
 
 
 def _may_be_chosen(profile: GrammarProfile, edit: Edit, place: int) -> bool:
-    """Whether words there may be a choice: those that begin alternatives name constructs."""
+    """Return whether words at a place may become a choice.
+
+    A word that begins an alternative names a construct, so it may not.
+    """
     if not isinstance(edit, AddAlternative) or place > 0:
         return True
     is_form = len(edit.text.split(" ")) >= FORM_SYMBOLS

@@ -1,4 +1,4 @@
-"""Clusters: failures grouped by cause, ranked by the files they keep from parsing."""
+"""Clusters: failures grouped by cause, ranked by the number of files they keep from parsing."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from support.parallel.progress import Progress, no_progress
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A failure and the file it is in."""
+    """A failure with its file."""
 
     file: SurveyedFile
     failed: FailingLine
@@ -35,11 +35,11 @@ class Member:
 class Cluster:
     """Failures with one cause.
 
-    ``title`` says to people what is wrong; ``id`` is made from ``signature``, so it stays while the
-    signature of the failing line does. ``unlocks``: files that would parse if only it were mended.
-    ``line`` is the failing line that represents it and ``example`` a failure of that line;
-    ``restores`` has for each of the ``proposals`` the files in which it mends every line that
-    fails by itself.
+    ``title`` is a description for people. ``id`` is derived from ``signature``, so it is stable as
+    long as the signature of the failing line is. ``unlocks`` is the number of files that would
+    parse if only this cluster were repaired. ``line`` is the failing line that represents the
+    cluster, and ``example`` a failure of that line. ``restores`` lists, for each of the
+    ``proposals``, the files in which it repairs every line that fails by itself.
     """
 
     id: str
@@ -55,17 +55,17 @@ class Cluster:
 
     @property
     def files(self) -> tuple[SurveyedFile, ...]:
-        """Distinct contents with a failure of this cluster, in the order of the survey."""
+        """Distinct files with a failure of this cluster, in the order of the survey."""
         return tuple({m.file.digest: m.file for m in self.members}.values())
 
 
 @dataclass(frozen=True, slots=True)
 class Clusters:
-    """All clusters of a survey, what holds back most first, and the greedy order of mending.
+    """All clusters of a survey by rank, and the greedy order in which to repair them.
 
-    ``order`` lists (cluster, files that parse once it and all before it are mended);
-    ``cluster_of`` maps (digest, index of a failure) to the cluster's id; ``contexts`` are those of
-    the survey's forms.
+    ``order`` lists pairs of a cluster and the number of files that parse once it and all before it
+    are repaired. ``cluster_of`` maps (digest, index of a failure) to the id of its cluster.
+    ``contexts`` are those of the survey's forms.
     """
 
     ranked: tuple[Cluster, ...]
@@ -76,7 +76,7 @@ class Clusters:
 
 
 def text_on_disk(file: SurveyedFile) -> str:
-    """The text of a file, read again; empty where it has changed since the survey."""
+    """Return the text of a file, read again; empty if it has changed since the survey."""
     return "\n".join(file.lines())
 
 
@@ -88,10 +88,10 @@ def cluster(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> Clusters:
-    """Group the failures of a survey by cause.
+    """Return the failures of a survey grouped by cause.
 
-    ``count_negatives`` counts the negatives that an edit accepts; ``text_of`` gives the text of a
-    file again; ``on_found`` and ``on_done`` report progress.
+    ``count_negatives`` counts the negatives that an edit accepts; ``text_of`` returns the text of a
+    file; ``on_found`` and ``on_done`` report progress.
     """
     groups = _FailingLines(found)
     causes: Sequence[Cause] = ()
@@ -116,7 +116,7 @@ def cluster(
 
 
 class _FailingLines:
-    """The failing lines of a survey: distinct ones, and where each occurs."""
+    """The distinct failing lines of a survey, and where each occurs."""
 
     def __init__(self, found: Survey) -> None:
         self.recognizer = Recognizer(found.grammar)
@@ -134,7 +134,7 @@ class _FailingLines:
         numbers: dict[LinePattern, int] = {}
         signatures: list[Signature] = []
         self.line_of: dict[tuple[str, int], int] = {}
-        self.specimens: list[Member] = []  # of each line the shortest
+        self.specimens: list[Member] = []  # the shortest occurrence of each line
         files: dict[int, dict[str, int]] = defaultdict(dict)
         for file, index, failed in direct:
             form = found.forms[failed.form]
@@ -167,7 +167,7 @@ class _FailingLines:
     def failing(
         self, found: Survey, text_of: Callable[[SurveyedFile], str]
     ) -> Iterator[FailingFile]:
-        """The files with failing lines, to be read when needed."""
+        """Yield the files with failing lines; their texts are read when needed."""
         for file in found.files:
             lines = tuple(
                 (failed.line, self.line_of[file.digest, index])
@@ -197,7 +197,7 @@ def _assembled(
             if line is not None:
                 direct.add(line)
                 last = cause_of[line]
-            assert last is not None  # nothing follows from nothing
+            assert last is not None  # the first failure of a file follows from no other
             members[last].append(Member(file, failed))
             by_failure[file.digest, index] = last
         if direct:
@@ -240,7 +240,7 @@ def _assembled(
 
 
 def _heaviest(cause: Cause, groups: _FailingLines) -> int:
-    """The line that represents a cause: the heaviest of those that its best proposal mends."""
+    """Return the line that represents a cause: the heaviest one its best proposal repairs."""
     mended = cause.proposals[0].mended & set(cause.lines) if cause.proposals else ()
     return max(
         mended or cause.lines,
@@ -249,7 +249,7 @@ def _heaviest(cause: Cause, groups: _FailingLines) -> int:
 
 
 def _title(cause: Cause, number: int, groups: _FailingLines, writer: TitleWriter) -> str:
-    """What is wrong with the line of that number, which represents a cause."""
+    """Return the title for the line with this number, which represents a cause."""
     if groups.reasons[number] == AS_NAME:
         return writer.title_of_names(
             [groups.lines[n] for n in cause.lines if groups.reasons[n] == AS_NAME]
@@ -301,7 +301,7 @@ def _identity(signature: str) -> str:
 
 
 def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
-    """Texts made distinct by the rule and then by a number where two clusters share one."""
+    """Return the texts made unique, by the rule and then by a number."""
     plain = Counter(texts)
     out: list[str] = []
     for text, rule in zip(texts, rules, strict=True):
@@ -316,7 +316,11 @@ def _greedy(
     needs: Sequence[tuple[SurveyedFile, frozenset[int]]],
     clusters: Sequence[Cluster],
 ) -> Iterator[tuple[Cluster, int]]:
-    """Mend next what makes most files parse, or brings most of them nearest to it."""
+    """Yield the clusters in a greedy order, with the number of files that parse after each.
+
+    The next cluster is the one that makes most files parse or, on a tie, brings most files closest
+    to it.
+    """
     parsed = sum(len(f.places) for f in files if not f.failures)
     waiting: Counter[frozenset[int]] = Counter()
     for file, wanted in needs:

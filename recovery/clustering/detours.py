@@ -1,10 +1,11 @@
-"""Edits as detours: ways around, all on one recogniser.
+"""Trial of edits without a new recogniser: an edit is a detour in one shared network.
 
-An edit that only adds lets a rule be left at a place, another text be read, and the rule be taken
-up again at a place behind. The texts and the rests of rules become more positions of one network,
-which nothing in the grammar leads to. So all edits share one automaton: a line is read up to where
-an edit can be used, over its detour, and from there on as the grammar reads it, mostly in states
-that are known. That costs far less than a recogniser for each edit.
+An edit that only adds something lets a rule be left at one place, another text be read, and the
+rule be continued at a later place. These texts, and the remainders of the rules, become additional
+positions of one network, to which nothing in the grammar itself leads. So all edits share one
+automaton. A line is read up to a place where an edit can be used, over its detour, and then on as
+the grammar reads it, mostly through cached states. This is far cheaper than one recogniser for each
+edit.
 """
 
 from __future__ import annotations
@@ -24,15 +25,15 @@ from grammar.parser.network import Network, Reach, RuleAutomaton, exact_automata
 from grammar.parser.recognizer import Recognizer, State
 from recovery.tuning import MOST_READINGS
 
-#: Where a detour begins, and the position to return to behind it, where it is a text.
+#: The first position of a detour, and the position to return to after it, if it reads a text.
 _Detour = tuple[int, int | None]
 
 
 @dataclass(frozen=True, slots=True)
 class Detours:
-    """What edits add: the detours from each position, the words they reserve.
+    """Edits as detours: those that begin at each position, and the words the edits reserve.
 
-    ``starts`` remembers what they lead to from a core, for a kind of token.
+    ``starts`` caches the core to which they lead from a core, for a token kind.
     """
 
     at: dict[int, list[_Detour]]
@@ -42,7 +43,7 @@ class Detours:
 
 @dataclass(frozen=True, slots=True)
 class Path:
-    """Tokens that cannot all be read, and the states before each until then."""
+    """Tokens that cannot all be read, and the state before each token up to the failure."""
 
     kinds: Sequence[int]
     states: Sequence[State]
@@ -51,10 +52,10 @@ class Path:
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """The detour of one edit, and the place of its rule where it begins, its start where none.
+    """The detour of one edit; it begins at ``place`` in its rule, or at its start if ``None``.
 
-    ``rest`` are the positions of the rest of the rule behind it, of which it does not begin at
-    the one that is ``never`` to be left by it again.
+    ``rest`` are the positions of the remainder of the rule after the detour. At the position
+    ``never`` among them the detour must not begin again.
     """
 
     rule: str
@@ -69,7 +70,7 @@ _NOTHING = RuleAutomaton(({},), frozenset([0]), (frozenset(),))
 
 
 class DetourReader:
-    """Reads under edits of one grammar."""
+    """Reads tokens under edits of one grammar."""
 
     def __init__(self, grammar: Grammar, network: Network) -> None:
         self._grammar = grammar
@@ -111,19 +112,19 @@ class DetourReader:
         self.recognizer.most_ways = MOST_READINGS
 
     def kind(self, word: str) -> int:
-        """The kind of a word that edits reserve."""
+        """Return the token kind of a word that edits reserve."""
         return self._kinds.setdefault(word, len(self._lexer.names) + len(self._kinds))
 
     # ------------------------------------------------------------------------------- edits
 
     def detours(self, edits: Sequence[Edit]) -> Detours | None:
-        """The edits as detours; ``None`` where they are more than that.
+        """Return the edits as detours, or ``None`` if they cannot be expressed as such.
 
-        Raises `GrammarError` where they do not fit the grammar.
+        Raises `GrammarError` if they do not fit the grammar.
         """
         inserted = [(edit.rule, edit.at) for edit in edits if isinstance(edit, Insert)]
         if not all(isinstance(e, _ADDING) for e in edits) or len({*inserted}) < len(inserted):
-            return None  # of two texts at one place either may be left out
+            return None  # two texts inserted at one place: each of them is optional
         words = frozenset(edit.name for edit in edits if isinstance(edit, AddToken))
         if not self._grammar.by_name.keys().isdisjoint(words):
             raise GrammarError("a token exists already")
@@ -149,7 +150,7 @@ class DetourReader:
         return Detours(at, words)
 
     def _detour(self, edit: Edit, words: frozenset[str]) -> _Way | None:
-        """What an edit adds; ``None`` where it does more."""
+        """Return the detour of an edit, or ``None`` if the edit does more than add one."""
         assert isinstance(edit, AddAlternative | Insert | Widen | MakeOptional)
         rule = self._grammar.by_name.get(edit.rule)
         if rule is None or rule.is_lexer:
@@ -174,7 +175,7 @@ class DetourReader:
         return _Way(edit.rule, place, (rest[0], None), rest)
 
     def _text(self, text: str, words: frozenset[str]) -> tuple[int, bool, bool]:
-        """Where a text begins, whether it may be left out, whether it is a choice unbracketed."""
+        """Return a text's first position, whether it may be empty, whether it is a bare choice."""
         known = self._texts.get(text)
         if known is None:
             rule = _read(text)
@@ -192,7 +193,10 @@ class DetourReader:
         return known[:3]
 
     def _rest(self, rule: str, at: Address, *, is_inserted: bool = False) -> range:
-        """The positions of a rule from an address on; others behind what is inserted there."""
+        """Return the positions of the remainder of a rule from an address on.
+
+        Text that is inserted there has a remainder of its own.
+        """
         found = self._rests.get((rule, at, is_inserted))
         if found is None:
             try:
@@ -203,13 +207,13 @@ class DetourReader:
         return found
 
     def _end(self, rule: str) -> int:
-        """A position at the end of a rule."""
+        """Return a position at the end of a rule."""
         if rule not in self._ends:
             self._ends[rule] = self._added(rule, _NOTHING)[0]
         return self._ends[rule]
 
     def _added(self, rule: str, automaton: RuleAutomaton) -> range:
-        """The positions that an automaton gets, as part of a rule."""
+        """Add the states of an automaton as positions of a rule, and return these."""
         base = len(self._rule)
         for state, edges in enumerate(automaton.edges):
             calls, shifts = [], {}
@@ -229,7 +233,7 @@ class DetourReader:
     # ----------------------------------------------------------------------------- reading
 
     def read(self, detours: Detours, paths: Iterable[Path]) -> Iterator[int | None]:
-        """How many tokens of each path can be read with the edits; ``None`` where all can be."""
+        """Yield how many tokens of each path can be read with the edits; ``None`` for all."""
         paths = list(paths)
         cores = frozenset[Core]().union(*(self._cores_at[position] for position in detours.at))
         for path in paths:
@@ -243,7 +247,7 @@ class DetourReader:
         recognizer, kinds = self.recognizer, path.kinds
         furthest = len(path.states) - 1
         met: set[tuple[State, int]] = set()
-        # from the failure backwards: what is missing is mostly missing there
+        # from the failure backwards, because something is mostly missing there
         todo = [(state, n) for n, state in enumerate(path.states) if state.core in cores]
         while todo:
             state, number = todo.pop()
@@ -252,9 +256,9 @@ class DetourReader:
                 continue
             opened = State(start, state.tail)
             state = recognizer.settled(opened)
-            if state is not opened:  # frames that a detour returns to may have more of them
+            if state is not opened:  # more detours may begin at the frames taken back
                 todo.append((state, number))
-            # what the path itself comes to fails where it does
+            # a state on the path itself fails where the path does
             while (state, number) not in met and path.states[number : number + 1] != [state]:
                 met.add((state, number))
                 following = recognizer.step(state, kinds[number])
@@ -269,7 +273,7 @@ class DetourReader:
         return furthest
 
     def path(self, kinds: Sequence[int]) -> Path:
-        """How far tokens can be read without edits."""
+        """Return how far tokens can be read without edits."""
         recognizer = self.recognizer
         state: State | None = recognizer.start
         states = []
@@ -288,7 +292,7 @@ class DetourReader:
         return Path(kinds, states, cores)
 
     def _start(self, detours: Detours, core: Core, kind: int) -> Core | None:
-        """The core of all that detours from a core lead to, where it can read the kind of token."""
+        """Return the core after all detours from a core; ``None`` if it cannot read the token."""
         try:
             return detours.starts[core, kind]
         except KeyError:
@@ -300,7 +304,7 @@ class DetourReader:
             return start
 
     def _stands(self, reach: Reach) -> dict[int, list[tuple[int, ...]]]:
-        """The positions of rules as they are that are reached, with those to return to."""
+        """Return the positions reached without reading, with the positions to return to."""
         found: dict[int, list[tuple[int, ...]]] = {}
         for position, returns in reach.sites:
             found.setdefault(position, []).append(returns)
@@ -331,12 +335,12 @@ class DetourReader:
         return recognizer.state_of(found).core if found else None
 
 
-#: What stands between blanks outside of brackets and quotes, brackets in brackets taken for one.
+#: The parts of a text between blanks; parentheses and quoted texts are not split.
 _PARTS = re.compile(r"(?:'(?:[^'\\]|\\.)*'|\((?:[^()']|'(?:[^'\\]|\\.)*')*\)|[^\s'()])+")
 
 
 def _read(text: str) -> Rule:
-    """The text as a rule without a name of its own; most of its parts have been read before."""
+    """Return a text as a rule without a name; most of its parts are in the cache of rules."""
     parts = _PARTS.findall(text)
     if " ".join(parts) != text or "|" in parts:
         return read_rule(f"text : {text} ;")

@@ -1,8 +1,8 @@
 """Merging of edits: the same word or phrase is missing in several places.
 
-``A == B`` and ``A < B`` fail at different signs, but the edits that mend them differ in one word at
-the same place; a phrase may be missing in two rules, or two lost alternatives may be all that ever
-used a rule. Such edits are found here and written as one.
+``A == B`` and ``A < B`` fail at different signs, but the edits that repair them differ in one word
+at the same place. Other examples are a phrase that is missing in two rules, and two missing
+alternatives that were the only users of a rule. Such edits are found here and written as one.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_MERGED_EDITS
 
-# Words of a text, a choice of words taken for one.
+# Words of a text; a choice in parentheses counts as one.
 _WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 
 
 def combined_edits(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
-    """The edits of both, each once, in an order in which no edit moves the place of another."""
+    """Return the edits of both without duplicates, ordered so that none shifts another's place."""
     edits = list(dict.fromkeys((*first, *second)))
     tokens = [e for e in edits if isinstance(e, AddToken)]
     places = [e for e in edits if not isinstance(e, AddToken | AddAlternative)]
@@ -34,15 +34,15 @@ def combined_edits(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit,
 
 
 def _main(profile: GrammarProfile, edits: Sequence[Edit]) -> list[Edit]:
-    """The edits but for those that reserve words."""
+    """Return the edits without those that reserve words."""
     reserving = profile.vocabulary.reserve(e.name for e in edits if isinstance(e, AddToken))
     return [e for e in edits if e not in reserving]
 
 
 def are_one_change(profile: GrammarProfile, first: Sequence[Edit], second: Sequence[Edit]) -> bool:
-    """Whether two edits accept one thing: a phrase, or what alone used a rule.
+    """Return whether two edits are one change: the same phrase, or the users of one unused rule.
 
-    Only a few edits make one cause, so that a reader sees at a glance what they have in common.
+    The number of edits is limited, so that a reader sees at a glance what they have in common.
     """
     if len({*_main(profile, first), *_main(profile, second)}) > MOST_MERGED_EDITS:
         return False
@@ -63,10 +63,10 @@ def are_one_change(profile: GrammarProfile, first: Sequence[Edit], second: Seque
 def merged_as_form(
     profile: GrammarProfile, first: Sequence[Edit], second: Sequence[Edit]
 ) -> tuple[Edit, ...] | None:
-    """The edits of both with one text, where both accept a form that one new word begins.
+    """Return the edits of both with one text, if the same new word begins the form in both.
 
-    No rule has had a use for the word, and two rules are to have one now: they get the longer
-    form. ``None`` where that is not so.
+    No rule may use the word yet. The two rules both get the longer form. Returns ``None`` if the
+    edits are not of this kind.
     """
     one, other = first[-1], second[-1]
     if not isinstance(one, AddAlternative) or not isinstance(other, AddAlternative):
@@ -86,9 +86,9 @@ def merged_as_choice(
     candidates: Sequence[Candidate],
     allowed: Callable[[Edit, int], bool] = lambda _edit, _place: True,
 ) -> list[Candidate]:
-    """Candidates that differ in one word only, as one with a choice of words.
+    """Return one candidate with a choice of words for candidates that differ in one word only.
 
-    ``allowed`` says whether words at a place in the text of an edit may be a choice.
+    ``allowed`` says whether words at a place in the text of an edit may become a choice.
     """
     families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
     for candidate in candidates:
@@ -110,7 +110,7 @@ def merged_as_choice(
 
 
 def _choices(word: str) -> list[str]:
-    """The words of a choice, or the one word that is none."""
+    """Return the words of a choice in parentheses, or the single word."""
     return word[1:-1].split(" | ") if word[0] == "(" and word[-1] == ")" else [word]
 
 

@@ -1,7 +1,7 @@
-"""Trying an edit: which failing lines can be read once the grammar has it?
+"""Trial of an edit: which failing lines can be read under the edited grammar?
 
-A line is tried where it failed: the shortest tokens that lead to the state it began in, then the
-line itself. No code is generated and no file is read again, so a candidate costs milliseconds.
+A line is tried after the shortest tokens that lead to the state in which it began. No code is
+generated and no file is read again, so a candidate costs milliseconds.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from support.gc_pause import gc_paused
 
 @dataclass(frozen=True, slots=True)
 class TrialResult:
-    """Indices of the lines that can be read with an edit, and of those that fail further on."""
+    """Indices of lines that can be read with an edit, and of those that fail at a later token."""
 
     mended: frozenset[int]
     advanced: frozenset[int]
@@ -37,9 +37,9 @@ class TrialResult:
 
 @gc_paused()  # recognisers of earlier trials are garbage in cycles
 def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
-    """A recogniser of the edited grammar, or ``None`` where the edits do not fit it.
+    """Return a recogniser of the edited grammar, or ``None`` if the edits do not fit it.
 
-    Token kinds keep their numbers; keywords the edits reserve are added behind them.
+    Token kinds keep their numbers; the keywords that the edits reserve follow them.
     """
     try:
         grammar = apply(recognizer.grammar, edits)
@@ -55,7 +55,7 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
             changed = changed_rules(edits)
             for name in sorted(changed):
                 network = with_rule(network, grammar, grammar.by_name[name], lexer)
-            if network.lexer is not lexer:  # words reserved, and no rule has changed
+            if network.lexer is not lexer:  # words were reserved and no rule changed
                 network = replace(network, lexer=lexer)
     except (GrammarError, KeyError):
         return None
@@ -67,7 +67,7 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
 
 
 def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:
-    """The rules whose text the edits change."""
+    """Return the rules whose text the edits change."""
     return frozenset(
         e.rule
         for e in edits
@@ -76,7 +76,7 @@ def changed_rules(edits: Sequence[Edit]) -> frozenset[str]:
 
 
 class EditTrial:
-    """Tries edits on failing lines of one grammar."""
+    """Tries edits on the failing lines of one grammar."""
 
     def __init__(self, recognizer: Recognizer, lines: Sequence[LinePattern]) -> None:
         self.recognizer = recognizer
@@ -99,17 +99,18 @@ class EditTrial:
                 self._by_keyword[keyword].add(number)
 
     def _way_to(self, paths: Paths, before: Frames) -> list[int]:
-        """The shortest tokens after which a line can begin in this state, its line end included.
+        """Return the shortest tokens after which a line can begin in this state, with a line end.
 
-        A line that may begin in several ways may do so only behind some of the ways that lead to
-        one of them: a routine may follow a routine, but not a data list.
+        A line that can begin in several configurations may do so only after some of the paths to
+        one of them: a routine may follow a routine, but not a data list. So the path with most of
+        the configurations is chosen.
         """
         ways = sorted(map(self._ended, map(paths.prefix, before)), key=lambda way: (len(way), way))
         wanted = frozenset(before)
         return max(ways, key=lambda way: len(wanted & self._after(way)))  # the first of equals
 
     def _ended(self, prefix: list[int]) -> list[int]:
-        """A way with a line end behind it, where one can be there."""
+        """Return the tokens with a line end appended, if one can follow."""
         line_kind = self.recognizer.line_kind
         if prefix and prefix[-1] != line_kind:
             ended = [*prefix, line_kind]
@@ -118,12 +119,12 @@ class EditTrial:
         return prefix
 
     def _after(self, way: Sequence[int]) -> frozenset[tuple[int, ...]]:
-        """The configurations that a way leads to."""
+        """Return the configurations after these tokens."""
         state, _ = self.recognizer.run(self.recognizer.start, way)
         return frozenset(self.recognizer.frames(state))
 
     def _rules_at_work(self, line: LinePattern) -> set[str]:
-        """Rules in which an edit could change how this line is read."""
+        """Return the rules in which an edit could change how this line is read."""
         recognizer, form = self.recognizer, line.form
         rule_of = recognizer.network.rule
         state = recognizer.restore(form.before)
@@ -138,7 +139,7 @@ class EditTrial:
         return rules
 
     def relevant(self, edits: Sequence[Edit]) -> list[int]:
-        """Lines that the edits might mend."""
+        """Return the lines that the edits might repair."""
         keywords = [e.name for e in edits if isinstance(e, AddToken)]
         if keywords and not any("|" in getattr(e, "text", "") for e in edits):
             found = set.union(*(self._by_keyword.get(k, set()) for k in keywords))
@@ -149,7 +150,7 @@ class EditTrial:
         return sorted(found.union(*(self._by_keyword.get(k, set()) for k in keywords)))
 
     def wider(self, edits: Sequence[Edit]) -> Recognizer | None:
-        """A recogniser with the edits, or ``None`` where they do not fit; some are remembered."""
+        """Return a recogniser with the edits, cached; ``None`` if they do not fit."""
         key = tuple(edits)
         found = self._wider.pop(key) if key in self._wider else edited(self.recognizer, edits)
         self._forget_some()
@@ -157,7 +158,7 @@ class EditTrial:
         return found
 
     def _forget_some(self) -> None:
-        """Keep so many recognisers, and fewer where they are large: one may be as all others."""
+        """Drop the least recently used recognisers, by number and by total size."""
         size = sum(kept.configurations for kept in self._wider.values() if kept is not None)
         while len(self._wider) >= MOST_RECOGNIZERS_KEPT or size > MOST_CONFIGURATIONS_KEPT:
             oldest = self._wider.pop(next(iter(self._wider)))
@@ -166,7 +167,7 @@ class EditTrial:
                 oldest.release()
 
     def result(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> TrialResult:
-        """Try the edits on the lines ``among`` those they might mend, by default on all of them."""
+        """Return the result of the edits on the lines ``among``, by default on all of them."""
         chosen = self.relevant(edits)
         if among is not None:
             wanted = frozenset(among)
@@ -182,7 +183,7 @@ class EditTrial:
     def _failures(
         self, edits: Sequence[Edit], numbers: Iterable[int]
     ) -> Iterator[tuple[int, int | None]]:
-        """Lines with the token at which each fails under the edits; none where they do not fit."""
+        """Yield each line with the index at which it fails under the edits; none for a misfit."""
         if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
             self._reader.recognizer.release()
             self._forget_paths()
@@ -201,7 +202,10 @@ class EditTrial:
                 yield number, wider.run(start, kinds)[1]
 
     def _path(self, number: int, words: frozenset[str]) -> Path:
-        """What leads to a line and what it reads before it fails, with these words reserved."""
+        """Return the tokens that lead to a line and its own, read until the failure.
+
+        The ``words`` that the edits reserve are keywords in it.
+        """
         line = self.lines[number]
         meant = tuple((place, word) for place, word in line.keywords if word in words)
         known = self._paths.get((number, meant))
@@ -214,12 +218,15 @@ class EditTrial:
         return known
 
     def _forget_paths(self) -> None:
-        """Begin with a new reader."""
+        """Replace the reader by a new one."""
         self._reader = DetourReader(self.recognizer.grammar, self.recognizer.network)
         self._paths: dict[tuple[int, tuple[tuple[int, str], ...]], Path] = {}
 
     def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
-        """Whether one of the lines has two readings with the edits; the shortest few are read."""
+        """Return whether one of the lines has two readings with the edits.
+
+        Only a few of the shortest lines are examined.
+        """
         wider = self.wider(edits)
         if wider is None:
             return False
@@ -232,7 +239,7 @@ class EditTrial:
     def read_by(
         self, wider: Recognizer, edits: Sequence[Edit], numbers: Iterable[int]
     ) -> Iterator[tuple[int, State, Sequence[int]]]:
-        """Lines with the states they begin in and their tokens, as ``wider`` has them."""
+        """Yield the lines with their start states and their tokens, as ``wider`` numbers these."""
         new = {e.name: wider.lexer.kind_of[e.name] for e in edits if isinstance(e, AddToken)}
         starts: dict[Frames, State | None] = {}
         for number in numbers:
@@ -242,7 +249,7 @@ class EditTrial:
                 state, failed = wider.run(wider.start, self._prefix[before])
                 starts[before] = state if failed is None else None
             start = starts[before]
-            if start is None:  # the edits took away what leads to this line
+            if start is None:  # the edits removed the path to this line
                 continue
             kinds = list(line.form.kinds)
             for place, keyword in line.keywords if new else ():

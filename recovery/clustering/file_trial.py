@@ -1,9 +1,9 @@
-"""Trial of an edit on whole programs: how far they can be read, and which failures are gone.
+"""Trial of an edit on whole files: how far they can be read, and which failures disappear.
 
-A line can be read and the file still not: the edit may accept it at the wrong place, once
-where it comes again, or without what belongs to it on later lines. So the best edits for a line
-are tried on some of the files that fail there first. And a line that fails only because a line
-before it was not understood can be read once that one is: it has the same cause.
+A line may be readable and its file still not: the edit may accept it at the wrong place, only once
+although it is repeated, or without the lines that belong to it. So the best edits for a line are
+tried on some files that fail there first. Conversely, a line that fails only because an earlier
+line was not understood can be read once that one is; it then has the same cause.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from recovery.tuning import (
 class FailingFile:
     """A file with failing lines.
 
-    ``failing`` are the lines that fail by themselves, as (line in the file from 1, number of the
-    failing line), in order; ``text`` gives the text when it is needed.
+    ``failing`` are the lines that fail by themselves, in order, as pairs of the line in the file
+    (from 1) and the number of the failing line. ``text`` returns the text when it is needed.
     """
 
     digest: str
@@ -39,7 +39,7 @@ class FailingFile:
 
 
 class FileTrial:
-    """Tries edits on the files in which lines fail; files are read when they are needed."""
+    """Tries edits on the files in which lines fail; a file is read when it is needed."""
 
     def __init__(self, recognizer: Recognizer, files: Iterable[FailingFile] = ()) -> None:
         self._recognizer = recognizer
@@ -53,13 +53,13 @@ class FileTrial:
                 self._occurrences[line].append((place, at))
 
     def texts(self, lines: Iterable[int]) -> list[str]:
-        """Some of the texts that fail first at one of the lines."""
+        """Return some of the texts whose first failure is one of the lines."""
         return [text for text, _, _ in self._of(lines)]
 
     def readable_share(self, wider: Recognizer, lines: Iterable[int]) -> float:
-        """How much can be read of what lies behind first failures, on average; from 0 to 1.
+        """Return the average share of the text after the first failure that can be read, 0 to 1.
 
-        1 where there are no files to be tried.
+        Returns 1 if there are no files to try.
         """
         shares = []
         for text, kinds, failed in self._of(lines):
@@ -72,10 +72,10 @@ class FileTrial:
     def entailed(
         self, wider: Recognizer, mended: Iterable[int], others: Collection[int]
     ) -> frozenset[int]:
-        """Those of the ``others`` that only fail because of the lines that ``wider`` mends.
+        """Return those of the ``others`` that fail only because of lines that ``wider`` repairs.
 
-        They come behind such a line wherever they occur, and no longer fail. Lines in files too
-        many or too long to be read again are left out.
+        They always come after such a line, and no longer fail. Lines in files that are too many or
+        too long to be read again are left out.
         """
         first: dict[int, int] = {}
         for line in mended:
@@ -101,7 +101,7 @@ class FileTrial:
             length += len(text)
             if length > MOST_REREAD_TEXT or wider.size > MOST_CORES:
                 break
-            # it is gone since the survey, or there is nothing left to be learnt from it
+            # the file is gone since the survey, or cannot change the result any more
             if not text or left.issuperset(line for _, line in wanted[place]):
                 continue
             failing = {failure.line for failure in finder.find(text)}
@@ -122,7 +122,7 @@ class FileTrial:
         return out[:MOST_FILES]
 
     def _read(self, text: str) -> Sequence[tuple[str, list[int], int]]:
-        """The text with its kinds and where it fails; nothing where it is too long to be tried."""
+        """Return the text with its token kinds and first failure; nothing if it is too long."""
         kinds = self._recognizer.kinds(text)
         if len(kinds) > MOST_FILE_TOKENS:
             return []

@@ -1,7 +1,7 @@
-"""Score of an edit on negatives: how many programs it would wrongly accept.
+"""Scoring an edit on negatives: how many programs it would wrongly accept.
 
-What an edit accepts besides has to use the text that the edit writes, and so has every token that
-this text never goes without. Of thousands of programs only a few have to be read for that reason.
+A program that is newly accepted must use the text that the edit writes, and so contains every token
+that this text always has. Therefore only a few of thousands of negatives have to be read.
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ from recovery.tuning import GENERATED_NEGATIVES, MOST_CONFIGURATIONS_KEPT, NEGAT
 
 
 def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> NegativeCounter:
-    """Counts what edits of ``grammar`` accept; negatives that it accepts already do not count.
+    """Return a function that counts the negatives that edits of ``grammar`` newly accept.
 
-    Counted are ``negatives`` and a fixed sample of generated ones (`recovery.negatives.generate`).
+    They are ``negatives`` and a fixed sample of generated ones (`recovery.negatives.generate`),
+    without those that the grammar accepts already.
     """
     recognizer = Recognizer(grammar)
     rejected = NegativeSet((*negatives, *_generated())).rejected_by(recognizer)
@@ -58,7 +59,7 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
 
 
 class _Programs:
-    """Negatives ready to be read with edits of a grammar that rejects them."""
+    """Negatives prepared for reading with edits of a grammar that rejects them."""
 
     def __init__(self, recognizer: Recognizer, negatives: NegativeSet) -> None:
         self._recognizer = recognizer
@@ -72,7 +73,7 @@ class _Programs:
         self._having: dict[tuple[frozenset[str], frozenset[int]], dict[int, Path]] = {}
 
     def accepted(self, edits: Sequence[Edit]) -> int | None:
-        """How many the edits accept; ``None`` where they are no detours (`DetourReader`)."""
+        """Return how many negatives the edits accept; ``None`` if they are no detours."""
         if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
             self._reader.recognizer.release()
             self._begin()
@@ -101,7 +102,7 @@ class _Programs:
     def _cut(
         self, words: frozenset[str], kind_of: Mapping[str, int]
     ) -> list[tuple[tuple[int, ...], frozenset[int]]]:
-        """The kinds of each program, all and as a set, with these words reserved."""
+        """Return the token kinds of each program, as list and as set, with the words reserved."""
         if words not in self._kinds:
             lexer = self._recognizer.lexer
             for word in sorted(words):
@@ -126,9 +127,9 @@ def _generated() -> tuple[Negative, ...]:
 def required_tokens(
     edits: Sequence[Edit], grammar: Grammar, kind_of: Mapping[str, int]
 ) -> list[frozenset[int]]:
-    """For each place the edits change, kinds of tokens in all that it newly accepts.
+    """Return, for each place the edits change, the token kinds that every new sentence has.
 
-    ``grammar`` is the one that is edited, ``kind_of`` has the kinds of words they reserve too.
+    ``grammar`` is the one that is edited; ``kind_of`` includes the words they reserve.
     """
     tokens = _Tokens(grammar, kind_of, changed_rules(edits))
     changes = [edit for edit in edits if not isinstance(edit, AddToken)]
@@ -142,18 +143,18 @@ def _of_edit(edit: Edit, tokens: _Tokens) -> frozenset[int]:
 
 
 class _Tokens:
-    """Tokens that every sentence of something has."""
+    """The tokens that every sentence of a rule or a text has."""
 
     def __init__(
         self, grammar: Grammar, kind_of: Mapping[str, int], changed: Iterable[str]
     ) -> None:
         self._grammar = grammar
         self._kind_of = kind_of
-        #: What a rule that is ``changed`` goes without is not known.
+        #: Nothing is required of a ``changed`` rule.
         self._of_rule: dict[str, frozenset[int]] = dict.fromkeys(changed, frozenset())
 
     def of_text(self, text: str) -> frozenset[int]:
-        """Tokens of all that a text reads; where it may be left out, of all but nothing."""
+        """Return the tokens in every sentence of a text, the empty one left aside."""
         alternatives = read_rule(f"text : {text} ;").alternatives
         while (inner := _only(alternatives)) is not None:
             alternatives = inner
@@ -171,7 +172,7 @@ class _Tokens:
                 return self._of_choice(alternatives)
             case Reference(name=name, is_token=False):
                 if name not in self._of_rule:
-                    self._of_rule[name] = frozenset()  # no more is known of what it calls itself
+                    self._of_rule[name] = frozenset()  # ends the recursion of recursive rules
                     self._of_rule[name] = self._of_choice(self._grammar.by_name[name].alternatives)
                 return self._of_rule[name]
             case Reference() | Literal():
@@ -181,7 +182,7 @@ class _Tokens:
 
 
 def _only(alternatives: Sequence[Alternative]) -> tuple[Alternative, ...] | None:
-    """What a text consists of that is one thing in brackets, or one thing repeated or optional."""
+    """Return the content of a text that is one group, or one repeated or optional element."""
     if len(alternatives) != 1 or len(alternatives[0].elements) != 1:
         return None
     match alternatives[0].elements[0]:

@@ -1,8 +1,8 @@
-"""The reason of a failing line: what failures of one cause share, wherever in a program they are.
+"""The reason of a failing line: what failures of one cause share at different places.
 
-One lack shows in a statement, a block, a header and a data list, and with each word of a kind. What
-stays the same is the word that the grammar lacks, that a reserved word stands for a name, that a
-line begins as none of its place does, or which sign comes in which brackets.
+One gap in the grammar shows in a statement, a block, a header and a data list, and with each word
+of a kind. Common to all of them is the keyword that the grammar lacks, a keyword in the place of a
+name, a first word that no line has there, or a sign inside a kind of brackets.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from recovery.proposals.keywords import Vocabulary
 from recovery.proposals.rule_matcher import RuleMatcher
 from recovery.survey.signature import Signature
 
-#: Words and kinds of token; means nothing but that equal ones are one reason.
+#: Words and token kinds; only equality has a meaning.
 Reason = tuple[str, ...]
 
-#: A reserved word stands where a name may.
+#: A keyword stands where a name can be.
 AS_NAME: Reason = ("name",)
 _OPERAND = "an operand"
 
@@ -31,7 +31,7 @@ class ReasonFinder:
         self._matcher = RuleMatcher(recognizer)
 
     def reason(self, line: LinePattern, signature: Signature, context: FailureContext) -> Reason:
-        """The reason why a line of that signature fails in that context."""
+        """Return the reason why a line with this signature fails in this context."""
         lexer, index = self._lexer, line.form.index
         new = [word for place, word in line.keywords if place <= index]
         if new:

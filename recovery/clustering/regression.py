@@ -1,8 +1,8 @@
-"""Regressions: files that parse now, and would not if a word were reserved.
+"""Regressions: files that parse now and would not if a word were reserved.
 
-A word that one line has as a keyword may be a name in another file, and stays one where the grammar
-lists words that are names elsewhere. So an edit that reserves words is tried on some of the files
-that have these words and can be read.
+A word that is a keyword in one line may be a name in another file. If the grammar has a list of
+words that are also names, the word can remain a name. So an edit that reserves words is tried on
+some files that parse and contain these words.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from functools import cached_property
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import FILES_PER_WORD, MOST_SEARCHED_TEXT
 
-#: A file that can be read: its length in characters, and what gives its text.
+#: A file that parses: its length in characters, and a function that returns its text.
 ParsedFile = tuple[int, Callable[[], str]]
 
 _WORDS = re.compile(r"\w+")
 
 
 class ParsedFiles:
-    """Files that parse, by the words in them; read again when they are needed."""
+    """Files that parse, indexed by the words in them; read again when they are needed."""
 
     def __init__(self, files: Iterable[ParsedFile], words: Collection[str]) -> None:
-        """``words`` are all that an edit may reserve, in capitals."""
+        """Create it; ``words`` are all words that an edit may reserve, in upper case."""
         self._files = sorted(files, key=lambda file: file[0])
         self._wanted = frozenset(words)
 
@@ -44,7 +44,7 @@ class ParsedFiles:
         return dict(found)
 
     def breaks(self, wider: Recognizer, words: Iterable[str]) -> bool:
-        """Whether a file with one of the words can no longer be read by ``wider``."""
+        """Return whether a file with one of the words cannot be read by ``wider``."""
         texts = dict.fromkeys(text for word in words for text in self._texts.get(word, ()))
         return not all(map(wider.accepts, texts))
 

@@ -1,7 +1,7 @@
-"""The search for the edit that mends most of a group of failing lines and accepts least.
+"""The search for an edit that repairs most lines of a group and accepts least.
 
-Candidate edits for some of the lines are tried on a sample first, then the best of them on all
-lines that have no cause yet. docs/architecture.md says how they are ranked.
+Candidate edits for some of the lines are first tried on a sample, then the best of them on all
+lines without a cause. docs/architecture.md says how they are ranked.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ from recovery.tuning import (
 
 
 class CauseSearch:
-    """Searches edits for the lines of one grammar."""
+    """Searches for edits that repair lines of one grammar."""
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class CauseSearch:
         self.trial = EditTrial(recognizer, lines)
         self.is_thorough = True
         self._sought: frozenset[int] = frozenset()
-        self._has_words = False  # whether all lines sought for have words the grammar lacks
+        self._has_words = False  # whether all lines in question have words the grammar lacks
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
         self._meant = frozenset(word for line in lines for _, word in line.keywords)
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
@@ -79,30 +79,30 @@ class CauseSearch:
             self.same_lead[lines[number].words()[0]].append(number)
 
     def best_for(self, group: Sequence[int]) -> Cause | None:
-        """The cause of the heaviest lines of a group, or ``None`` where no edit mends any."""
+        """Return the cause of the heaviest lines of a group, or ``None`` if no edit helps."""
         members = self._sought = frozenset(group)
         self._has_words = all(self.lines[n].keywords for n in group)
         proposals = self._proposals(group)
         for place, best in enumerate(proposals):
-            # a line that is read further has its first cause here, and others behind it
+            # a line that only advances has its first cause here, and another one later
             taken = (best.mended & self.open) | (best.advanced & members)
             if taken:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None
 
     def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
-        """The cause of the heaviest of these lines, as if they were all and none had one yet."""
+        """Return the cause of the heaviest of these lines, as if there were no others."""
         self.is_thorough = True
         self.open = set(lines)
         return self.best_for(lines)
 
     def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
-        """The edits tried on all lines, whatever their cause."""
+        """Return the edits with their result on all lines, whatever the causes of these."""
         result = self.trial.result(edits)
         return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
 
     def with_entailed(self, cause: Cause) -> Cause:
-        """The cause with the lines that fail only because of its own."""
+        """Return the cause with the lines that only fail because of its own."""
         best = cause.proposals[0]
         wider = self.trial.wider(best.edits)
         others = self.open.difference(cause.lines)
@@ -140,7 +140,7 @@ class CauseSearch:
         return self._ranked(list(useful.values()), heavy)[:MOST_PROPOSALS]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
-        """The proposal; a word it reserves stays a name too where files use it as one."""
+        """Return the proposal; its reserved words remain names if some files use them so."""
         if not self._loses(proposal.edits):
             return proposal
         profile, words = self.finder.profile, self.finder.profile.vocabulary
@@ -152,7 +152,7 @@ class CauseSearch:
         return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
 
     def _loses(self, edits: tuple[Edit, ...]) -> bool:
-        """Whether files that can be read cannot be any more."""
+        """Return whether some files that parse now would not."""
         words = [edit.name for edit in edits if isinstance(edit, AddToken)]
         wider = self.trial.wider(edits) if words else None
         return wider is not None and self.parsed_files.breaks(wider, words)
@@ -160,9 +160,9 @@ class CauseSearch:
     def _tried(
         self, candidates: Sequence[Candidate], most: int, sample: Collection[int]
     ) -> list[tuple[Candidate, TrialResult]]:
-        """At most so many candidates with what they do to a sample of lines.
+        """Return at most ``most`` candidates with their results on a sample of lines.
 
-        First the narrowest at each place; then the wider ones where these do most.
+        First the narrowest ones at each place are tried, then wider ones where these repair most.
         """
         at: dict[object, list[Candidate]] = defaultdict(list)
         for candidate in candidates:
@@ -185,7 +185,7 @@ class CauseSearch:
         return out + [(c, self.trial.result(c.edits, sample)) for c in wide[: most // WIDE_PART]]
 
     def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
-        """The best of the blocks that a line may open, with the negatives they accept."""
+        """Return the best blocks that a line may open, with the number of negatives accepted."""
         line = self.lines[number]
         opener = self.lead(line)
         if not opener:
@@ -205,17 +205,17 @@ class CauseSearch:
         ]
 
     def lead(self, line: LinePattern) -> str:
-        """The keyword or would-be keyword that a line begins with."""
+        """Return the keyword or would-be keyword with which a line begins, or an empty text."""
         kind, keyword = line.words()[0]
         lexer = self.finder.recognizer.lexer
         return keyword or (lexer.display[kind] if lexer.is_keyword(kind) else "")
 
     def _alike(self, number: int) -> list[int]:
-        """Other lines that fail at the same token, whatever else they look like."""
+        """Return the open lines that fail at the same token."""
         return [n for n in self.same_token[self._token(number)] if n in self.open]
 
     def _led_alike(self, number: int) -> list[int]:
-        """Other lines that begin with the same kind of token or the same word."""
+        """Return the open lines that begin with the same token kind or word."""
         return [n for n in self.same_lead[self.lines[number].words()[0]] if n in self.open]
 
     def _token(self, number: int) -> tuple[int, str | None]:
@@ -223,7 +223,7 @@ class CauseSearch:
         return line.form.kinds[line.form.index], dict(line.keywords).get(line.form.index)
 
     def _gain(self, result: TrialResult | Proposal) -> float:
-        """What the lines count that are mended; those a cause is sought for count most."""
+        """Return the weight of the repaired lines; those in question count most."""
         sought = self._sought
         mended = sum(self.weights[n] for n in result.mended & sought)
         further = sum(self.weights[n] for n in result.advanced & sought)
@@ -233,13 +233,13 @@ class CauseSearch:
         return mended + further * ADVANCED_WEIGHT + others * OTHER_GROUP_WEIGHT
 
     def _worth(self, candidate: Candidate | Proposal, result: TrialResult | Proposal) -> float:
-        """Gain, less a little for all that an edit accepts besides, and for a word left a name."""
+        """Return the gain, reduced for breadth and for a word that is left a name."""
         worth = self._gain(result) * BREADTH_FACTOR**candidate.breadth
         reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
         return worth * LEFT_A_NAME_FACTOR if self._has_words and not reserves else worth
 
     def _kept(self, results: list[tuple[Candidate, TrialResult]]) -> list[tuple[Candidate, int]]:
-        """The most worthwhile candidates, first those that accept no negatives."""
+        """Return the best candidates, first those that accept no negatives."""
         useful = self._diverse(results)
         useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
         clean: list[tuple[Candidate, int]] = []
@@ -263,7 +263,7 @@ class CauseSearch:
     def _diverse(
         self, results: list[tuple[Candidate, TrialResult]]
     ) -> list[tuple[Candidate, TrialResult]]:
-        """Candidates that do something; of those that do the same the most restrictive few."""
+        """Return the candidates with an effect; the narrowest few of those with equal results."""
         alike: dict[TrialResult, list[tuple[Candidate, TrialResult]]] = defaultdict(list)
         for candidate, result in results:
             if result.mended or result.advanced:
@@ -277,7 +277,7 @@ class CauseSearch:
         ]
 
     def _ranked(self, proposals: list[Proposal], lines: Sequence[int]) -> list[Proposal]:
-        """No negatives first; then by worth, and by how much of whole files can be read."""
+        """Return the proposals sorted by negatives, then by worth and readable share of files."""
         worth = {}
         alike = self._alike(lines[0])
         for p in proposals:
@@ -297,7 +297,7 @@ _T = TypeVar("_T")
 
 
 def _spread(items: Sequence[_T], count: int) -> list[_T]:
-    """The first of ``items``, and others evenly from the rest."""
+    """Return ``count`` items, evenly spread from the first one on."""
     if len(items) <= count:
         return list(items)
     return [items[i * len(items) // count] for i in range(count)]

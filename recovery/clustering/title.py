@@ -1,4 +1,4 @@
-"""Titles of clusters: what is wrong with a failing line, as a maintainer would say it."""
+"""Titles of clusters: what is wrong with a failing line, in the words of a maintainer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CLOSER = {"(": ")", "[": "]", "{": "}"}
 
 
 class TitleWriter:
-    """Says what could not be read on a line, and what the grammar wanted there."""
+    """Writes what could not be read in a line, and what the grammar expected."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self._recognizer = recognizer
@@ -36,10 +36,10 @@ class TitleWriter:
         others: Sequence[LinePattern] = (),
         best: Proposal | None = None,
     ) -> str:
-        """A sentence without a full stop: ``INT without DECL`` or ``FOR with STEP``.
+        """Return a sentence without full stop: ``INT without DECL`` or ``FOR with STEP``.
 
-        ``bracket`` is the one open before the failing token, ``others`` all lines of the cause, and
-        ``best`` the proposal that mends the line, where there is one.
+        ``bracket`` is the innermost open one before the failing token, ``others`` are all lines of
+        the cause, and ``best`` is the proposal that repairs the line, if there is one.
         """
         kinds, index = line.form.kinds, line.form.index
         meant = dict(line.keywords)
@@ -69,7 +69,7 @@ class TitleWriter:
         return said[:1].upper() + said[1:]
 
     def title_of_names(self, lines: Iterable[LinePattern]) -> str:
-        """The title of lines that all fail at a reserved word: ``DELAY and SEC as names``."""
+        """Return the title for lines that fail at a keyword: ``DELAY and SEC as names``."""
         words = sorted({self._phrase(line.form.kinds[line.form.index]) for line in lines})
         if len(words) == 1:
             return f"{words[0]} as a name"
@@ -80,10 +80,7 @@ class TitleWriter:
     def distinguished(
         self, titles: Sequence[str], lines: Sequence[LinePattern], rules: Sequence[str]
     ) -> list[str]:
-        """The titles; those that are the same with how their line goes on, or where it stands.
-
-        What stands in the same place and goes on alike, as far as a title says, gets a number.
-        """
+        """Return the titles made unique: by the next words of the line, its rule, or a number."""
         out = list(titles)
         alike: dict[str, list[int]] = defaultdict(list)
         for number, title in enumerate(titles):
@@ -105,7 +102,7 @@ class TitleWriter:
         return out
 
     def _shape(self, line: LinePattern) -> tuple[str, ...]:
-        """The words and signs of a line; names and values by what they are."""
+        """Return the words and signs of a line, with kinds in place of names and values."""
         display, names = self._lexer.display, self._lexer.names
         return tuple(
             meant
@@ -123,7 +120,7 @@ class TitleWriter:
     def _behind(
         self, line: LinePattern, context: FailureContext, bracket: str, lead: str, came: str
     ) -> str:
-        """What came where in a line that began well."""
+        """Return what was found where, for a line whose beginning was read."""
         before = line.form.kinds[line.form.index - 1]
         if bracket:
             is_first = before == self._kind_of.get(bracket)
@@ -138,7 +135,7 @@ class TitleWriter:
         return f"{self._phrase(before)} followed by {came}"
 
     def _instead(self, context: FailureContext) -> str:
-        """What was wanted, where that is short enough to say."""
+        """Return what was expected, if that is short enough."""
         wanted = [t for t in context.expected if t != self._line_end] or [self._line_end]
         if len(wanted) > MOST_EXPECTED:
             return ""
@@ -146,7 +143,7 @@ class TitleWriter:
         return f" where {' or '.join(phrases)} is expected"
 
     def _left_out(self, best: Proposal | None) -> str:
-        """The keyword that a proposal makes optional, if it does nothing else."""
+        """Return the keyword that a proposal makes optional, if it does nothing else."""
         match best.edits if best else ():
             case [MakeOptional(rule=name, at=at, count=1)]:
                 rule = self._recognizer.grammar.by_name[name]
@@ -155,7 +152,7 @@ class TitleWriter:
         return ""
 
     def _omitted_keyword(self, line: LinePattern, context: FailureContext) -> str:
-        """The one keyword with which the line could be read, were it before the failing token."""
+        """Return the only keyword that would make the line readable before the failing token."""
         kinds, index = line.form.kinds, line.form.index
         if line.is_enormous or dict(line.keywords).keys() & {0, index}:
             return ""
@@ -169,13 +166,13 @@ class TitleWriter:
         return found[0] if len(found) == 1 else ""
 
     def _keyword(self, line: LinePattern, place: int) -> str:
-        """The keyword, or the name meant as one, at a place of a line; or nothing."""
+        """Return the keyword or would-be keyword at a place of a line; empty if there is none."""
         kind = line.form.kinds[place] if place < len(line.form.kinds) else ERROR
         known = self._lexer.display[kind] if self._lexer.is_keyword(kind) else ""
         return dict(line.keywords).get(place, known)
 
     def _phrase(self, kind: int) -> str:
-        """A kind of token in a sentence: ``DECL``, ``','``, ``an enum constant``."""
+        """Return a token kind as part of a sentence: ``DECL``, ``','``, ``an enum constant``."""
         if kind == ERROR:
             return "an unknown character"
         name, text = self._lexer.names[kind], self._lexer.display[kind]
@@ -190,5 +187,5 @@ class TitleWriter:
 
 
 def _spoken(name: str) -> str:
-    """The words of a rule's or a token's name: ``simple statement``, ``enum constant``."""
+    """Return the name of a rule or token as words: ``simple statement``, ``enum constant``."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])|_", " ", name).lower()

@@ -1,1 +1,1 @@
-"""The public part of the corpus: its repositories, and how their files are fetched."""
+"""The public part of the corpus: the list of repositories, and fetching their files."""

@@ -1,6 +1,6 @@
-"""Git repositories as places to read files from: found as local mirrors, or fetched.
+"""Reading files from git repositories: local mirrors, or fetched ones.
 
-Only git itself is run, as a child process, and only for objects: nothing is checked out, no hook
+Only git itself runs, as a child process, and only to read objects. Nothing is checked out, no hook
 or filter of a repository runs, and git never asks for a password.
 """
 
@@ -16,7 +16,7 @@ _MIRROR_DEPTH = 3
 
 _CHUNK = 1 << 16
 
-# Left over from a surrounding git command, these would point git at another repository.
+# If set by a surrounding git command, these would direct git to another repository.
 _REPOSITORY_VARIABLES = (
     "GIT_ALTERNATE_OBJECT_DIRECTORIES",
     "GIT_COMMON_DIR",
@@ -27,7 +27,7 @@ _REPOSITORY_VARIABLES = (
     "GIT_WORK_TREE",
 )
 
-# How servers word that they do not hand out one commit by its hash.
+# Messages of servers that do not serve a single commit by its hash.
 _REFUSALS = ("not our ref", "unadvertised object", "server does not allow request")
 
 _SETTINGS = (
@@ -41,18 +41,18 @@ _SETTINGS = (
 
 
 class GitError(Exception):
-    """Git is missing or did not do what was asked; the text is one readable line."""
+    """Git is missing or failed; the message is one line."""
 
 
 class RefusedError(GitError):
-    """The server answered, but does not hand out this one commit."""
+    """The server answered, but does not serve this one commit."""
 
 
 def find_mirror(mirrors: Path, repository: str) -> Path | None:
     """Return the git directory of `repository` (OWNER/NAME) below the folder `mirrors`, or None.
 
-    A mirror is `OWNER/NAME`, `OWNER/NAME.git`, `OWNER__NAME` or `OWNER+NAME`; it is a git
-    directory, holds one as `.git`, or holds one a few folders further down.
+    A mirror is `OWNER/NAME`, `OWNER/NAME.git`, `OWNER__NAME` or `OWNER+NAME`. It is a git
+    directory, or has one as `.git` or a few folders further down.
     """
     owner, _, name = repository.partition("/")
     for place in (f"{owner}+{name}", f"{owner}__{name}", f"{owner}/{name}", f"{owner}/{name}.git"):
@@ -63,7 +63,7 @@ def find_mirror(mirrors: Path, repository: str) -> Path | None:
 
 
 def _folders(root: Path, depth: int) -> Iterator[Path]:
-    """Yield `root` and the folders below it, nearest first, links not followed."""
+    """Yield `root` and the folders below it, nearest first, without following links."""
     level = [root] if root.is_dir() else []
     for _ in range(depth + 1):
         yield from level
@@ -78,7 +78,7 @@ def _folders(root: Path, depth: int) -> Iterator[Path]:
 def fetch_commit(url: str, commit: str, into: Path) -> None:
     """Fetch one commit of `url`, without its history, into the new git directory `into`.
 
-    Raises RefusedError where the server gives whole branches only, GitError otherwise.
+    Raises RefusedError if the server only serves whole branches, GitError for other failures.
     """
     _git(["init", "--quiet", "--bare", str(into)])
     _git([f"--git-dir={into}", "fetch", "--quiet", "--depth=1", "--no-tags", "--", url, commit])
@@ -93,10 +93,10 @@ def fetch_all(url: str, into: Path) -> None:
 
 
 class BlobReader:
-    """Reads many files of a git directory through one git process; use it in a `with`."""
+    """Reads many files of a git directory through one git process; a context manager."""
 
     def __init__(self, git_dir: Path) -> None:
-        """Start git in `git_dir`; raises GitError when git is not installed."""
+        """Start git in `git_dir`; raises GitError if git is not installed."""
         command = ["git", f"--git-dir={git_dir.resolve()}", "cat-file", "--batch"]
         self._git_dir = git_dir
         try:
@@ -116,16 +116,15 @@ class BlobReader:
 
     def __exit__(self, *_error: object) -> None:
         """End the git process."""
-        with suppress(OSError):  # git may have gone before us
+        with suppress(OSError):  # git may have ended already
             self._stdin.close()
         self._stdout.close()
         self._process.wait()
 
     def read(self, revision: str, path: str, limit: int) -> bytes | None:
-        """Return the bytes of `path` at `revision`, or None where there is no such file.
+        """Return the bytes of `path` at `revision`, or None if there is no such file.
 
-        Of a file longer than `limit` bytes, `limit + 1` bytes are returned and the rest is not
-        kept. Raises GitError when git stops.
+        Of a longer file only `limit + 1` bytes are returned. Raises GitError if git stops.
         """
         try:
             self._stdin.write(f"{revision}:{path}\n".encode())
@@ -191,7 +190,7 @@ def _git(arguments: Sequence[str]) -> None:
 
 
 def _reason(said: str) -> str:
-    """The line of git's own words that says why, without its prefix."""
+    """Return the line of git's output that states the reason, without its prefix."""
     lines = [line for line in said.splitlines() if line.startswith(("fatal:", "error:", "remote:"))]
     return lines[0].partition(":")[2].strip() if lines else said.partition("\n")[0]
 

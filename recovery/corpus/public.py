@@ -1,9 +1,9 @@
-"""The public repositories of the corpus: which files of theirs we read, and how they get here.
+"""The public repositories of the corpus: which of their files are read, and how these are fetched.
 
-`corpus/sources.toml` names the repositories, each with its pinned commit and licence;
-`corpus/checksums.tsv` names their KRL files. The files themselves belong to other people. They are
-fetched by users who want to read them and never become part of this project. A file is taken only
-where its SHA-256 is the listed one, so that everybody measures the same corpus.
+`corpus/sources.toml` lists the repositories, each with a pinned commit and its licence;
+`corpus/checksums.tsv` lists their KRL files. The files belong to other people. Users who want to
+read them fetch them; they never become part of this project. A file is only accepted with the
+listed SHA-256, so that everybody measures the same corpus.
 """
 
 import csv
@@ -43,12 +43,12 @@ _RESERVED_NAMES = frozenset(
 
 
 class SourceListError(ValueError):
-    """The list of sources cannot be used; the text says where and why in one line."""
+    """The list of sources is not usable; the message says where and why in one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class KrlFile:
-    """A KRL file of another repository, known by its checksum."""
+    """A KRL file of another repository, identified by its checksum."""
 
     path: str  # in the repository, parts joined by "/"
     size: int  # bytes
@@ -59,7 +59,7 @@ class KrlFile:
 
 @dataclass(frozen=True, slots=True)
 class PublicSource:
-    """A public repository that holds KRL, pinned to one commit."""
+    """A public repository with KRL files, pinned to one commit."""
 
     repository: str  # OWNER/NAME
     url: str
@@ -76,13 +76,13 @@ class PublicSource:
 
     @property
     def size(self) -> int:
-        """Bytes of all its KRL files."""
+        """Total size of its KRL files in bytes."""
         return sum(file.size for file in self.files)
 
 
 @dataclass(frozen=True, slots=True)
 class Fetched:
-    """What became of one source: files written now, files kept from before, one line a problem."""
+    """The result for one source: files written, files already present, and a line per problem."""
 
     source: PublicSource
     written: int
@@ -91,10 +91,10 @@ class Fetched:
 
 
 def read_sources(corpus: Path) -> tuple[PublicSource, ...]:
-    """Read `sources.toml` and `checksums.tsv` in the folder `corpus`.
+    """Return the sources in `sources.toml` and `checksums.tsv` of the folder `corpus`.
 
-    Raises OSError where one is missing and SourceListError where one is damaged, or names a path
-    that would not be safe to write on every system.
+    Raises OSError if one is missing, and SourceListError if one is damaged or has a path that is
+    not safe to write on every system.
     """
     listed = corpus / "sources.toml"
     try:
@@ -114,7 +114,7 @@ def read_sources(corpus: Path) -> tuple[PublicSource, ...]:
 
 
 def absent(source: PublicSource, out: Path) -> list[KrlFile]:
-    """The files of `source` that are not below the folder `out` with their right content."""
+    """Return the files of `source` that are missing below `out` or have another content."""
     return [file for file in source.files if not _is_there(file, out / source.folder / file.path)]
 
 
@@ -124,12 +124,12 @@ def fetch(
     mirrors: Path | None = None,
     on_file: Callable[[int], None] = lambda _count: None,
 ) -> Fetched:
-    """Bring the files of `source` to `out/OWNER__NAME/`, from a local mirror or from its URL.
+    """Fetch the files of `source` to `out/OWNER__NAME/`, from a local mirror or from its URL.
 
-    With `mirrors`, only what lies in that folder is read, and nothing goes over the network. Files
-    that are there already are left alone. `on_file` is called with the number of files that are
-    settled since the last call. Whatever could not be had is named in the result; only a failure
-    to write raises (OSError).
+    With `mirrors`, only that folder is read, and the network is not used. Files that are already
+    there are left alone. `on_file` is called with the number of files finished since its last call.
+    Files that could not be fetched are named in the result; only a failure to write raises
+    (OSError).
     """
     wanted = absent(source, out)
     kept = len(source.files) - len(wanted)
@@ -268,7 +268,7 @@ def _read_checksums(table: Path) -> dict[str, tuple[KrlFile, ...]]:
 
 
 def _unsafe(path: str) -> str | None:
-    """Why `path` must not be written, on any system; None where it may."""
+    """Return why `path` must not be written on any system, or None if it may be."""
     if not path.lower().endswith(SUFFIXES):
         return "is not a KRL file"
     for part in path.split("/"):

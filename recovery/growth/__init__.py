@@ -1,1 +1,1 @@
-"""The ledger replayed over a corpus, step by step."""
+"""Growth: the ledger replayed over a corpus, step by step."""

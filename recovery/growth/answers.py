@@ -1,7 +1,7 @@
-"""The construct of the ledger that answered each cluster of the restrictive start.
+"""Which construct of the ledger resolved each cluster of the restrictive start.
 
-A cluster has example lines in real files. The ledger is replayed over these files, and a cluster
-is answered by the construct from which on most of its lines can be read in their places.
+A cluster has example lines in real files. The ledger is replayed over these files. A cluster is
+answered by the construct from which on most of its lines can be read.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from support.parallel.progress import Progress, no_progress
 
 
 class Answers(TypedDict):
-    """The clusters of a start, and the constructs that answered them."""
+    """The clusters of the start, and the constructs that answered them."""
 
     clusters: list[ClusterRecord]
     constructs: list[ConstructRecord]
@@ -36,11 +36,11 @@ def answered(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> Answers:
-    """Clusters with their answers, and the constructs that gave them.
+    """Return the clusters with their answers, and the constructs that gave these.
 
-    ``clusters`` are those of the record of ``found``, the survey of the start. Returns them under
-    ``clusters``, each with ``answered_by``, the ID of a construct or ``None``; ``constructs`` has
-    the records of these constructs (`recovery.ledger.construct_record`) in the order of the ledger.
+    ``clusters`` are those in the record of ``found``, the survey of the start. Each gets
+    ``answered_by``, the ID of a construct or ``None``. ``constructs`` are the records of these
+    constructs (`recovery.ledger.construct_record`) in the order of the ledger.
     """
     grammars = [found.grammar, *(grammar for _, grammar in steps)]
     wanted = {path for cluster in clusters for path, _ in _lines(cluster)}
@@ -73,14 +73,14 @@ def _record(grammars: Sequence[Grammar], steps: LedgerSteps, number: int) -> Con
 
 
 def _lines(cluster: ClusterRecord) -> list[tuple[str, int]]:
-    """Path and number of the example lines of a cluster."""
+    """Return the path and line number of each example of a cluster."""
     return [(e["path"], e["line"]) for e in (cluster["example"], *cluster["examples"])]
 
 
 def _answer(
     lines: Sequence[tuple[str, int]], by_path: Mapping[str, Timeline], steps: int
 ) -> int | None:
-    """The first step from which on most of the lines can be read for good."""
+    """Return the first step from which on most of the lines can always be read."""
     failing = [by_path[path].failing.get(line, 0) for path, line in lines if path in by_path]
     answer = None
     for number in range(steps, 0, -1):

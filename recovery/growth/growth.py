@@ -1,8 +1,8 @@
 """Growth of the grammar over a corpus: the effect of each construct of the ledger.
 
-The ledger is replayed from the restrictive start; after each accepted construct the corpus is read
-and the grammar measured. The record is exact: it holds what surveys under all these grammars would
-count, a file and a line at a time (`recovery.growth.timeline`).
+The ledger is replayed from the restrictive start. After each accepted construct the corpus is read
+and the grammar is measured. The record is exact: it has what surveys under all these grammars would
+count for each file and line (`recovery.growth.timeline`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from support.files.discovery import Skipped
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
 
-#: Each construct with the grammar after it, as `recovery.ledger.ledger.replay` gives them.
+#: Each construct with the grammar after it, as `recovery.ledger.ledger.replay` returns them.
 LedgerSteps = Sequence[tuple[Construct, Grammar]]
 
 _FILES_NAMED = 100
@@ -43,12 +43,11 @@ def growth(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> GrowthRecord:
-    """The record of the growth from ``start`` over ``steps`` on the corpus below ``roots``.
+    """Return the record of the growth from ``start`` over ``steps`` on the corpus below ``roots``.
 
-    Files and bytes include copies, lines do not. ``jobs``, ``cache`` and the progress are those of
-    `recovery.growth.timeline.read_through`.
-
-    Raises `support.files.discovery.IngestError` where there is nothing to read.
+    Files and bytes include copies, lines do not. ``jobs``, ``cache`` and the callbacks are those of
+    `recovery.growth.timeline.read_through`. Raises `support.files.discovery.IngestError` if there
+    is nothing to read.
     """
     began = time.perf_counter()
     contents, skipped = contents_of(roots)
@@ -68,7 +67,7 @@ def growth(
 def _digest(
     read: Sequence[Timeline], skipped: Sequence[Skipped], start: Grammar, steps: LedgerSteps
 ) -> str:
-    """A digest of all that the record depends on, besides the code."""
+    """Return a digest of everything that the record depends on, except the code."""
     code = hashlib.sha256(start.sha256.encode())
     for construct, grammar in steps:
         code.update(repr((construct, grammar.sha256)).encode())
@@ -113,7 +112,7 @@ def _bytes(contents: Iterable[Content]) -> int:
 
 
 def _skipped(skipped: Sequence[Skipped], read: Sequence[Timeline]) -> list[SkippedRecord]:
-    """Everything that was not read, and why, by path."""
+    """Return everything that was not read, with the reason, sorted by path."""
     rows = [(entry.path, entry.reason, entry.origin) for entry in skipped]
     rows += [
         (path, f.reason, origin) for f in read if f.reason for path, origin in f.content.places
@@ -155,6 +154,6 @@ def _steps(files: Sequence[Timeline], start: Grammar, steps: LedgerSteps) -> Ite
 
 
 def _failing_lines(files: Sequence[Timeline], grammars: int) -> list[int]:
-    """How many lines fail under each grammar."""
+    """Return the number of lines that fail under each grammar."""
     alike = Counter(when for file in files for when in file.failing.values())
     return [sum(n for when, n in alike.items() if when >> g & 1) for g in range(grammars)]

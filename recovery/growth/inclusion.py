@@ -1,9 +1,8 @@
-"""Inclusion of grammars: what parses under one also parses under another that only adds to it.
+"""Inclusion of grammars: whether everything that parses under one parses under another.
 
-Proved, not guessed: every rule of the old grammar is in the new one and may still be what it was,
-so each derivation of the old one is a derivation of the new one, token by token. That does not
-show whether a text is still cut into the same tokens; new tokens of fixed text can change that
-only where their text occurs.
+The inclusion is proved: every rule of the old grammar is in the new one and can still be what it
+was, so each derivation in the old grammar is one in the new. The proof is about tokens. New tokens
+of fixed text can change how a text is cut into tokens only where their text occurs.
 """
 
 from __future__ import annotations
@@ -17,9 +16,9 @@ from grammar.parser.network import Network, RuleAutomaton
 def fixed_texts_added(
     old: Network, new: Network, grammars: tuple[Grammar, Grammar]
 ) -> frozenset[str] | None:
-    """Texts of the tokens that ``new`` adds, in upper case, where it does nothing but add.
+    """Return the texts of new tokens, in upper case, if ``new`` only adds to ``old``.
 
-    A program of ``old`` in which none of them `occurs` is one of ``new``. ``None`` says that this
+    A program of ``old`` in which none of them `occurs` is one of ``new``. Returns ``None`` if that
     could not be proved. ``grammars`` are those of the networks.
     """
     before, after = grammars
@@ -33,12 +32,12 @@ def fixed_texts_added(
 
 
 def occurs(texts: frozenset[str], folded: str) -> bool:
-    """Whether a text in upper case may hold one of the tokens."""
+    """Return whether a text in upper case may contain one of the tokens."""
     return any(text in folded for text in texts)
 
 
 def _includes(wide: RuleAutomaton, narrow: RuleAutomaton) -> bool:
-    """Whether every row of symbols that one automaton accepts is accepted by the other too."""
+    """Return whether one automaton accepts every sequence that the other accepts."""
     seen = {(0, 0)}
     todo = [(0, 0)]
     while todo:
@@ -57,7 +56,7 @@ def _includes(wide: RuleAutomaton, narrow: RuleAutomaton) -> bool:
 
 
 def _tokens_added(before: Grammar, after: Grammar) -> frozenset[str] | None:
-    """What the lexer has more; ``None`` where more has changed than tokens of fixed text."""
+    """Return the texts of new tokens; ``None`` if the lexer changed in any other way."""
     old, new = _lexer_rules(before), _lexer_rules(after)
     if list(old.values()) != [rule for rule in new.values() if rule.name in old]:
         return None
@@ -76,7 +75,7 @@ def _lexer_rules(grammar: Grammar) -> Mapping[str, Rule]:
 
 
 def _fixed_text(rule: Rule) -> str | None:
-    """The text of a token that has no other."""
+    """Return the text of a token that is one literal, or ``None``."""
     elements = rule.alternatives[0].elements
     if len(rule.alternatives) == 1 and len(elements) == 1 and isinstance(elements[0], Literal):
         return elements[0].text

@@ -1,4 +1,4 @@
-"""Remainder of a corpus under a grammar: unreadable files and ambiguous lines."""
+"""What remains of a corpus under a grammar: files that do not parse, and ambiguous lines."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ _LONGEST_LINE = 1_000
 
 
 class Remaining(TypedDict):
-    """What does not parse at the end of the growth."""
+    """The files and lines that do not parse at the end of the growth."""
 
     remaining: list[RemainingLineRecord]
     remaining_files: list[RemainingFileRecord]
 
 
 def remaining(contents: Sequence[Content], grammar: Grammar) -> Remaining:
-    """The files that do not parse (``remaining_files``) and their failing lines (``remaining``).
+    """Return the files that do not parse and their failing lines.
 
-    ``fact`` of a file is a fact that no KRL program breaks (`recovery.negatives.language_facts`)
-    and this one does, at ``fact_line``: the file is no valid KRL, whatever the grammar. It is empty
-    where none is known. ``kind`` is invalid, template, damaged or waiting (for the verdict on a
-    construct), and ``reason`` says why: written by hand for files of the public corpus, else by the
-    broken fact. Both are empty where nothing is known.
+    ``fact`` of a file is a fact that every KRL program obeys (`recovery.negatives.language_facts`)
+    and this one breaks at ``fact_line``, so it is invalid under any grammar; empty if none is
+    known. ``kind`` is invalid, template, damaged or waiting (for the verdict on a construct), and
+    ``reason`` explains it: by hand for files of the public corpus, otherwise by the broken fact.
+    Both are empty if nothing is known.
     """
     finder = FailureFinder(Recognizer(grammar))
     lines: list[RemainingLineRecord] = []
@@ -83,17 +83,17 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> Remaining:
 
 @cache
 def _reasons() -> Mapping[str, tuple[str, str]]:
-    """Kind and reason by the digest of a file."""
+    """Return the kind and the reason for known files, by digest."""
     lines = _REASONS.read_text(encoding="utf-8").splitlines()
     rows = (line.split("\t") for line in lines if not line.startswith(("#", "sha256")))
     return {digest: (kind, reason) for digest, kind, _, _, reason in rows}
 
 
 def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousRecord:
-    """How many lines of files that parse have two readings, and the first of them as examples.
+    """Return how many lines in files that parse have two readings, with the first as examples.
 
-    Each line is looked at in its place. ``lines`` counts them, each content once, ``of`` says how
-    many lines there are.
+    Each line is examined in its context. ``lines`` is the number of ambiguous lines, copies left
+    out, ``of`` that of all lines.
     """
     recognizer = Recognizer(grammar)
     reader = LineReader(recognizer)
@@ -127,7 +127,7 @@ def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousR
 
 
 def _texts(contents: Sequence[Content]) -> Iterator[tuple[Content, str]]:
-    """The contents with their texts; one that has changed since it was found is left out."""
+    """Yield the contents with their texts, except those that have changed since the survey."""
     for content in contents:
         file = read_source(content.found)
         if isinstance(file, SourceFile) and digest(file.data) == content.digest:

@@ -1,10 +1,10 @@
-"""A corpus read under a sequence of grammars: which lines of which file fail when.
+"""A corpus read under a sequence of grammars: which lines of which file fail under which.
 
-The row is that of a growing grammar, so most of a corpus stays as it was from one grammar to the
-next. A file that parses is not read again while the grammar only adds
-(`recovery.growth.inclusion`); all others are read, so nothing is estimated. Files lie in blocks,
-grammars in runs, and each process takes a run over a block, so the cost grows with the corpus and
-memory does not.
+The sequence is that of a growing grammar, so most of a corpus stays as it was from one grammar to
+the next. A file that parses is not read again while the grammar only adds
+(`recovery.growth.inclusion`). All others are read, so nothing is estimated. Files are divided into
+blocks and grammars into runs, and each task reads one block under one run. So the cost grows with
+the corpus, and the memory does not.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from support.parallel.ordered_map import ordered_map
 from support.parallel.progress import Progress, no_progress
 
 _BLOCK_BYTES = 8 << 20
-_RUNS = 16  # a block is read in so many pieces, so that progress shows
-_RUNS_A_PROCESS = 4  # or in more, so that the last processes to end end together
-_SMALL = 32 << 20  # bytes times grammars: less is not worth more processes
+_RUNS = 16  # least number of runs for a block, so that progress is visible
+_RUNS_A_PROCESS = 4  # runs for each process, so that all processes end at about the same time
+_SMALL = 32 << 20  # bytes times grammars; for less work one process is faster
 
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """A distinct content: where it lies first, and (path, origin) of that place and each copy."""
+    """A distinct content: its first location, and (path, origin) of that and of each copy."""
 
     found: Found
     places: tuple[tuple[str, str], ...]
@@ -45,16 +45,16 @@ class Content:
 
     @property
     def path(self) -> str:
-        """The first of its places, as people are shown it."""
+        """The path of the first location, as it is shown."""
         return self.found.path
 
 
 @dataclass(frozen=True, slots=True)
 class Timeline:
-    """Which lines of a content failed when.
+    """Under which grammars the lines of a content fail.
 
-    ``failing`` has for each line that ever fails a number whose bit ``n`` is set where it fails
-    under grammar ``n``; ``reason`` says why the content is no KRL, and is empty where it is.
+    ``failing`` maps each line that ever fails to a number whose bit ``n`` is set if it fails under
+    grammar ``n``. ``reason`` says why the content is no KRL, and is empty if it is.
     """
 
     content: Content
@@ -70,18 +70,18 @@ class Timeline:
         return bits
 
     def parses(self, number: int) -> bool:
-        """Whether it parses under the grammar of that number."""
+        """Return whether it parses under the grammar with this number."""
         return not self.whenever >> number & 1
 
     def lines(self, number: int) -> list[int]:
-        """The lines that fail under the grammar of that number."""
+        """Return the lines that fail under the grammar with this number."""
         return [line for line, when in self.failing.items() if when >> number & 1]
 
 
 def contents_of(roots: Sequence[Path]) -> tuple[list[Content], list[Skipped]]:
-    """The distinct contents below ``roots`` in the order of discovery, and what cannot be read.
+    """Return the distinct contents below ``roots``, in the order of discovery, and those skipped.
 
-    Raises `support.files.discovery.IngestError` where there is nothing to read.
+    Raises `support.files.discovery.IngestError` if there is nothing to read.
     """
     met: dict[str, tuple[Found, list[tuple[str, str]], int]] = {}
     skipped = []
@@ -105,18 +105,17 @@ def read_through(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> list[Timeline]:
-    """Read each content under each of the grammars; the timelines come in the given order.
+    """Return the timeline of each content under the grammars, in the given order.
 
-    ``jobs`` is the number of processes, by default one a core, or one for little. ``cache`` is the
-    folder where results are kept by content and grammar. ``on_found`` gets how many readings
-    there are to do (a content under a grammar is one), ``on_done`` how many more are done.
-
-    A content that has changed since it was found is reported as no KRL, with that reason.
+    ``jobs`` is the number of processes; the default is one for each core, or one for little work.
+    ``cache`` is the folder for cached results. ``on_found`` is called with the number of readings
+    (a content under a grammar is one), ``on_done`` with the number finished since its last call. A
+    content that has changed since it was found is reported as no KRL, with that reason.
     """
     if not grammars:
         raise ValueError("there is no grammar to read under")
     names = [grammar.sha256 for grammar in grammars]
-    # results hang on the first grammar of the row, which is the one that seldom changes
+    # the cache key has the first grammar of the sequence, which rarely changes
     with ResultStore(cache, key_of(grammars[0])) as store:
         known = [_recalled(store, content, names) for content in contents]
         blocks = list(_blocks(contents, known))
@@ -153,9 +152,9 @@ def _processes(blocks: Iterable[_Block]) -> int:
 
 @dataclass(slots=True)
 class _Known:
-    """What is known of a content; ``missing`` are the grammars it has not been read under.
+    """What is known about a content; ``missing`` are the grammars not read yet.
 
-    What is not ``lasting`` is not a fact of the content.
+    If it is not ``lasting``, the result does not depend on the content alone and is not cached.
     """
 
     failing: dict[int, int]
@@ -189,7 +188,7 @@ def _key(content: Content) -> str:
 
 
 def _recalled(store: ResultStore, content: Content, names: Sequence[str]) -> _Known:
-    """What was found under these grammars before, whatever the others of the row."""
+    """Return the cached result for these grammars; others in the cache are ignored."""
     kept = store.get_record(_key(content))
     if kept is None:
         return _Known({}, "", tuple(range(len(names))))
@@ -205,7 +204,7 @@ def _recalled(store: ResultStore, content: Content, names: Sequence[str]) -> _Kn
             if moved:
                 failing[int(line)] = moved
         return _Known(failing, "", tuple(n for n, name in enumerate(names) if name not in place))
-    except (KeyError, TypeError, ValueError):  # not what was written: work it out again
+    except (KeyError, TypeError, ValueError):  # damaged: compute it again
         return _Known({}, "", tuple(range(len(names))))
 
 
@@ -226,14 +225,14 @@ class _Block:
     missing: tuple[int, ...]
 
     def runs(self, jobs: int) -> Iterator[tuple[int, ...]]:
-        """The grammars, cut into pieces of neighbours."""
+        """Yield the grammars in slices."""
         length = math.ceil(len(self.missing) / max(_RUNS, jobs * _RUNS_A_PROCESS))
         for first in range(0, len(self.missing), length):
             yield self.missing[first : first + length]
 
 
 def _blocks(contents: Sequence[Content], known: Sequence[_Known]) -> Iterator[_Block]:
-    """What has to be read; contents that miss the same grammars lie together."""
+    """Yield blocks of contents to read; all contents of a block miss the same grammars."""
     waiting: dict[tuple[int, ...], list[_Member]] = defaultdict(list)
     sizes: dict[tuple[int, ...], int] = defaultdict(int)
     for index, (content, entry) in enumerate(zip(contents, known, strict=True)):
@@ -247,12 +246,12 @@ def _blocks(contents: Sequence[Content], known: Sequence[_Known]) -> Iterator[_B
         yield _Block(tuple(members), missing)
 
 
-#: Failing lines of a content with the bits of the grammars; why it is no KRL; why it was not read.
+#: Failing lines of a content with the bits of the grammars; or why it is no KRL; or was not read.
 _Result = dict[int, int] | str | Skipped
 
 
 def _perform(run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]) -> list[_Result]:
-    """Read contents under a run of grammars."""
+    """Return the results of contents under a run of grammars."""
     texts = [_text(content) for content in contents]
     results: list[_Result] = [{} if isinstance(text, Decoded) else text for text in texts]
     programs = {place: text.text for place, text in enumerate(texts) if isinstance(text, Decoded)}
@@ -283,7 +282,7 @@ def _added(before: Recognizer, after: Recognizer) -> frozenset[str] | None:
 
 
 def _text(content: Content) -> Decoded | str | Skipped:
-    """The text of a content, why it is no KRL, or why it cannot be read any more."""
+    """Return the text of a content, or why it is no KRL, or why it cannot be read any more."""
     data = read(content.found)
     if isinstance(data, Skipped):
         return data

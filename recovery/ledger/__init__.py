@@ -1,1 +1,1 @@
-"""Constructs: their evidence, their acceptance, and the ledger whose replay is the grammar."""
+"""The ledger: constructs with their evidence; its replay is the grammar."""

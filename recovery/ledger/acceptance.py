@@ -1,7 +1,7 @@
-"""Acceptance: constructs taken into the grammar, all of them or none.
+"""Acceptance: constructs are added to the grammar, all of them or none.
 
-The constructs are put behind those accepted before, each is evaluated at its place, and only when
-nothing speaks against any of them are the ledger, the grammar and its generated parser written.
+The new constructs follow those accepted before. Each is evaluated at its place. Only if there is no
+objection to any of them are the ledger, the grammar and its generated parser written.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from support.parallel.progress import Progress, no_progress
 
 @dataclass(frozen=True, slots=True)
 class GrammarPaths:
-    """The files of a grammar: the restrictive start, the grammar, its parser, its ledger."""
+    """The files of a grammar: restrictive start, grammar, generated parser, ledger."""
 
     preliminary: Path
     grammar: Path
@@ -34,7 +34,7 @@ class GrammarPaths:
 
 
 class AcceptanceRefused(Exception):
-    """Something speaks against an acceptance; ``refusals`` are pairs of where and why."""
+    """There are objections to an acceptance; ``refusals`` are pairs of where and why."""
 
     def __init__(self, refusals: Sequence[tuple[str, str]]) -> None:
         super().__init__("; ".join(f"{where}: {why}" for where, why in refusals))
@@ -43,10 +43,10 @@ class AcceptanceRefused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
-    """The ledger as it would be, the grammar it gives, and the evaluations of the constructs given.
+    """A prepared acceptance: the new ledger, its grammar, and the evaluations.
 
-    ``constructs`` are those of the whole ledger, in order; ``file`` of each says where it lay so
-    far. ``refusals`` are pairs of where and why, those of the evaluations included; without any the
+    ``constructs`` are those of the whole ledger, in order; the ``file`` of each is its present one.
+    ``refusals`` are pairs of where and why, including those of the evaluations; without any, the
     acceptance can be written.
     """
 
@@ -57,7 +57,7 @@ class Acceptance:
 
     @property
     def other_refusals(self) -> tuple[tuple[str, str], ...]:
-        """Those that are of no evaluation: an edit does not fit, or the whole does not hold."""
+        """The refusals from no evaluation: an edit does not fit, or the final grammar fails."""
         known = {(e.construct.id, why) for e in self.evaluations for why in e.refusals}
         return tuple(refusal for refusal in self.refusals if refusal not in known)
 
@@ -70,14 +70,14 @@ def prepare(
     current: Grammar | None = None,
     on_done: Progress = no_progress,
 ) -> Acceptance:
-    """Evaluate constructs, in order, as the next to be accepted; nothing is written.
+    """Return the evaluation of constructs, in order, as the next to be accepted; writes nothing.
 
-    What was accepted before keeps its place and is evaluated there again. ``current`` is the
-    grammar in force, where it matters what becomes of it. ``on_done`` gets each construct
-    evaluated.
+    A construct that was accepted before keeps its place and is evaluated there again. ``current``
+    is the grammar in force, if regressions against it matter. ``on_done`` is called after each
+    evaluation.
 
-    Raises `LedgerError` where the grammar in force is not that of the ledger, unless a construct is
-    evaluated again, and `support.files.discovery.IngestError` where a corpus cannot be read.
+    Raises `LedgerError` if the grammar in force is not the replay of the ledger, unless a construct
+    is evaluated again, and `support.files.discovery.IngestError` if a corpus cannot be read.
     """
     is_again = any(_is_in(construct, ledger.accepted) for construct in given)
     if current and not is_again and in_force(preliminary, ledger.accepted).text != current.text:
@@ -95,7 +95,7 @@ def prepare(
             continue
         try:
             wider = grown(grammar, construct)
-        except LedgerError as error:  # there is no grammar for what comes after it
+        except LedgerError as error:  # without this grammar, later constructs cannot be tried
             refusals.append((construct.id, str(error)))
             return Acceptance(tuple(order), tuple(evaluations), grammar, tuple(refusals))
         if construct.file in asked:
@@ -105,7 +105,7 @@ def prepare(
             order[place] = replace(found.construct, state=ACCEPTED, comment="")
             on_done(1)
         grammar = wider
-    if is_again and current:  # what was changed in the middle must not undo what came after it
+    if is_again and current:  # a change in the middle must not undo later constructs
         final, now = known.measure(grammar), corpora.measure(current)
         refusals += (("in the end", why) for why in losses(now, final))
     recognizer = Recognizer(grammar)
@@ -120,7 +120,7 @@ def prepare(
 
 
 class _LastMeasurement:
-    """The measurement of the last grammar: the next construct begins with it."""
+    """A cache of the last measurement, with which the next construct begins."""
 
     def __init__(self, corpora: Corpora) -> None:
         self._corpora = corpora
@@ -137,7 +137,7 @@ def _is_in(construct: Construct, constructs: Sequence[Construct]) -> bool:
 
 
 def _ordered(given: Sequence[Construct], ledger: Ledger) -> list[Construct]:
-    """The ledger with what is given behind all that is accepted, numbered anew."""
+    """Return the ledger with new constructs after all accepted ones, renumbered."""
     new = [c for c in given if not _is_in(c, ledger.accepted)]
     rest = [c for c in ledger.constructs if not _is_in(c, new)]
     last = max((n for n, c in enumerate(rest, 1) if c.is_accepted), default=0)
@@ -151,11 +151,10 @@ def _ordered(given: Sequence[Construct], ledger: Ledger) -> list[Construct]:
 def write(
     acceptance: Acceptance, home: GrammarPaths, generator: Generator = generate
 ) -> list[Path]:
-    """Write ledger, grammar and parser, all or nothing; returns the files that have changed.
+    """Write ledger, grammar and parser, all or nothing; return the files that changed.
 
-    Raises `AcceptanceRefused` where something speaks against it or ANTLR's parser does not treat
-    the examples as they ask for, `grammar.notation.generate.GenerationError` where there is none,
-    and `OSError`.
+    Raises `AcceptanceRefused` if there are refusals or ANTLR's parser disagrees about the examples,
+    `grammar.notation.generate.GenerationError` if it cannot be generated, and `OSError`.
     """
     if acceptance.refusals:
         raise AcceptanceRefused(acceptance.refusals)

@@ -1,7 +1,7 @@
 """Measurement of a grammar: what it reads of the corpora, and which negatives it accepts.
 
 Two grammars that differ by one construct are compared by their measurements
-(`recovery.ledger.evaluation`), so a series of constructs costs one reading of the corpora each.
+(`recovery.ledger.evaluation`). So a series of constructs costs one reading of the corpora each.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, lines
 from recovery.survey.survey import Survey, survey
 from support.files.discovery import source_files
 
-# What `recovery.negatives.language_facts` takes for more than a name.
+# Words that `recovery.negatives.language_facts` treats as keywords.
 _KEYWORDS = (
     RESERVED
     | RESERVED_FIRST
@@ -34,11 +34,11 @@ _SEED = 2010
 
 @dataclass(frozen=True, slots=True)
 class GrammarMeasurement:
-    """A grammar, the surveys under it, and the negatives that it accepts.
+    """A grammar with the surveys under it and the negatives that it accepts.
 
-    ``evidence`` is the survey of other people's files and ``own`` that of our programs; ``None``
-    where there are none here. ``accepted_negatives`` leaves out what the grammar cannot reject yet:
-    a program with a keyword that is still a name to it.
+    ``evidence`` is the survey of other people's files and ``own`` that of our programs; each is
+    ``None`` if there are none. ``accepted_negatives`` leaves out programs that the grammar cannot
+    reject yet: those with a keyword that is still a name to it.
     """
 
     recognizer: Recognizer
@@ -48,12 +48,12 @@ class GrammarMeasurement:
 
     @property
     def grammar(self) -> Grammar:
-        """The grammar."""
+        """The grammar that was measured."""
         return self.recognizer.grammar
 
 
 class Corpora:
-    """What grammars are tried on: other people's files, our programs, negatives."""
+    """The inputs of a measurement: other people's files, our programs, negatives."""
 
     def __init__(
         self,
@@ -65,13 +65,12 @@ class Corpora:
         cache: Path | None = None,
         jobs: int | None = None,
     ) -> None:
-        """``evidence`` are roots of other people's files, ``own`` the folder of our programs.
+        """Create it; ``evidence`` are roots of other people's files, ``own`` our programs.
 
-        What lies below ``own`` is no evidence, nor is a copy of it. ``generated`` is how many
-        negatives are made from pieces of our programs, besides those given; ``cache`` and ``jobs``
-        are those of `recovery.survey.survey`.
-
-        Raises `support.files.discovery.IngestError` where a folder holds nothing to read.
+        Files below ``own``, and copies of them, are no evidence. ``generated`` is the number of
+        negatives that are generated from our programs, besides those given. ``cache`` and ``jobs``
+        are those of `recovery.survey.survey`. Raises `support.files.discovery.IngestError` if a
+        folder has nothing to read.
         """
         self._roots = tuple(evidence)
         self._own = own
@@ -81,7 +80,7 @@ class Corpora:
         self._negatives = NegativeSet((*negatives, *made))
 
     def measure(self, grammar: Grammar) -> GrammarMeasurement:
-        """Read everything under a grammar; raises `support.files.discovery.IngestError`."""
+        """Return the measurement of a grammar; raises `support.files.discovery.IngestError`."""
         recognizer = Recognizer(grammar)
         own = self._survey([self._own] if self._own else [], grammar)
         evidence = self._survey(self._roots, grammar)

@@ -1,7 +1,7 @@
-"""One construct of the ledger as data: edits, evidence, examples, effect.
+"""A construct of the ledger as data: edits, evidence, examples, effect.
 
-The file format is in `recovery.ledger.construct_file`, the folder of all constructs in
-`recovery.ledger.ledger`.
+`recovery.ledger.construct_file` defines the file format, and `recovery.ledger.ledger` is the folder
+of all constructs.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ from pathlib import Path
 from grammar.notation.edits import Edit
 
 PROPOSED, ACCEPTED, REJECTED = "proposed", "accepted", "rejected"
-#: Why a construct may enter the grammar, the weakest first.
+#: The grounds on which a construct can be accepted, the weakest first.
 GROUNDS = ("recurring", "corroborated", "documented", "confirmed")
 STATES = (PROPOSED, *GROUNDS, ACCEPTED, REJECTED)
 _REFUSED = "refused:"
 
 
 class LedgerError(Exception):
-    """A construct, the ledger or a record is not as it must be; the message is one clear line."""
+    """A construct, the ledger or a record is invalid; the message is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What speaks for a construct.
+    """The evidence for a construct.
 
-    ``files``, ``origins`` and ``lines`` are counted in other people's files: what failed without
+    ``files``, ``origins`` and ``lines`` are counts in other people's files of what failed without
     the edits and does not with them (`recovery.ledger.evidence`). ``rules`` are IDs of documented
-    rules, ``manual`` says in words where a manual has it, ``verdict`` is what an oracle said
-    (empty, ``accepted`` or ``refused: message``), ``oracle`` which one, asked by whom and when.
+    rules, ``manual`` is a reference to a manual. ``verdict`` is that of an oracle (empty,
+    ``accepted`` or ``refused: message``), and ``oracle`` says which one, asked by whom and when.
     ``seen`` are places, ``ORIGIN/path:line``.
     """
 
@@ -45,7 +45,7 @@ class Evidence:
 
     @property
     def objection(self) -> str:
-        """Why it does not suffice for a construct to be accepted; empty where it does."""
+        """Why the evidence is not enough for an acceptance; empty if it is."""
         if self.verdict.startswith(_REFUSED):
             return f"the oracle refused it: {self.verdict.removeprefix(_REFUSED).strip()}"
         if self.grounds:
@@ -55,7 +55,7 @@ class Evidence:
 
     @property
     def grounds(self) -> tuple[str, ...]:
-        """The grounds it gives, the weakest first: what one file shows alone is none."""
+        """The grounds that the evidence gives, the weakest first; one file alone gives none."""
         shown = {place.rpartition(":")[0] for place in self.seen}
         is_corroborated = self.origins >= 2
         held = (
@@ -69,12 +69,12 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What the grammar did with the corpora when the construct was accepted, measured then.
+    """The effect of the construct on the corpora, measured when it was accepted.
 
-    ``files`` to ``parsed_bytes`` are of the evidence corpus, copies included, and ``restores`` the
-    files that parse with the construct and did not without; ``own_files`` and ``own_parsed`` are of
-    ``corpus/programs``. ``negatives`` is how many of them it accepts, ``ambiguities`` how many of
-    the texts that can newly be read have two readings. ``metrics`` are those of
+    ``files`` to ``parsed_bytes`` are of the evidence corpus, copies included. ``restores`` is the
+    number of files that parse with the construct and did not without it. ``own_files`` and
+    ``own_parsed`` are of ``corpus/programs``. ``negatives`` is the number it newly accepts,
+    ``ambiguities`` the number of newly readable texts with two readings. ``metrics`` are those of
     `recovery.ledger.metrics`.
     """
 
@@ -95,8 +95,8 @@ class Construct:
     """One file of the ledger.
 
     ``number`` is its place in the ledger, ``None`` for a file from elsewhere. ``accept`` and
-    ``reject`` are whole programs. ``comment`` are the lines at the head of the file, ``file`` is
-    where it was read.
+    ``reject`` are whole programs. ``comment`` is the comment at the head of the file, ``file`` its
+    path.
     """
 
     name: str
@@ -114,15 +114,15 @@ class Construct:
 
     @property
     def id(self) -> str:
-        """Its file name without the suffix, such as ``0012-for-step``."""
+        """The file name without its suffix, such as ``0012-for-step``."""
         return self.name if self.number is None else f"{self.number:04}-{self.name}"
 
     @property
     def is_accepted(self) -> bool:
-        """Whether the grammar has it."""
+        """Whether it is part of the grammar."""
         return self.state == ACCEPTED
 
     @property
     def earned_state(self) -> str:
-        """The state that its evidence earns while it is neither accepted nor rejected."""
+        """The state that its evidence gives while it is neither accepted nor rejected."""
         return (PROPOSED, *self.evidence.grounds)[-1]

@@ -1,7 +1,7 @@
-"""The file of a construct: TOML read strictly, checked key by key, and written in one way only.
+"""The file format of a construct: TOML that is checked key by key and written in one way only.
 
-What is written is what is read: a file written by `text_of` and read again gives the same construct
-and the same text. Of comments, those at the head of the file are kept.
+Reading a file that `text_of` wrote gives the same construct, and writing that gives the same text.
+Of comments, only those at the head of the file are kept.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _RULE_ID = re.compile(r"[A-Z]{3}-\d\d")
 _VERDICT = re.compile(r"(?:accepted|refused: \S.*)?")
 _HEAD = re.compile(r"(?:[ \t]*(?:#.*)?\r?\n)*")
 _ESCAPE = re.compile(r"\\.")
-_PLAIN = {"\\n": "\n", '\\"': '"'}  # escapes that several lines do not need
+_PLAIN = {"\\n": "\n", '\\"': '"'}  # escapes that are not needed in a multi-line text
 _WIDEST_NAME = 40
 _MOST_SEEN = 10
 _COUNTS = ("files", "origins", "lines")
@@ -40,12 +40,12 @@ _FIGURES = tuple(f.name for f in fields(Effect) if f.name != "metrics")
 
 
 def is_rule_id(text: str) -> bool:
-    """Whether the text has the form of a rule's ID, such as ``TRG-04``."""
+    """Return whether a text has the form of a rule ID, such as ``TRG-04``."""
     return _RULE_ID.fullmatch(text) is not None
 
 
 def name_from(text: str) -> str:
-    """A name for a construct: the words of a text in lower case, joined by hyphens."""
+    """Return a name for a construct: the words of a text in lower case, joined by hyphens."""
     words = re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-").lower()
     return words[:_WIDEST_NAME].strip("-") or "construct"
 
@@ -54,7 +54,7 @@ def name_from(text: str) -> str:
 
 
 def read(path: Path) -> Construct:
-    """Read one file; raises `LedgerError`, which names the file and the key."""
+    """Return the construct in a file; raises `LedgerError`, which names the file and the key."""
     try:
         text = read_bytes(path).decode("utf-8")
     except OSError as error:
@@ -65,7 +65,7 @@ def read(path: Path) -> Construct:
 
 
 def parse(text: str, path: Path) -> Construct:
-    """The construct that a text holds, were it the file at ``path``; raises `LedgerError`."""
+    """Return the construct in a text that belongs to the file ``path``; raises `LedgerError`."""
     named = _FILE_NAME.fullmatch(path.name)
     if named is None:
         raise LedgerError(f"{path}: the name is not NNNN-words-in-lower-case.toml")
@@ -83,11 +83,11 @@ def parse(text: str, path: Path) -> Construct:
 
 
 class _WrongError(Exception):
-    """What is wrong with a key, which the message names."""
+    """A key has a wrong value; the message names it."""
 
 
 class _Table:
-    """A table of TOML whose keys are taken out one by one; what is left over is a mistake."""
+    """A TOML table whose keys are removed as they are read; remaining ones are errors."""
 
     def __init__(self, data: Mapping[str, Any], name: str = "") -> None:
         self._left = dict(data)
@@ -129,7 +129,7 @@ class _Table:
         return value
 
     def figures(self) -> dict[str, float]:
-        """All keys that are left, each a number."""
+        """Return all remaining keys, each with a number."""
         values, self._left = self._left, {}
         for key, value in values.items():
             known = isinstance(value, int | float) and not isinstance(value, bool)
@@ -205,7 +205,7 @@ def _effect(table: _Table) -> Effect:
 
 
 def text_of(construct: Construct) -> str:
-    """The file of a construct."""
+    """Return the text of a construct's file."""
     head = f"{construct.comment}\n\n" if construct.comment else ""
     return head + "\n".join(_lines(construct)) + "\n"
 
@@ -244,8 +244,8 @@ def _listed(texts: Sequence[str]) -> str:
 
 
 def quoted(text: str) -> str:
-    """A text as TOML has it; one of several lines stays so, to be read and reviewed."""
-    # JSON's escapes are TOML's, but for DEL, which TOML wants spelt out
+    """Return a text as a TOML string; with several lines it is a multi-line string."""
+    # the escapes of JSON are those of TOML, except that TOML requires one for DEL
     line = json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
     if "\n" not in text:
         return line

@@ -1,4 +1,4 @@
-"""A construct as a record for pages: its description, evidence and edit."""
+"""The record of a construct for pages: description, evidence and edits."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ START_RECORD: ConstructRecord = {
 
 
 def construct_record(construct: Construct, before: Grammar, after: Grammar) -> ConstructRecord:
-    """The fields of a construct that makes ``after`` of ``before``; they are those of the ledger.
+    """Return the record of a construct that changes ``before`` into ``after``.
 
-    ``edits`` has a line for each typed edit, ``diff`` what they do to the text of the grammar.
+    ``edits`` has a line for each typed edit, ``diff`` is the change to the text of the grammar.
     """
     edits, grammar = [], before
     for edit in construct.edits:

@@ -1,4 +1,4 @@
-"""A proposal of a survey written as a construct, ready for review."""
+"""Writing a proposal of a survey as a construct, ready for review."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _FIGURES = {
 
 
 def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) -> Path:
-    """Write proposal ``number`` (from 1) of a cluster of a survey record into ``folder``.
+    """Write proposal ``number`` (from 1) of a cluster in a survey record into ``folder``.
 
-    ``cluster`` is an ID or its beginning. What the survey found out about the proposal is in the
-    comment at the head of the file. Returns the new file; one that exists is never replaced.
-    Raises `LedgerError`.
+    ``cluster`` is an ID or its beginning. The comment at the head of the file has the survey's
+    figures for the proposal. Returns the new file; an existing one is never replaced. Raises
+    `LedgerError`.
     """
     chosen = _cluster(record, cluster)
     proposals = chosen["proposals"]
@@ -65,7 +65,7 @@ def _cluster(record: Mapping[str, Any], wanted: str) -> Mapping[str, Any]:
 def _construct(
     record: Mapping[str, Any], cluster: Mapping[str, Any], proposal: Mapping[str, Any]
 ) -> Construct:
-    """The proposal as a construct without an effect: a survey is no evaluation."""
+    """Return the proposal as a construct without an effect, which only an evaluation measures."""
     reproducer = cluster["reproducer"]
     seen = [
         f"{place(file['path'], origin['origin'])}:{file['line']}"

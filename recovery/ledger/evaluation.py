@@ -25,7 +25,7 @@ from recovery.negatives.negatives import Negative
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import Survey, SurveyedFile
 
-# Mended lines looked at for second readings, the shortest first, and the longest of them in tokens.
+# How many repaired lines are examined for ambiguity, shortest first, and their longest (tokens).
 _LINES_READ = 60
 _LONGEST_READ = 200
 _NAMED = 3
@@ -33,10 +33,11 @@ _NAMED = 3
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """A construct with its evidence and effect as measured, and what speaks against it.
+    """A construct with its measured evidence and effect, and the objections to it.
 
-    ``refusals`` has a line for each reason; a construct without one may be accepted. ``is_counted``
-    says whether there was a corpus to count the evidence in; without one the counts are old ones.
+    ``refusals`` has a line for each objection; without any, the construct can be accepted.
+    ``is_counted`` says whether there was a corpus in which to count the evidence; otherwise the
+    counts are the old ones.
     """
 
     construct: Construct
@@ -45,7 +46,7 @@ class Evaluation:
 
     @property
     def kept(self) -> Construct:
-        """The construct with its new evidence and the state that this gives it; no effect yet."""
+        """The construct with its new evidence and the state this gives; without an effect."""
         construct = self.construct
         if construct.state in (ACCEPTED, REJECTED):
             return construct
@@ -55,7 +56,7 @@ class Evaluation:
 def evaluate(
     construct: Construct, before: GrammarMeasurement, after: GrammarMeasurement
 ) -> Evaluation:
-    """Evaluate a construct by the measurements of the grammars without and with it."""
+    """Return the evaluation by the measurements of the grammars without and with a construct."""
     lines: list[RestoredLine] = []
     evidence = construct.evidence
     if before.evidence is not None and after.evidence is not None:
@@ -92,14 +93,14 @@ def _refusals(
             yield f"examples.accept: number {number} is read the same way without the construct"
 
 
-#: Each token by its name, with the rules that begin and end before it.
+#: Each token's name with the rules that begin and end before it.
 _Reading = tuple[tuple[Steps, str], ...]
 
 
 def _reading(recognizer: Recognizer, text: str) -> _Reading | None:
-    """How a program is read; ``None`` where the text is no program.
+    """Return how a program is read, or ``None`` if the text is no program.
 
-    Another keyword or other rules are another reading; the order of alternatives in a rule is not.
+    Another keyword or other rules make another reading; the order of alternatives does not.
     """
     kinds = recognizer.kinds(text)
     if recognizer.run(recognizer.start, kinds)[1] is not None:
@@ -113,7 +114,7 @@ def _reading(recognizer: Recognizer, text: str) -> _Reading | None:
 
 
 def losses(before: GrammarMeasurement, after: GrammarMeasurement) -> Iterator[str]:
-    """What the first grammar did rightly and the second does not: a line each."""
+    """Yield what the first grammar did rightly and the second does not, one line each."""
     for survey, other in ((before.evidence, after.evidence), (before.own, after.own)):
         if survey is not None and other is not None:
             yield from _breaks(broken_files(survey, other))
@@ -188,7 +189,7 @@ def _ambiguities(
     after: GrammarMeasurement,
     lines: Sequence[RestoredLine],
 ) -> int:
-    """Of the accept examples and the lines that can now be read, those with two readings."""
+    """Return how many accept examples and newly readable lines have two readings."""
     wider = after.recognizer
     programs = map(wider.kinds, construct.accept)
     count = sum(is_ambiguous(wider, wider.start, kinds) for kinds in programs)
@@ -199,7 +200,7 @@ def _ambiguities(
         if len(form.kinds) > _LONGEST_READ:
             break
         way = [names[kind] for kind in min(map(paths.prefix, form.before), key=len)]
-        if not kind_of.keys() >= set(way):  # the edits took away what leads to this line
+        if not kind_of.keys() >= set(way):  # the edits removed the path to this line
             continue
         start, failed = wider.run(wider.start, [kind_of[name] for name in way])
         if failed is None:

@@ -1,9 +1,9 @@
-"""Evidence: the lines of real files that can be read with a construct.
+"""Evidence: the lines of real files that can be read because of a construct.
 
-A line counts where it failed by itself under the grammar before the construct and does not fail
-under the grammar after it. A construct that lies behind others on the same line is so counted when
-the last of them arrives, and nothing is counted twice. A content that lies in several places is
-one witness: its lines count once, and there are never more origins than different contents.
+A line counts if it failed by itself under the grammar before the construct and does not fail under
+the grammar after it. If a line needs several constructs, it counts for the last of them, so nothing
+is counted twice. A content in several locations is one witness: its lines count once, and there are
+never more origins than distinct contents.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _PLACES_SEEN = 10
 
 @dataclass(frozen=True, slots=True)
 class RestoredLine:
-    """A line that failed by itself and no longer fails: its file, and how it failed."""
+    """A line that failed by itself and no longer fails, with its file and its failure."""
 
     file: SurveyedFile
     failed: FailingLine
@@ -31,7 +31,7 @@ class RestoredLine:
 
 
 def restored_lines(before: Survey, after: Survey) -> list[RestoredLine]:
-    """The lines that fail in the survey ``before`` and not in that ``after``, each content once."""
+    """Return the lines that fail in ``before`` and not in ``after``, copies left out."""
     return [
         RestoredLine(old, failed, before.forms[failed.form])
         for old, new in _pairs(before, after)
@@ -43,12 +43,12 @@ def restored_lines(before: Survey, after: Survey) -> list[RestoredLine]:
 
 
 def restored_files(before: Survey, after: Survey) -> list[SurveyedFile]:
-    """The files that parse only in the survey ``after``."""
+    """Return the files that parse in ``after`` only."""
     return [new for old, new in _pairs(before, after) if old.failures and not new.failures]
 
 
 def broken_files(before: Survey, after: Survey) -> list[tuple[SurveyedFile, FailingLine]]:
-    """The files that parse only in the survey ``before``, each with its first failure after it."""
+    """Return the files that parse in ``before`` only, each with its first failure in ``after``."""
     return [
         (new, new.failures[0])
         for old, new in _pairs(before, after)
@@ -57,13 +57,13 @@ def broken_files(before: Survey, after: Survey) -> list[tuple[SurveyedFile, Fail
 
 
 def _pairs(before: Survey, after: Survey) -> Iterator[tuple[SurveyedFile, SurveyedFile]]:
-    """The same contents in two surveys of one corpus."""
+    """Yield the same content in two surveys of one corpus."""
     known = {file.digest: file for file in after.files}
     return ((old, known[old.digest]) for old in before.files if old.digest in known)
 
 
 def with_counts(evidence: Evidence, lines: Sequence[RestoredLine]) -> Evidence:
-    """The evidence with its counts and places replaced by those of mended lines."""
+    """Return the evidence with new counts and places, those of the restored lines."""
     files = {line.file.digest: line.file for line in lines}
     origins = {origin for file in files.values() for _, origin in file.places}
     return replace(
@@ -76,7 +76,7 @@ def with_counts(evidence: Evidence, lines: Sequence[RestoredLine]) -> Evidence:
 
 
 def _seen(lines: Iterable[RestoredLine]) -> list[str]:
-    """The first places, spread over the origins first, then over the files of each."""
+    """Return the first places, spread over the origins and then over the files of each."""
     by_file: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for line in lines:
         path, origin = line.file.places[0]
@@ -86,14 +86,14 @@ def _seen(lines: Iterable[RestoredLine]) -> list[str]:
 
 
 def _in_turns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
-    """The first of each row, then the second of each that has one, and so on."""
+    """Yield the first item of each row, then the second of each, and so on."""
     return (text for turn in zip_longest(*rows) for text in turn if text is not None)
 
 
 def place(path: str, origin: str) -> str:
-    """Where a file lies within its origin, the origin's folder first.
+    """Return the path of a file within its origin, beginning with the origin's folder.
 
-    The folders around the origin are left out: they belong to one machine.
+    The folders above the origin are left out, because they differ on every machine.
     """
     folders = path.split("/")
     for index, folder in enumerate(folders[:-1]):

@@ -1,4 +1,4 @@
-"""The ledger: a folder of constructs whose edits, replayed in order, make the grammar in force.
+"""The ledger: a folder of constructs whose edits, replayed in order, give the current grammar.
 
 The restrictive start and every accepted construct, in the order of their numbers, give ``KRL.g4``
 byte for byte. Numbers run from 1 without a gap.
@@ -19,7 +19,7 @@ from recovery.ledger.construct import Construct, LedgerError
 from recovery.ledger.construct_file import read
 from support.files.atomic_write import JournalError, finish
 
-#: In the folder of the ledger: what an acceptance was about to write when it was killed.
+#: The journal in the ledger's folder with which a killed acceptance is completed.
 UNFINISHED = ".unfinished.json"
 
 
@@ -32,12 +32,10 @@ class Ledger:
 
     @classmethod
     def read(cls, folder: Path) -> Ledger:
-        """Read the folder; one that is not there is a ledger without constructs.
+        """Return the ledger in a folder; a missing folder is a ledger without constructs.
 
-        What an acceptance that was killed had laid ready is put in place first.
-
-        Raises `LedgerError` for the first file that is not as it must be, for a number given twice
-        and for a gap.
+        If an acceptance was killed while writing, it is completed first. Raises `LedgerError` for
+        the first invalid file, for a duplicate number and for a gap.
         """
         try:
             finish(folder / UNFINISHED)
@@ -58,17 +56,17 @@ class Ledger:
 
     @property
     def accepted(self) -> tuple[Construct, ...]:
-        """The constructs that the grammar has."""
+        """The constructs that are part of the grammar."""
         return tuple(c for c in self.constructs if c.is_accepted)
 
     def ahead_of(self, construct: Construct) -> tuple[Construct, ...]:
-        """The accepted constructs before its place: where it was accepted, or behind all."""
+        """Return the accepted constructs before its place; all if it is not accepted itself."""
         accepted = self.accepted
         files = [c.file for c in accepted]
         return accepted[: files.index(construct.file)] if construct.file in files else accepted
 
     def take(self, file: Path) -> Construct:
-        """The construct of a file, which may lie in the ledger or elsewhere.
+        """Return the construct in a file, inside or outside of the ledger.
 
         Raises `LedgerError`.
         """
@@ -77,7 +75,10 @@ class Ledger:
         return next((c for c in self.constructs if c.file == file), None) or read(file)
 
     def find(self, wanted: str) -> Construct:
-        """The construct of a number, an ID or the beginning of one; raises `LedgerError`."""
+        """Return the construct with a number, an ID or the beginning of one.
+
+        Raises `LedgerError` if there is none or more than one.
+        """
         if wanted.isdecimal():
             found = [c for c in self.constructs if c.number == int(wanted)]
         else:
@@ -90,7 +91,7 @@ class Ledger:
 
 
 def grown(grammar: Grammar, construct: Construct) -> Grammar:
-    """The grammar with one more construct; raises `LedgerError` where its edits do not fit."""
+    """Return the grammar with one more construct; raises `LedgerError` if an edit does not fit."""
     where = construct.file or construct.id
     try:
         after = apply(grammar, construct.edits)
@@ -105,9 +106,9 @@ def grown(grammar: Grammar, construct: Construct) -> Grammar:
 def replay(
     preliminary: Grammar, constructs: Sequence[Construct]
 ) -> list[tuple[Construct, Grammar]]:
-    """Each construct with the grammar after it, whose text is exact to the byte.
+    """Return each construct with the grammar after it, whose text is exact to the byte.
 
-    Raises `LedgerError` where an edit does not fit or leaves no well-formed grammar.
+    Raises `LedgerError` if an edit does not fit or the result is not well-formed.
     """
     out = []
     grammar = preliminary
@@ -118,17 +119,16 @@ def replay(
 
 
 def in_force(preliminary: Grammar, constructs: Sequence[Construct]) -> Grammar:
-    """The grammar after constructs, which all count; raises `LedgerError` as `replay` does."""
+    """Return the grammar after all of the constructs; raises `LedgerError` as `replay` does."""
     steps = replay(preliminary, constructs)
     return steps[-1][1] if steps else preliminary
 
 
 def findings(ledger: Ledger, preliminary: Grammar, grammar: Path) -> Iterator[str]:
-    """What does not hold of an accepted ledger, a line each; nothing where all is well.
+    """Yield the errors of an accepted ledger, one line each.
 
-    The replay is compared with the file ``grammar`` byte for byte. Every accept example has to be
-    accepted under the grammar at the end, every reject example refused, and every accepted
-    construct has to have grounds.
+    Its replay has to be the file ``grammar`` byte for byte. The final grammar has to accept every
+    accept example and reject every reject example, and every accepted construct needs grounds.
     """
     try:
         steps = replay(preliminary, ledger.accepted)
@@ -153,12 +153,12 @@ def findings(ledger: Ledger, preliminary: Grammar, grammar: Path) -> Iterator[st
 
 
 def is_wording(before: Grammar, after: Grammar) -> bool:
-    """Whether two grammars differ in comments and layout at most, which need no evidence."""
+    """Return whether two grammars differ only in comments and layout, which needs no evidence."""
     return before.rules == after.rules
 
 
 def broken_examples(construct: Construct, recognizer: Recognizer) -> Iterator[str]:
-    """Examples that a grammar with the construct does not treat as they ask for."""
+    """Yield the examples on which a grammar with the construct is wrong."""
     for number, text in enumerate(construct.accept, 1):
         if not recognizer.accepts(text):
             yield f"examples.accept: number {number} is not accepted"
@@ -168,7 +168,7 @@ def broken_examples(construct: Construct, recognizer: Recognizer) -> Iterator[st
 
 
 def _difference(text: str, file: Path) -> str:
-    """Where a file differs from a text, in one line; empty where it does not."""
+    """Return where a file differs from a text, in one line; empty if it does not."""
     try:
         found = file.read_bytes()
     except OSError as error:
@@ -183,7 +183,7 @@ def _difference(text: str, file: Path) -> str:
 
 
 def preliminary_of(path: Path) -> Grammar:
-    """The restrictive start; raises `LedgerError`."""
+    """Return the restrictive start; raises `LedgerError`."""
     try:
         return read_file(path)
     except GrammarError as error:

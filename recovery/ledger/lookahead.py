@@ -1,9 +1,9 @@
 """Lookahead: how many tokens a parser needs to choose a branch of a rule.
 
-A *decision* is a place in a rule where its text leaves a choice: alternatives, or an element with
-``?``, ``*`` or ``+``. One token decides it when no token can begin two of its branches; two do when
-no pair of tokens can. What follows the rule counts wherever the rule is used (strong LL(k)), so a
-figure here is what a parser pays that looks ahead without knowing where it came from.
+A *decision* is a place in a rule with a choice: alternatives, or an element with ``?``, ``*`` or
+``+``. One token decides it if no token can begin two of its branches; two tokens do if no pair of
+tokens can. Whatever can follow the rule anywhere counts (strong LL(k)), so the figures are those of
+a parser that looks ahead without knowing the caller of a rule.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from grammar.notation.model import (
     Rule,
 )
 
-#: Tokens looked at; decisions that need more are not distinguished.
+#: Greatest lookahead in tokens; decisions that need more are not distinguished.
 _FARTHEST = 2
 _WIDEST = 60
 
@@ -34,9 +34,9 @@ _WIDEST = 60
 class Decision:
     """One decision of a grammar.
 
-    ``tokens`` is 1 or 2 where so many decide it, 3 where two do not. ``branches`` are those, as
-    written in the rule, that begin alike with one token fewer than that, and ``alike`` these tokens
-    in one case, as people read them; both are empty where one token decides.
+    ``tokens`` is 1 or 2 if so many tokens decide it, 3 if two do not. ``branches`` are those, as
+    written, that can begin with the same tokens if one fewer is read, and ``alike`` is an example
+    of such tokens, as people read them; both are empty if one token decides.
     """
 
     rule: str
@@ -47,7 +47,7 @@ class Decision:
 
     @property
     def in_words(self) -> str:
-        """What stays undecided, in one line."""
+        """What remains undecided, in one line."""
         if not self.branches:
             return f"{self.rule}: one token decides"
         named = " and ".join(f"“{branch}”" for branch in self.branches)
@@ -55,16 +55,16 @@ class Decision:
 
 
 def decisions(grammar: Grammar) -> tuple[Decision, ...]:
-    """Every decision of the parser rules in the order of the file.
+    """Return every decision of the parser rules in the order of the file.
 
-    The grammar has no left recursion: `grammar.notation.g4.read` refuses it.
+    The grammar must not be left-recursive; `grammar.notation.g4.read` rejects such grammars.
     """
     graph = _Graph(grammar)
     return tuple(_decided(graph, forks) for forks in graph.forks)
 
 
 def share_decided(found: Sequence[Decision], tokens: int) -> float:
-    """Per cent of the decisions that so many tokens decide, or fewer; 100 where there are none."""
+    """Return the percentage of decisions that at most ``tokens`` decide; 100 if there are none."""
     decided = sum(decision.tokens <= tokens for decision in found)
     return 100 * decided / len(found) if found else 100.0
 
@@ -72,13 +72,13 @@ def share_decided(found: Sequence[Decision], tokens: int) -> float:
 # ----------------------------------------------------------------------------- the rules as a graph
 
 _Node = int
-#: A node and the nodes to return to, the outermost first. Below them lies any caller of the rule.
+#: A node and the nodes to return to, the outermost first. Below these is any caller of the rule.
 _Place = tuple[_Node, tuple[_Node, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class _Fork:
-    """A decision: the node each branch begins at, with its text as written."""
+    """A decision: the text of each branch with its first node."""
 
     rule: str
     kind: OneOf["choice", "optional", "repetition"]
@@ -86,7 +86,7 @@ class _Fork:
 
 
 class _Graph:
-    """All parser rules, written out as nodes; nothing is merged, so that branches stay apart."""
+    """The parser rules as a graph of nodes without merging, so that branches stay distinct."""
 
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar
@@ -106,7 +106,7 @@ class _Graph:
         self.ahead = cache(self._ahead)
 
     def spelled(self, token: str) -> str:
-        """A token as people read it: its text where it has only one, else its name."""
+        """Return a token as people read it: its text if it has only one, else its name."""
         return self._texts.get(token, token)
 
     def _node(self) -> _Node:
@@ -131,7 +131,7 @@ class _Graph:
         return end
 
     def _fork(self, wanted: bool) -> int | None:
-        """Keep the place of a decision, which comes before those inside its branches."""
+        """Reserve the index of a decision, which comes before those inside its branches."""
         if not wanted:
             return None
         self.forks.append(_Fork("", "choice", ()))
@@ -171,7 +171,7 @@ class _Graph:
                 raise AssertionError("sets of characters do not occur in parser rules")
 
     def _ahead(self, place: _Place) -> Mapping[str, frozenset[_Place]]:
-        """The tokens that may come at a place, and the places after each."""
+        """Return the tokens that can come at a place, with the places after each."""
         found: dict[str, set[_Place]] = defaultdict(set)
         seen = {place}
         todo = [place]
@@ -187,7 +187,7 @@ class _Graph:
                 reached.append((returns[-1], returns[:-1]))
             elif ended is not None:
                 reached += [(back, ()) for back in self._returns[ended]]
-                if ended == self.grammar.start:  # behind a program lies the end of the file
+                if ended == self.grammar.start:  # the end of the file follows a program
                     found["EOF"].add((node, ()))
             for other in reached:
                 if other not in seen:
@@ -203,12 +203,12 @@ def _written(rule: Rule, node: Element | Alternative) -> str:
 
 # ------------------------------------------------------------------------------------ the figures
 
-#: Tokens read so far, and for each branch the places where it may then be.
+#: The tokens read so far, and the possible places after them for each branch.
 _Case = tuple[tuple[str, ...], Mapping[int, frozenset[_Place]]]
 
 
 def _decided(graph: _Graph, fork: _Fork) -> Decision:
-    """How far ahead a decision has to look."""
+    """Return how much lookahead a decision needs."""
     start = {number: frozenset([(node, ())]) for number, (_, node) in enumerate(fork.branches)}
     undecided: list[_Case] = [((), start)]
     alike: tuple[str, ...] = ()
@@ -233,7 +233,7 @@ def _decided(graph: _Graph, fork: _Fork) -> Decision:
 def _alike(
     graph: _Graph, read: tuple[str, ...], reached: Mapping[int, frozenset[_Place]]
 ) -> Iterator[_Case]:
-    """One more token: those that several branches can continue with, and where they are then."""
+    """Yield the cases after one more token in which several branches remain."""
     following: dict[str, dict[int, set[_Place]]] = defaultdict(lambda: defaultdict(set))
     for number, places in reached.items():
         for place in places:

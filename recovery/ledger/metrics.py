@@ -1,9 +1,9 @@
 """Metrics of a grammar: its size and its structure.
 
-They are those of Power and Malloy, "A metrics suite for grammar-based software" (Journal of
-Software Maintenance and Evolution, 2004), read for rules with ``|``, ``?``, ``*`` and ``+``, and
-what a parser needs to look ahead (`recovery.ledger.lookahead`). Only parser rules count: a token is
-a terminal here, however its own rule is written. ``EOF`` is no symbol.
+They follow Power and Malloy, "A metrics suite for grammar-based software" (Journal of Software
+Maintenance and Evolution, 2004), adapted to rules with ``|``, ``?``, ``*`` and ``+``, with
+lookahead added (`recovery.ledger.lookahead`). Only parser rules count: a token is a terminal,
+however its own rule is written. ``EOF`` is no symbol.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from grammar.notation.model import (
 )
 from recovery.ledger.lookahead import decisions, share_decided
 
-#: What each metric says, in a line.
+#: The meaning of each metric in one line.
 MEANINGS: Mapping[str, str] = {
     "TERM": "tokens that the rules use",
     "VAR": "rules",
@@ -45,7 +45,7 @@ _PLACES = 3
 
 
 def metrics(grammar: Grammar) -> Mapping[str, float]:
-    """All metrics by name, in the order of `MEANINGS`, rounded to three decimals.
+    """Return all metrics by name, in the order of `MEANINGS`, rounded to three decimals.
 
     Size, where a *symbol* is a name of a token or a rule on a right-hand side:
 
@@ -93,7 +93,7 @@ def metrics(grammar: Grammar) -> Mapping[str, float]:
 
 
 def _symbols(grammar: Grammar, alternatives: Sequence[Alternative]) -> Iterator[str]:
-    """Every symbol of a right-hand side, as often as it is written."""
+    """Yield every symbol of a right-hand side, as often as it is written."""
     for alternative in alternatives:
         for element in alternative.elements:
             inner: Element = element
@@ -106,7 +106,7 @@ def _symbols(grammar: Grammar, alternatives: Sequence[Alternative]) -> Iterator[
 
 
 def _operators(alternatives: Sequence[Alternative]) -> Iterator[str]:
-    """Every operator of a right-hand side: ``|``, ``?``, ``*``, ``+``, ``sequence``, ``empty``."""
+    """Yield every operator of a right-hand side: ``|?*+``, ``sequence`` or ``empty``."""
     yield from "|" * (len(alternatives) - 1)
     for alternative in alternatives:
         elements = [e for e in alternative.elements if not _is_end(e)]
@@ -125,13 +125,13 @@ def _is_end(element: Element) -> bool:
 
 
 def _effort(operators: Counter[str], operands: Counter[str]) -> float:
-    """Halstead's effort."""
+    """Return Halstead's effort."""
     volume = (operators.total() + operands.total()) * log2(len(operators) + len(operands))
     return len(operators) / 2 * operands.total() / len(operands) * volume
 
 
 def _structure(calls: Mapping[str, set[str]]) -> Mapping[str, float]:
-    """What the calls between the rules say."""
+    """Return the metrics of the graph of calls between rules."""
     found = {name: reached(calls, name) for name in calls}
     level = {  # a level is named by the first of its rules
         name: next(m for m in calls if m == name or (m in found[name] and name in found[m]))

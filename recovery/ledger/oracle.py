@@ -1,8 +1,8 @@
-"""The oracle: a program in; accepted, or a message, out.
+"""Oracles: a program in; accepted, or an error message, out.
 
-The official implementation says what the language is, but it is not at hand for most people. So it
-is asked through one small interface, with two adapters: a command that is run for each program, and
-a form of verdicts that a person with the implementation has filled (`recovery.ledger.verdicts`).
+The official implementation defines the language, but most people do not have it. So it is accessed
+through one small interface with two adapters: a command that is run for each program, and a form of
+verdicts that a person with the implementation has filled in (`recovery.ledger.verdicts`).
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ _LONGEST_MESSAGE = 200
 
 
 class OracleError(Exception):
-    """An oracle cannot be asked, or gave no answer; the message is one clear line."""
+    """An oracle cannot be asked or gave no answer; the message is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExampleProgram:
     """An example of a construct as a module of its own.
 
-    ``name`` is at most 24 characters and the name of its first routine or data list, as a
-    controller wants it. ``digest`` is that of the example as the ledger has it, so that an answer
-    stays true when the construct gets another number. ``is_accept`` says what the ledger claims.
+    ``name`` has at most 24 characters and is the name of its first routine or data list, as a
+    controller requires. ``digest`` is that of the example in the ledger, so that an answer stays
+    valid if the construct is renumbered. ``is_accept`` is what the ledger claims.
     """
 
     name: str
@@ -43,44 +43,44 @@ class ExampleProgram:
 
     @property
     def file_name(self) -> str:
-        """``.dat`` for a data list, ``.src`` for anything else."""
+        """The name with ``.dat`` for a data list and ``.src`` for anything else."""
         head = next((line for line in lines(self.text) if line.tokens), None)
         return f"{self.name}.{'dat' if head and head.lead == 'DEFDAT' else 'src'}"
 
 
 @dataclass(frozen=True, slots=True)
 class OracleAnswer:
-    """What an oracle said about a program; the message is that of a refusal."""
+    """The answer of an oracle to a program; ``message`` is the reason of a refusal."""
 
     is_accepted: bool
     message: str = ""
 
 
 class Oracle(Protocol):
-    """Anything that accepts or refuses a program. ``name`` says what it is, and whose answer."""
+    """Accepts or refuses programs. ``name`` says what it is and whose answer it gives."""
 
     name: str
 
     def ask(self, program: ExampleProgram) -> OracleAnswer | None:
-        """The answer; ``None`` where this oracle has none for the program. Raises `OracleError`."""
+        """Return the answer, or ``None`` if it has none for the program; raises `OracleError`."""
         ...
 
 
 class CommandOracle:
     """Runs a command with the path of the program as its last argument.
 
-    Exit status 0 is accepted, 1 refused, the first line of output being the message. Anything else,
-    and silence for longer than the time given, is no answer and raises `OracleError`.
+    Exit status 0 means accepted, 1 refused with the first line of output as the message. Any other
+    status, and a timeout, is no answer and raises `OracleError`.
     """
 
     def __init__(self, command: Sequence[str], name: str, timeout: float) -> None:
-        """``timeout`` in seconds for one program."""
+        """Create it; ``timeout`` is in seconds for one program."""
         self.name = name
         self._command = tuple(command)
         self._timeout = timeout
 
     def ask(self, program: ExampleProgram) -> OracleAnswer:
-        """Run the command in a folder of its own that holds the program and nothing else."""
+        """Return the answer of the command, run in a temporary folder with only the program."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, program.file_name)
             path.write_bytes(as_bytes(program))
@@ -112,7 +112,7 @@ class CommandOracle:
 
 
 def programs_of(construct: Construct) -> tuple[ExampleProgram, ...]:
-    """The examples of a construct as modules, ``C0012_1`` and so on, those to accept first."""
+    """Return the examples of a construct as modules, ``C0012_1`` and so on, accept ones first."""
     out = []
     for place, text in enumerate((*construct.accept, *construct.reject), 1):
         name = f"C{construct.number or 0:04}_{place}"  # does not show what is expected
@@ -123,7 +123,7 @@ def programs_of(construct: Construct) -> tuple[ExampleProgram, ...]:
 
 
 def _renamed(text: str, name: str) -> str:
-    """The program with its first routine or data list, and what refers to it, called ``name``."""
+    """Return the program with its first routine or data list renamed, and its references too."""
     found = lines(text)
     head = next((line for line in found if line.lead in _HEADS), None)
     old = _name_in(head) if head else ""
@@ -133,7 +133,7 @@ def _renamed(text: str, name: str) -> str:
 
 
 def _name_in(head: SourceLine) -> str:
-    """The name a head gives: before its parenthesis, or the first one; empty where none is."""
+    """Return the name in the head of a routine or data list; empty if there is none."""
     kinds = head.kinds
     end = kinds.index("(") if "(" in kinds else len(kinds)
     names = [token.word for token in head.tokens[:end] if token.kind == "name"]
@@ -152,7 +152,7 @@ def _with(line: SourceLine, old: str, new: str) -> str:
 
 
 def as_bytes(program: ExampleProgram) -> bytes:
-    """The file as a controller holds it: CRLF, and cp1252 where that can say it."""
+    """Return the file as on a controller: CRLF, and cp1252 if that can encode it, else UTF-8."""
     text = program.text.replace("\r\n", "\n").replace("\n", "\r\n")
     try:
         return text.encode("cp1252")
@@ -164,10 +164,10 @@ def as_bytes(program: ExampleProgram) -> bytes:
 
 
 def reason_to_ask(construct: Construct) -> str:
-    """Why an oracle should be asked about a construct; empty where none need be.
+    """Return why an oracle should be asked about a construct; empty if it need not be.
 
-    What two origins show needs no oracle. A rule or a manual alone is worth a question: it may be
-    said from memory, or of another release.
+    A construct that two origins show needs no oracle. One that only a rule or a manual supports
+    does: that may be from memory, or about another release.
     """
     evidence = construct.evidence
     if construct.state == REJECTED or evidence.verdict or evidence.origins >= 2:
@@ -184,8 +184,8 @@ def reason_to_ask(construct: Construct) -> str:
 class OracleVerdict:
     """A construct with the verdict of an oracle.
 
-    ``unanswered`` is how many of its programs have no answer yet; ``findings`` say where the oracle
-    and the ledger differ, a line each.
+    ``unanswered`` is the number of its programs without an answer; ``findings`` are the differences
+    between oracle and ledger, one line each.
     """
 
     construct: Construct
@@ -194,10 +194,10 @@ class OracleVerdict:
 
 
 def verdict_on(construct: Construct, oracle: Oracle) -> OracleVerdict:
-    """Ask an oracle about all examples of a construct.
+    """Return the verdict of an oracle on a construct, from all of its examples.
 
-    The verdict is ``accepted`` when every accept example is, and the first refusal otherwise; it
-    waits for the last answer about them. A reject example that the oracle accepts is a finding.
+    The verdict is ``accepted`` if every accept example is, and the first refusal otherwise; it is
+    empty until all of them have answers. A reject example that the oracle accepts is a finding.
     """
     answers = [(program, oracle.ask(program)) for program in programs_of(construct)]
     findings: list[str] = []

@@ -1,4 +1,4 @@
-"""Overview of a construct: a row of a list, a page of text, the difference it makes."""
+"""Overviews of a construct: a row of a list, a page of text, its change to the grammar."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from recovery.ledger.oracle import reason_to_ask
 
 
 class ConstructRow(TypedDict):
-    """A construct in a list; ``waits`` says why an oracle should be asked, if it should."""
+    """A construct in a list; ``waits`` says why an oracle should be asked, or is empty."""
 
     number: int | None
     id: str
@@ -30,7 +30,7 @@ class ConstructRow(TypedDict):
 
 
 def row_of(construct: Construct) -> ConstructRow:
-    """A construct as a row of a list."""
+    """Return a construct as a row of a list."""
     evidence = construct.evidence
     return {
         "number": construct.number,
@@ -49,7 +49,7 @@ def row_of(construct: Construct) -> ConstructRow:
 
 
 def page_of(construct: Construct) -> Iterator[str]:
-    """Everything a file of the ledger says, but for its edits, a line each."""
+    """Yield the content of a construct's file, without its edits, line by line."""
     evidence = construct.evidence
     yield f"{construct.id}: {construct.title}"
     yield f"{construct.state}; grounds: {', '.join(evidence.grounds) or 'none'}"
@@ -82,17 +82,17 @@ def page_of(construct: Construct) -> Iterator[str]:
 
 
 def counts_of(evidence: Evidence) -> str:
-    """How much was found, in words."""
+    """Return the counts of the evidence in words."""
     counts = (evidence.files, "file"), (evidence.origins, "origin"), (evidence.lines, "line")
     files, origins, lines = (f"{n} {what}" if n == 1 else f"{n} {what}s" for n, what in counts)
     return f"{files} of {origins}, {lines}"
 
 
 def difference(construct: Construct, preliminary: Grammar, ledger: Ledger) -> Iterator[str]:
-    """The edits and the change to the grammar, a line each.
+    """Yield the edits and the change to the grammar, line by line.
 
-    An accepted construct is shown at its place, another one on the grammar in force. Raises
-    `LedgerError` where the ledger cannot be replayed.
+    An accepted construct is shown at its place, another one after the current grammar. Raises
+    `LedgerError` if the ledger cannot be replayed.
     """
     before = in_force(preliminary, ledger.ahead_of(construct))
     try:

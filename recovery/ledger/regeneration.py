@@ -1,7 +1,7 @@
-"""The parser of a new grammar: generated, and tried on the ledger's examples, before it is kept.
+"""Generating the parser of a new grammar, and testing it on the ledger's examples.
 
-ANTLR's parser is the reference. Where it does not treat an example as our recogniser does, the two
-disagree about the grammar, and the grammar is not ready.
+ANTLR's parser is the reference. If it and our recogniser treat an example differently, they
+disagree about the grammar, and the parser is not kept.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from grammar.notation.model import Grammar
 from grammar.parser import antlr_reference
 from recovery.ledger.construct import Construct
 
-#: Makes the parser of a grammar file in a folder, as `grammar.notation.generate.generate` does.
+#: Generates the parser of a grammar file in a folder, like `grammar.notation.generate.generate`.
 Generator = Callable[[Path, Path], None]
 
 _MODULES = ("grammar._generated.KRLLexer", "grammar._generated.KRLParser")
@@ -27,10 +27,10 @@ _MODULES = ("grammar._generated.KRLLexer", "grammar._generated.KRLParser")
 def parser_of(
     grammar: Grammar, kept: Path, examples: Iterable[Construct], generator: Generator = generate
 ) -> tuple[Mapping[str, bytes], list[tuple[str, str]]]:
-    """The files of the generated parser by name, and its disagreements about the examples.
+    """Return the files of the generated parser by name, and its errors on the examples.
 
-    Nothing is generated, and nothing returned, where the parser in the folder ``kept`` is that of
-    this grammar. Raises `grammar.notation.generate.GenerationError`.
+    Returns nothing if the parser in the folder ``kept`` already is that of this grammar. Raises
+    `grammar.notation.generate.GenerationError`.
     """
     with tempfile.TemporaryDirectory() as scratch:
         source, folder = Path(scratch, "KRL.g4"), Path(scratch, "generated")
@@ -44,7 +44,7 @@ def parser_of(
 
 
 def disagreements(constructs: Iterable[Construct]) -> Iterator[tuple[str, str]]:
-    """Examples that ANTLR's parser does not treat as they ask for: the construct, and what."""
+    """Yield the examples on which ANTLR's parser is wrong, as construct ID and message."""
     for construct in constructs:
         for number, text in enumerate(construct.accept, 1):
             refusal = antlr_reference.refusal(text)
@@ -58,7 +58,7 @@ def disagreements(constructs: Iterable[Construct]) -> Iterator[tuple[str, str]]:
 
 @contextmanager
 def _parser_in(folder: Path) -> Iterator[None]:
-    """Let `grammar.parser.antlr_reference` ask the parser in a folder while the block runs."""
+    """Make `grammar.parser.antlr_reference` use the parser in a folder within the context."""
     ours = {name: sys.modules.pop(name) for name in _MODULES if name in sys.modules}
     try:
         for name in _MODULES:  # by hand: an editable install knows its own place for these names

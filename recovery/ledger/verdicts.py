@@ -1,7 +1,7 @@
-"""Recorded verdicts: the bundle that a person carries to the implementation, and the form.
+"""Recorded verdicts: a bundle that a person takes to the implementation, and its form.
 
-The bundle is a folder with programs, a README that says what to do, and ``verdicts.toml``, which
-the person fills. Read back, the form is an oracle.
+The bundle is a folder with programs, a README with instructions, and ``verdicts.toml``, the form to
+fill in. A filled form is an oracle.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ release = ""   # such as KSS 8.6.7, OfficeLite
 
 
 def write_bundle(programs: Sequence[ExampleProgram], folder: Path) -> list[Path]:
-    """Write programs, README and an empty form into a folder; returns what was written.
+    """Write programs, README and an empty form into a folder; return the written files.
 
-    Raises `OracleError` where the folder holds a form already, which may be half filled.
+    Raises `OracleError` if the folder already has a form, which may be partly filled in.
     """
     if (folder / FORM).exists():
         raise OracleError(f"{folder / FORM}: there is a form already; choose another folder")
@@ -72,7 +72,7 @@ def _entry(program: ExampleProgram) -> str:
 
 
 class RecordedOracle:
-    """The answers of a filled form, by the digest of the example.
+    """The answers in a filled form, by the digest of the example.
 
     ``name`` says which release was asked, by whom and when.
     """
@@ -105,11 +105,11 @@ class RecordedOracle:
                 self._answers[digest] = OracleAnswer(is_accepted, "" if is_accepted else said)
 
     def __len__(self) -> int:
-        """How many programs have an answer."""
+        """Return how many programs have an answer."""
         return len(self._answers)
 
     def ask(self, program: ExampleProgram) -> OracleAnswer | None:
-        """What was recorded about the program."""
+        """Return the recorded answer for a program, or ``None``."""
         return self._answers.get(program.digest)
 
     def _text(self, table: dict[str, Any], key: str, where: str = "") -> str:

@@ -1,1 +1,1 @@
-"""Programs that must stay rejected, written by hand or generated."""
+"""Negatives: programs that must stay rejected, written by hand or generated."""

@@ -1,4 +1,4 @@
-"""Fragments of valid programs, and short programs made from them.
+"""Fragments of valid programs, and short programs composed of them.
 
 A fragment is a statement or a small block, without comments. Of fragments that differ only in names
 and values, the first is kept.
@@ -22,7 +22,7 @@ _MOST_LINES = 14
 _LONGEST_BLOCK = 9
 _LONGEST_LINE = 90
 
-#: The least that a generator has to work with, in the plainest forms.
+#: Built-in fragments in their simplest forms, so that the generator never lacks any.
 _BUILT_IN = """DEF PLAIN()
   DECL INT I
   DECL E6POS PLACE
@@ -121,10 +121,10 @@ ENDDAT
 
 @dataclass(frozen=True, slots=True)
 class FragmentPool:
-    """Fragments by where they may be used: at the head of a routine, below, or in a data list.
+    """Fragments by where they can be used: head of a routine, its body, or a data list.
 
-    Each is a list of forms, each form a list of pieces. All forms are equally likely, although
-    there are many assignments for one TRIGGER.
+    Each list has one list of fragments for each form. All forms are equally likely, although there
+    are many more assignments than TRIGGERs.
     """
 
     declarations: tuple[tuple[Fragment, ...], ...]
@@ -132,7 +132,7 @@ class FragmentPool:
     data: tuple[tuple[Fragment, ...], ...]
 
     def program(self, chance: random.Random) -> list[str]:
-        """The lines of a program of one to four pieces."""
+        """Return the lines of a program with one to four fragments."""
         if chance.random() < 0.1:
             return ["DEFDAT NEG", *_some(self.data, 4, chance), "ENDDAT"]
         function = chance.random() < 0.1
@@ -152,7 +152,7 @@ class FragmentPool:
 def _some(
     forms: Sequence[Sequence[Fragment]], most: int, chance: random.Random, room: int = _MOST_LINES
 ) -> list[str]:
-    """The lines of one to ``most`` pieces, as long as there is room for them."""
+    """Return the lines of one to ``most`` fragments, as long as there is room."""
     out: list[str] = []
     for _ in range(chance.randint(1, most)):
         piece = chance.choice(chance.choice(forms))
@@ -162,7 +162,10 @@ def _some(
 
 
 def fragment_pool(programs: Iterable[str]) -> FragmentPool:
-    """The pieces of valid programs and the built-in ones; a text that breaks a fact has none."""
+    """Return the fragments of valid programs and the built-in ones.
+
+    A text that breaks a fact of the language contributes none.
+    """
     found: dict[str, dict[str, dict[object, Fragment]]] = {
         "declarations": {},
         "statements": {},
@@ -183,13 +186,13 @@ def fragment_pool(programs: Iterable[str]) -> FragmentPool:
 
 
 def _form(line: SourceLine) -> str:
-    """What a line is: the sign behind its first word if there is one, else its lead."""
+    """Return the form of a line: the sign after its first word if there is one, else its lead."""
     second = line.kinds[1:2]
     return second[0] if second and second[0] in "=[.(:" else line.lead
 
 
 def _pieces(text: str) -> Iterator[tuple[str, list[SourceLine]]]:
-    """Statements and small blocks of a program, with where they may be used."""
+    """Yield the statements and small blocks of a program, with where they can be used."""
     program = [line for line in lines(text) if line.tokens]
     open_blocks: list[int] = []
     for index, line in enumerate(program):
@@ -219,7 +222,7 @@ def _is_declaration(line: SourceLine) -> bool:
 
 
 def _trim(piece: list[SourceLine]) -> Fragment:
-    """The lines without comments, the first indented by two blanks and the others with it."""
+    """Return the lines without comments, indented by two blanks and relative to the first."""
     margin = piece[0].tokens[0].start
     out = []
     for line in piece:

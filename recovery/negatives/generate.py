@@ -1,10 +1,10 @@
-"""Programs that are invalid KRL whatever grammar is in force, by the thousand.
+"""Generation of programs that are invalid KRL under any grammar.
 
-A short program is put together from valid pieces, one thing in it is spoilt, and it is kept if it
-then breaks a fact of the language (`recovery.negatives.language_facts`): the fact is the proof and
-becomes the reason. So the ways of spoiling need no proof of their own. Half of the programs get two
-tokens that cannot be neighbours, the other half a line, block, bracket or word that is gone,
-doubled, moved or exchanged.
+A short program is composed of valid fragments and mutated in one place. It is kept if it then
+breaks a fact of the language (`recovery.negatives.language_facts`); that fact proves it invalid and
+is its reason. So the mutations need no proof of their own. Half of the programs get two tokens that
+cannot be neighbours. In the other half a line, block, bracket or word is removed, doubled, moved or
+replaced.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from recovery.negatives.language_facts import CLOSER_OF, adjacent, violation
 from recovery.negatives.negatives import Negative
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, SourceToken, line
 
-#: One spoilt version of a program, or nothing where the way does not fit.
+#: Returns a mutated program, or nothing if the mutation does not apply.
 _Mutation = Callable[[list[str], random.Random], list[str] | None]
 
-# So many failures in a row mean that what can be made of the pieces has been made.
+# After this many failures in a row the generator stops: nothing new can be made of the fragments.
 _PATIENCE = 2_000
 
 
 def generate(programs: Sequence[str] = (), *, count: int, seed: int) -> Iterator[Negative]:
-    """``count`` distinct programs of at most 15 lines that break a fact of KRL.
+    """Yield ``count`` distinct programs of at most 15 lines that break a fact of KRL.
 
-    They are made from pieces of ``programs``, texts of valid KRL, and of a few built-in ones. The
-    same arguments give the same programs in the same order. Ends early when nothing new comes of
-    the pieces.
+    They are made from fragments of ``programs``, texts of valid KRL, and of a few built-in ones.
+    The same arguments give the same programs in the same order. Ends early if nothing new can be
+    made.
     """
     chance = random.Random(seed)
     stock = fragment_pool(programs)
@@ -56,7 +56,7 @@ def generate(programs: Sequence[str] = (), *, count: int, seed: int) -> Iterator
 
 
 def evenly(negatives: Iterable[Negative], count: int) -> list[Negative]:
-    """Up to ``count`` of the negatives, taken from their reasons in turn."""
+    """Return up to ``count`` of the negatives, taken from the different reasons in turn."""
     by_reason: dict[str, list[Negative]] = defaultdict(list)
     for negative in negatives:
         by_reason[negative.reason].append(negative)
@@ -66,7 +66,7 @@ def evenly(negatives: Iterable[Negative], count: int) -> list[Negative]:
 
 # ------------------------------------------------------------------------------------ neighbours
 
-#: Texts for the kinds of tokens that do not read as their kind says.
+#: Texts for kinds of tokens whose name is not their text.
 _SPELLINGS = {
     "name": ("COUNT", "$VEL.CP", "PART_OK"),
     "number": ("7", "0.5", "1E3"),
@@ -86,7 +86,7 @@ def _spell(kind: str, chance: random.Random) -> str:
 
 
 class _Neighbours:
-    """Puts tokens side by side that cannot be neighbours; every pair of kinds in its turn."""
+    """Puts tokens side by side that cannot be neighbours; all pairs of kinds in turn."""
 
     def __init__(self, chance: random.Random) -> None:
         pairs = sorted(adjacent())
@@ -120,7 +120,7 @@ class _Neighbours:
 
 
 def _tokens(program: list[str]) -> Iterator[tuple[int, SourceToken]]:
-    """Every token with the index of its line."""
+    """Yield every token with the index of its line."""
     for number, text in enumerate(program):
         for token in line(text).tokens:
             yield number, token
@@ -150,7 +150,7 @@ _STRUCTURE = frozenset({*BLOCKS, *CLOSERS, *BRANCHES})
 
 
 def _structural(program: list[str], chance: random.Random) -> int:
-    """Index of a line that opens, divides or closes a block; a program has at least two."""
+    """Return the index of a random line that opens, divides or closes a block."""
     return chance.choice([i for i, text in enumerate(program) if line(text).lead in _STRUCTURE])
 
 
@@ -176,7 +176,7 @@ def _moved_line(program: list[str], chance: random.Random) -> list[str] | None:
 
 
 def _crossed_lines(program: list[str], chance: random.Random) -> list[str] | None:
-    """Two structural lines change places."""
+    """Return the program with two structural lines swapped."""
     one, other = _structural(program, chance), _structural(program, chance)
     crossed = list(program)
     crossed[one], crossed[other] = crossed[other], crossed[one]
@@ -193,7 +193,7 @@ def _line_behind_end(program: list[str], chance: random.Random) -> list[str] | N
 
 
 def _other_module(program: list[str], _: random.Random) -> list[str] | None:
-    """The lines of a routine in a data list, those of a data list in a routine."""
+    """Return the program with its body in the other kind of module, routine or data list."""
     if line(program[-1]).lead == "ENDDAT":
         return ["DEF NEG()", *program[1:-1], "END"]
     return ["DEFDAT NEG", *program[1:-1], "ENDDAT"]
@@ -219,7 +219,7 @@ def _split_line(program: list[str], chance: random.Random) -> list[str] | None:
 
 # --------------------------------------------------------------------------- tokens of a line
 
-#: Words and signs without which a line is not what it was.
+#: Words and signs that a line cannot do without.
 _NEEDED = frozenset("IF THEN FOR TO SEC WHEN DO DECL INTERRUPT =".split())
 _BRACKETS = (*CLOSER_OF, *CLOSER_OF.values())
 _OPENER_OF = {closer: opener for opener, closer in CLOSER_OF.items()}
@@ -233,7 +233,7 @@ _WORDS = sorted(
 def _site(
     program: list[str], chance: random.Random, wanted: Container[str] | None = None
 ) -> tuple[int, SourceToken] | None:
-    """A token with the index of its line; of the ``wanted`` words and signs each as likely."""
+    """Return a random token with the index of its line; all ``wanted`` words are equally likely."""
     sites: dict[str, list[tuple[int, SourceToken]]] = {}
     for number, token in _tokens(program):
         if wanted is None or token.word in wanted:
@@ -263,7 +263,7 @@ def _without_token(program: list[str], chance: random.Random) -> list[str] | Non
 
 
 def _swapped_sign(program: list[str], chance: random.Random) -> list[str] | None:
-    """``=`` for ``==``, an opening bracket for a closing one, and the other way round."""
+    """Return the program with ``=`` for ``==``, a closing bracket for an opening one, or back."""
     site = _site(program, chance, _SWAPPED)
     return site and _changed(program, site, f" {_SWAPPED[site[1].text]} ")
 
@@ -279,7 +279,7 @@ def _doubled_token(program: list[str], chance: random.Random) -> list[str] | Non
 
 
 def _second_equals(program: list[str], chance: random.Random) -> list[str] | None:
-    """An equals sign before a value, as in ``A = B = 1``, ``STEP = 2`` and ``IF A = 1 THEN``."""
+    """Return the program with an additional equals sign, as in ``A = B = 1`` or ``STEP = 2``."""
     values = [(n, t) for n, t in _tokens(program) if t.kind in ("name", "number", "truth")]
     site = chance.choice(values) if values else None
     return site and _changed(program, site, f"{chance.choice(('', 'COUNT '))}= {site[1].text}")
@@ -296,7 +296,7 @@ def _inserted_word(program: list[str], chance: random.Random) -> list[str] | Non
 
 
 def _tail(program: list[str], chance: random.Random) -> list[str] | None:
-    """Something more at the end of a line: a value, a second value or another statement."""
+    """Return the program with a value or a statement added at the end of a line."""
     number = chance.randrange(len(program))
     tail = chance.choice(("COUNT", "7", "= 7", "== 7", "+ 7", ", 7", "COUNT = 7", "WORK()", "HALT"))
     return _replaced(program, number, f"{program[number]} {tail}")
@@ -318,7 +318,7 @@ def _swapped_tokens(program: list[str], chance: random.Random) -> list[str] | No
     return _replaced(program, number, turned)
 
 
-# The ways that show most about a grammar come more often.
+# Mutations that reveal most about a grammar are more frequent.
 _MUTATIONS: tuple[_Mutation, ...] = (
     *[_without_needed] * 8,
     *[_other_module] * 3,

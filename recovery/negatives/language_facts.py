@@ -1,12 +1,12 @@
-"""Facts of KRL that no program breaks, whatever grammar is in force.
+"""Facts about KRL that hold for every program, whatever the current grammar is.
 
 A grammar says what it accepts today. These few facts say what KRL never has: tokens that cannot be
 neighbours (``adjacent.tsv``), brackets and blocks that do not match, lines without the word that
-makes them what they are. They claim far less than a grammar does, so they hold for the programs of
-every dialect, and a text that breaks one is invalid for a reason that can be named.
+identifies them. They claim far less than a grammar does, so they hold for the programs of every
+dialect, and a text that breaks one is invalid for a reason that can be named.
 
 Sources: the rules of control flow, declarations, interrupts and triggers (CTL, TYP, SCO, INT, TRG),
-and the own and the open corpus, whose valid files break none of them.
+and our own and the public corpus, whose valid files break none of them.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A broken fact, and the line, from 1, at which it is noticed."""
+    """A broken fact, and the line, from 1, at which that is detected."""
 
     line: int
     fact: str
 
 
 def violation(text: str) -> Violation | None:
-    """The first fact that a text breaks; ``None`` does not say that it is valid."""
+    """Return the first fact that a text breaks; ``None`` does not mean that it is valid."""
     program = lines(text)
     for number, line in enumerate(program, 1):
         fact = _broken(line)
@@ -43,7 +43,7 @@ def violation(text: str) -> Violation | None:
 
 @lru_cache(maxsize=1 << 15)
 def _broken(line: SourceLine) -> str | None:
-    """The fact that a line breaks by itself."""
+    """Return the fact that a line breaks by itself, or ``None``."""
     if not line.tokens:
         return None
     return _strings(line) or _brackets(line) or _neighbours(line) or _shape(line)
@@ -54,9 +54,10 @@ def _broken(line: SourceLine) -> str | None:
 
 @cache
 def adjacent() -> Mapping[tuple[str, str], str]:
-    """Why, by pairs of `recovery.negatives.tokens.SourceToken` kinds that no line has side by side.
+    """Return the pairs of token kinds that are never neighbours, with the reason.
 
-    ``start`` and ``end`` are the ends of a line, ``any`` is every kind.
+    Kinds are those of `recovery.negatives.tokens.SourceToken`; ``start`` and ``end`` are the ends
+    of a line, ``any`` is every kind.
     """
     table = resources.files(__package__).joinpath("adjacent.tsv").read_text(encoding="utf-8")
     found: dict[tuple[str, str], str] = {}
@@ -75,7 +76,7 @@ def _neighbours(line: SourceLine) -> str | None:
     return None
 
 
-#: What closes a bracket.
+#: The closing bracket of each opening one.
 CLOSER_OF: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
 _CLOSING = frozenset(CLOSER_OF.values())
 
@@ -96,7 +97,7 @@ def _brackets(line: SourceLine) -> str | None:
 
 
 def _behind_closer(kinds: Sequence[str]) -> int:
-    """Index behind the bracket that closes the first one."""
+    """Return the index after the bracket that closes the first one."""
     depth = 0
     for index, kind in enumerate(kinds):
         depth += (kind in CLOSER_OF) - (kind in _CLOSING)
@@ -115,14 +116,14 @@ _OPERAND_ENDS = frozenset("name number string bits enum truth ) ] }".split())
 
 
 def _operands(kinds: Sequence[str]) -> str | None:
-    """What is wrong with expressions between commas; what braces hold is skipped."""
+    """Return the fact that expressions between commas break; braces are skipped."""
     braces = 0
     before = ""
     for kind in kinds:
         if kind in ("{", "}"):
             braces += 1 if kind == "{" else -1
         elif not braces:
-            if kind == "other":  # not a token of KRL: no fact is known of it
+            if kind == "other":  # not a token of KRL, so no fact applies
                 return None
             if kind == "=":
                 return "an expression has no equals sign"
@@ -161,7 +162,7 @@ def _for(line: SourceLine) -> str | None:
     if "TO" not in words[equals:]:
         return "FOR has TO"
     to = words.index("TO", equals)
-    # STEP may be a name, but not behind an operand
+    # STEP may be a name, but not after an operand
     steps = [i for i in range(to + 2, len(kinds)) if words[i] == "STEP"]
     step = next((i for i in steps if kinds[i - 1] in _OPERAND_ENDS), len(kinds))
     parts = (kinds[1:equals], kinds[equals + 1 : to], kinds[to + 1 : step], kinds[step + 1 :])
@@ -243,7 +244,7 @@ _FORMS: Mapping[str, Callable[[SourceLine], str | None]] = {
 
 
 def _shape(line: SourceLine) -> str | None:
-    """What is wrong with a line as a whole."""
+    """Return the fact that a line breaks by its form."""
     if "THEN" in line.kinds and line.lead != "IF":
         return "THEN ends the line of IF"
     form = _FORMS.get(line.lead)
@@ -269,7 +270,7 @@ def _assignment_or_call(line: SourceLine) -> str | None:
 
 
 def _behind_variable(kinds: Sequence[str]) -> int:
-    """Index behind the variable a line begins with: a name with its indices and members."""
+    """Return the index after the variable that begins a line, with indices and members."""
     at = 1
     while at < len(kinds):
         if kinds[at] == "[":
@@ -288,14 +289,14 @@ _MODULES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 
 @dataclass(slots=True)
 class _Block:
-    """An open block; ``branched`` once its ELSE or its first CASE was met."""
+    """An open block; ``branched`` after its ELSE or first CASE."""
 
     opener: str
     branched: bool = False
 
 
 def _blocks(program: Sequence[SourceLine]) -> Violation | None:
-    """The first line at which blocks do not match."""
+    """Return the first line at which blocks do not match, or ``None``."""
     open_blocks: list[_Block] = []
     for number, line in enumerate(program, 1):
         if not line.tokens:
@@ -319,10 +320,7 @@ _DEFINING = frozenset("ENUM IMPORT SIGNAL STRUC".split())
 
 
 def _misplaced(line: SourceLine, *, is_data: bool) -> str | None:
-    """What is wrong with a line of a data list that belongs in a routine, or the other way round.
-
-    [SCO-03, SCO-04]
-    """
+    """Return what is wrong with a line in the wrong kind of module [SCO-03, SCO-04]."""
     head, behind = line.kinds[0], line.kinds[1:2]
     if is_data:
         is_call = head == "name" and behind == ("(",)
@@ -344,13 +342,13 @@ def _misplaced(line: SourceLine, *, is_data: bool) -> str | None:
 
 
 def _block_word(line: SourceLine) -> str:
-    """The lead, unless it is a name that reads like the word of a spline block."""
+    """Return the lead, unless it is a name that looks like a spline block."""
     is_name = "SPLINE" in line.lead and line.kinds[1:2] in (("=",), ("[",), (".",), ("(",))
     return "" if is_name else line.lead
 
 
 def _enter(lead: str, open_blocks: list[_Block]) -> str | None:
-    """Take one line into account."""
+    """Process the first word of a line; return the fact it breaks, or ``None``."""
     if not open_blocks and lead not in _MODULES:
         return "nothing stands outside of routines and data lists"
     block = open_blocks[-1] if open_blocks else _Block("")

@@ -1,7 +1,8 @@
 """Negatives: programs that a grammar must reject, and whether it does.
 
-The written ones lie in ``corpus/negatives`` with their reason in front; the others are generated
-(`recovery.negatives.generate`). An edit to the grammar that accepts one of them is too wide.
+The hand-written ones are in ``corpus/negatives`` with their reason in front; the others are
+generated (`recovery.negatives.generate`). An edit of the grammar that accepts one of them is too
+wide.
 """
 
 from __future__ import annotations
@@ -17,28 +18,28 @@ from grammar.parser.lexer import EOF, SKIPPED, Lexer
 from grammar.parser.recognizer import Recognizer, State
 from support.files.untrusted import read_bytes
 
-#: What has to reject the program: the grammar, the static checker, or the run.
+#: The phase that has to reject the program: the grammar, the static check, or the run.
 Phase = Literal["parse", "check", "run"]
 
 _SUFFIXES = frozenset({".src", ".dat", ".sub"})
 _KEYS = frozenset({"reason", "phase", "rule", "line"})
 _ENTRY = re.compile(r";@\s*(?P<key>\w+):\s*(?P<value>.*?)\s*")
-# A grammar with another keyword has another lexer; some are kept, for candidates take turns.
+# Each set of keywords needs its own lexer; results for a few are kept, as candidates alternate.
 _MOST_LEXERS = 4
 _LINE_ENDS = frozenset({"\n", "\r\n"})
 
 
 class NegativeError(Exception):
-    """A file of negatives does not say what it must; the message names the file and its line."""
+    """A file of negatives is malformed; the message names the file and its line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Negative:
     """A program that must be rejected.
 
-    ``text`` is the whole file, its front matter included, so that ``line``, from 1 and where a
-    rejecting front end points at, counts in it. ``rules`` are IDs of semantics rules. ``path`` is
-    missing for generated programs.
+    ``text`` is the whole file with its front matter, so that ``line``, the line from 1 at which a
+    front end should reject it, counts in the file. ``rules`` are IDs of semantics rules. ``path``
+    is ``None`` for generated programs.
     """
 
     path: Path | None
@@ -50,9 +51,9 @@ class Negative:
 
 
 def load(folder: Path) -> tuple[Negative, ...]:
-    """The negatives below a folder, sorted by path.
+    """Return the negatives below a folder, sorted by path.
 
-    Raises `NegativeError` for a folder that is not there and for a malformed file.
+    Raises `NegativeError` if the folder is missing or a file is malformed.
     """
     if not folder.is_dir():
         raise NegativeError(f"{folder}: no such folder")
@@ -89,7 +90,7 @@ def _read(path: Path) -> Negative:
 
 
 def _front_matter(path: Path, text: str) -> tuple[dict[str, str], int]:
-    """The entries before the program, and how many lines they take."""
+    """Return the entries before the program, and the number of lines they take."""
     matter: dict[str, str] = {}
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith(";@"):
@@ -106,7 +107,7 @@ def _front_matter(path: Path, text: str) -> tuple[dict[str, str], int]:
 
 
 class NegativeSet:
-    """Negatives of phase ``parse`` (the others are left out), ready to be tried on many grammars.
+    """Negatives of phase ``parse``, prepared for trials on many grammars; others are left out.
 
     Many programs share lines. So each line is tokenised once for each lexer, and read once from
     each state in which it occurs.
@@ -127,10 +128,10 @@ class NegativeSet:
         return len(self.negatives)
 
     def rejected_by(self, recognizer: Recognizer) -> NegativeSet:
-        """Those that this recogniser rejects; edits of its grammar are measured by them.
+        """Return those that the recogniser rejects; edits of its grammar are measured by them.
 
         A grammar that lacks a keyword reads it as a name, and may accept programs that misuse it.
-        No edit is to blame if these stay accepted.
+        An edit is not to blame if these stay accepted.
         """
         accepted = {negative.text for negative in self.accepted(recognizer)}
         return NegativeSet(n for n in self.negatives if n.text not in accepted)
@@ -138,7 +139,7 @@ class NegativeSet:
     def accepted(
         self, recognizer: Recognizer, having: Sequence[frozenset[int]] = (frozenset(),)
     ) -> list[Negative]:
-        """Those that the recogniser accepts, in the order of the set.
+        """Return those that the recogniser accepts, in the order of the set.
 
         Only negatives with all tokens of one of the sets ``having`` are tried.
         """
@@ -171,7 +172,7 @@ class NegativeSet:
         return found
 
     def kinds(self, lexer: Lexer) -> list[list[int]]:
-        """The token kinds of each program, end of file included."""
+        """Return the token kinds of each program, end of file included."""
         lines = self._cut(lexer)
         if lines is None:
             texts = ([lexer.kinds[x] for x in lexer.lexemes(n.text)] for n in self.negatives)
@@ -182,7 +183,7 @@ class NegativeSet:
         ]
 
     def _cut(self, lexer: Lexer) -> list[list[int]] | None:
-        """Token kinds of each line; ``None`` where a token continues behind its line."""
+        """Return the token kinds of each line; ``None`` if a token contains a line end."""
         if lexer not in self._kinds:
             if len(self._kinds) >= _MOST_LEXERS:
                 oldest = next(iter(self._kinds))
@@ -197,17 +198,20 @@ class NegativeSet:
 
 
 def _lines(text: str) -> list[str]:
-    """The lines of a text, each with its end."""
+    """Return the lines of a text with their line ends."""
     return re.findall(r"[^\n]*\n|[^\n]+\Z", text)
 
 
 def _kinds(lexer: Lexer, lines: Sequence[str]) -> list[list[int]] | None:
-    """Token kinds of each line, cut in one go; a last line without an end is given one for that."""
+    """Return the token kinds of each line; all lines are tokenised together.
+
+    A last line without an end gets one for that.
+    """
     ended = ["" if line.endswith("\n") else "\n" for line in lines]
     lexemes = lexer.lexemes("".join(map(str.__add__, lines, ended)))
     kinds = list(map(lexer.kinds.__getitem__, lexemes))
     ends = [index for index, lexeme in enumerate(lexemes) if lexeme in _LINE_ENDS]
-    if len(ends) != len(lines):  # some of them are inside of tokens
+    if len(ends) != len(lines):  # some line ends are inside tokens
         return None
     out = []
     start = 0

@@ -1,7 +1,7 @@
-"""KRL text as lines of tokens, cut without any grammar.
+"""A tokenizer for KRL that is independent of any grammar.
 
-It knows what a string, a comment, a number and a word look like, and which words are never names.
-Everything else is decided by the caller.
+It recognises strings, comments, numbers and words, and knows which words are never names.
+Everything else is left to the caller.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ _BEFORE_LEAD = frozenset({"GLOBAL", "DECL"})
 _KINDS = dict.fromkeys(("TRUE", "FALSE"), "truth") | dict.fromkeys(
     ("INT", "REAL", "BOOL", "CHAR"), "type"
 )
-# Constants of an ENUM and members of a STRUC may be called like any word.
+# Constants of an ENUM and members of a STRUC may have any word as their name.
 _NAMING = frozenset({"ENUM", "STRUC"})
 _LINE_END = re.compile(r"\r\n|\n|\r")
 
 
 @dataclass(frozen=True, slots=True)
 class SourceToken:
-    """A token and its place in its line.
+    """A token and its position in its line.
 
-    ``kind`` is ``name``, ``number``, ``string``, ``bits``, ``enum``, ``truth``, ``type`` (one of
-    the predefined), ``other``, the sign itself, or a reserved word in capitals. A word that can be
-    a name where it is used is one.
+    ``kind`` is ``name``, ``number``, ``string``, ``bits``, ``enum``, ``truth``, ``type`` (a
+    predefined one), ``other``, the sign itself, or a reserved word in upper case. A word that can
+    be a name where it is used has the kind ``name``.
     """
 
     kind: str
@@ -54,7 +54,7 @@ class SourceToken:
 
     @property
     def word(self) -> str:
-        """The text in capitals."""
+        """The text in upper case."""
         return self.text.upper()
 
 
@@ -62,8 +62,8 @@ class SourceToken:
 class SourceLine:
     """A line of a file; comments and header lines (``&ACCESS`` …) have no tokens.
 
-    ``lead`` is the word in capitals that says what the line is: the first one behind ``GLOBAL`` and
-    ``DECL``, empty where the line begins with something else.
+    ``lead`` is the word that tells the kind of the line, in upper case: the first one after
+    ``GLOBAL`` and ``DECL``, empty if the line begins with something else.
     """
 
     text: str
@@ -77,13 +77,13 @@ class SourceLine:
 
 
 def lines(text: str) -> list[SourceLine]:
-    """The lines of a file, whichever line ends it has."""
+    """Return the lines of a file with any line ends."""
     return [line(piece) for piece in _LINE_END.split(text)]
 
 
 @lru_cache(maxsize=1 << 15)
 def line(text: str) -> SourceLine:
-    """One line, without its end."""
+    """Return one line, given without its line end."""
     if text.lstrip().startswith("&"):
         return SourceLine(text, (), "")
     tokens: list[SourceToken] = []

@@ -1,1 +1,1 @@
-"""Edits that might mend a failing line, from the grammar and the corpus."""
+"""Proposals: candidate edits for a failing line, from the grammar and the corpus."""

@@ -1,9 +1,9 @@
 """Alignment of phrases: one phrase that reads several.
 
 Lines of one construct differ in their operands and in their optional parts. They are aligned by
-their keywords and signs. A column of operands becomes a rule that reads all of them. What only some
-lines have becomes optional; what differs becomes a choice. ``LIN A`` and ``LIN {X 1} C_DIS`` give
-``LIN target C_DIS?``.
+keywords and signs, as a multiple sequence alignment. A column of operands becomes a rule that reads
+all of them. Parts that only some lines have become optional, and differing parts become a choice.
+``LIN A`` and ``LIN {X 1} C_DIS`` give ``LIN target C_DIS?``.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _Phrases = tuple[tuple[Word, ...], ...]
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A keyword or sign (``key`` is its text), or an operand, or a list of operands."""
+    """A keyword or sign, whose text is ``key``; or an operand or a list of operands."""
 
     key: str
     spans: tuple[_Span, ...]
@@ -41,14 +41,14 @@ class _Part:
 
 @dataclass(slots=True)
 class _Column:
-    """Parts of the same kind, by the row they are in."""
+    """Parts of the same kind, by row."""
 
     key: str
     cells: dict[int, _Part] = field(default_factory=dict)
 
 
 class Aligner:
-    """Aligns phrases under one grammar; remembers what it has worked out."""
+    """Aligns phrases under one grammar; caches its results."""
 
     def __init__(self, phraser: Phraser) -> None:
         self._phraser = phraser
@@ -58,9 +58,9 @@ class Aligner:
     def common_phrases(
         self, phrases: Sequence[Sequence[Word]], near: frozenset[str] = frozenset()
     ) -> list[tuple[str, ...]]:
-        """Phrases as symbols, some of them in brackets, that read all of ``phrases``.
+        """Return phrases of symbols that read all of ``phrases``, the most restrictive first.
 
-        The most restrictive first; none where the phrases have too little in common to be one.
+        Returns none if the phrases have too little in common.
         """
         key = tuple(map(tuple, phrases))
         found = self._known.get((key, near))
@@ -84,7 +84,7 @@ class Aligner:
                     yield tuple(_grouped(columns, written, rows))
 
     def _aligned(self, phrases: Sequence[Sequence[Word]]) -> tuple[Sequence[_Column], int]:
-        """The columns of the phrases, and of how many rows; none where they are no one phrase."""
+        """Return the columns of the phrases and the number of rows; none if they do not align."""
         cut = {tuple(_row(self._phraser, p)) for p in phrases} - {()}
         rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
         columns = _columns(self._phraser, rows)
@@ -94,7 +94,7 @@ class Aligner:
 
 
 def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
-    """Whether most columns are in all rows, or the rows are few forms of what one word begins."""
+    """Return whether most columns are in all rows, or the rows are few forms of one first word."""
     in_all = [len(column.cells) == rows for column in columns]
     if 2 * sum(in_all) >= len(columns):
         return True
@@ -107,12 +107,12 @@ def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
 
 
 def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
-    """A phrase cut into parts; ``a , a , a`` is one part."""
+    """Return the parts of a phrase; a list such as ``a , a , a`` is one part."""
     out: list[_Part] = []
     spans = phraser.segmenter.parts(words) or []
     signs = [phraser.sign(span) for span in spans]
     for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
-        # a word may be an operand (TRUE is a literal); a comma is none, though lists may be empty
+        # a keyword may be an operand (TRUE is a literal); a comma is none
         is_listed = "','" in signs[max(0, place - 1) : place + 2]
         is_word = bool(out) and sign is not None and sign[0] != "'"
         if is_word and phraser.stands_for_a_rule(span, is_listed=is_listed):
@@ -127,10 +127,10 @@ def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
 
 
 def _columns(phraser: Phraser, rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
-    """The rows beside one another; the longest gives the order."""
+    """Return the rows aligned in columns; the longest row gives the order."""
 
     def fits(column: _Column, part: _Part) -> bool:
-        """Whether a part fits a column: the same sign, or operands that one rule reads."""
+        """Return whether a part fits a column: the same sign, or operands that one rule reads."""
         if column.key or part.key:
             return column.key == part.key
         spans = {span for cell in column.cells.values() for span in cell.spans}
@@ -155,7 +155,7 @@ def _columns(phraser: Phraser, rows: Sequence[tuple[_Part, ...]]) -> list[_Colum
 def _matches(
     columns: Sequence[_Column], row: Sequence[_Part], fits: Callable[[_Column, _Part], bool]
 ) -> list[tuple[int, int]]:
-    """Indices of a longest common subsequence."""
+    """Return the index pairs of a longest common subsequence."""
     same = [[fits(column, part) for part in row] for column in columns]
     best = [[0] * (len(row) + 1) for _ in range(len(columns) + 1)]
     for i in range(len(columns) - 1, -1, -1):
@@ -177,7 +177,7 @@ def _matches(
 def _written(
     phraser: Phraser, column: _Column, level: int, near: frozenset[str]
 ) -> tuple[str, ...]:
-    """A column as symbols: a sign, a rule that reads every cell, or a choice of few; or nothing."""
+    """Return a column as symbols: a sign, a rule for all cells, or a choice; empty if none fits."""
     if column.key:
         return (column.key,)
     spans = _spans(column)
@@ -198,9 +198,9 @@ def _as_usual(
     written: Sequence[tuple[str, ...]],
     rows: int,
 ) -> list[tuple[str, ...]]:
-    """The columns with the rules that the grammar usually has in such places, where they fit."""
+    """Return the columns with the rules that the grammar usually has there, if they fit."""
     out: list[tuple[str, ...]] = []
-    always: list[str] = []  # what is written so far, but for what may be left out
+    always: list[str] = []  # the symbols so far, without optional ones
     for column, symbols in zip(columns, written, strict=True):
         before = last_two(always)
         usual = None if column.key else phraser.usual_for(_spans(column), before)
@@ -220,7 +220,7 @@ def _listed(symbol: str, *, listed: bool) -> tuple[str, ...]:
 
 
 def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
-    """A few rules or tokens that read all the spans between them."""
+    """Return a few rules or tokens that together read all the spans (greedy set cover)."""
     left = list(spans)
     out: list[str] = []
     while left and len(out) < MOST_CHOICES:
@@ -239,7 +239,7 @@ def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
 def _grouped(
     columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
 ) -> Iterator[str]:
-    """The symbols of all columns, those not in every row made optional or a choice."""
+    """Yield the symbols of all columns; those not in every row become optional or a choice."""
     runs: list[tuple[frozenset[int], list[str]]] = []
     for column, symbols in zip(columns, written, strict=True):
         present = frozenset(column.cells)
@@ -266,5 +266,5 @@ def _grouped(
 
 
 def _is_one(symbols: Sequence[str]) -> bool:
-    """Whether the symbols are one that a suffix can be put behind."""
+    """Return whether the symbols are a single one without a suffix."""
     return len(symbols) == 1 and symbols[0][-1] not in "?*+"

@@ -1,10 +1,11 @@
-"""Inference of blocks that the grammar lacks: an opener, lines inside, a closer.
+"""Inference of blocks that the grammar lacks: an opening line, a body, a closing line.
 
-One line does not show a block: its opener looks like a statement, and its closer fails only because
-the opener did. So the files that fail at an opener are read on: which word closes it, so that both
-are in balance in every file, and which words lead lines that are only found between?
-The grammar must have no other use for these words. From the lines, and from what other blocks have
-between theirs, comes one alternative: ``WHILE expression eol statement* ENDWHILE``.
+A block cannot be inferred from one line: its opening line looks like a statement, and its closing
+line fails only because the opening line did. So files that fail at an opening line are read to
+their end. Which first word closes the block, so that both are balanced in every file? Which first
+words occur only between the two? The grammar must have no other use for these words. From the
+lines, and from the bodies of other blocks, one alternative is built: ``WHILE expression eol
+statement* ENDWHILE``.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ class Block:
 
 @dataclass(slots=True)
 class _BlockLines:
-    """Lines of one block as they were met in all files."""
+    """The lines of one kind of block in all files."""
 
     headers: list[tuple[Word, ...]] = field(default_factory=list)
     closers: list[tuple[Word, ...]] = field(default_factory=list)
     middles: dict[str, list[tuple[Word, ...]]] = field(default_factory=lambda: defaultdict(list))
-    repeated: set[str] = field(default_factory=set)  # middles met twice in one block
-    missing: set[str] = field(default_factory=set)  # middles that some block does without
+    repeated: set[str] = field(default_factory=set)  # middles that occur twice in one block
+    missing: set[str] = field(default_factory=set)  # middles that some block lacks
     body_first: bool = False  # whether the opener has lines before the first middle
 
 
@@ -54,9 +55,9 @@ class BlockFinder:
         self.aligner = aligner
 
     def find(self, opener: str, texts: Sequence[str], meant: frozenset[str]) -> list[Block]:
-        """Forms of the block that a word opens, the most restrictive first; none if it opens none.
+        """Return the forms of the block that a word opens, the most restrictive first.
 
-        ``meant`` are the names that are meant as keywords.
+        Returns none if it opens no block. ``meant`` are the names that are meant as keywords.
         """
         files = [self._lines(text, meant) for text in texts]
         files = [lines for lines in files if any(lead == opener for lead, _ in lines)]
@@ -95,7 +96,7 @@ class BlockFinder:
         return word in _BLOCK_WORDS or word.startswith("END")
 
     def _closer(self, opener: str, files: Sequence[Sequence[_Line]]) -> str | None:
-        """The word that closes what ``opener`` opens, in balance with it in every file."""
+        """Return the first word that closes the block, balanced with ``opener`` in every file."""
         known = BLOCKS[opener].words if opener in BLOCKS else frozenset()
         leads = {lead for lines in files for lead, _ in lines} - {opener, ""}
         free = [
@@ -107,7 +108,7 @@ class BlockFinder:
         return min(good, key=lambda w: (w not in known, w != f"END{opener}", w), default=None)
 
     def _is_word(self, word: str, files: Sequence[Sequence[_Line]]) -> bool:
-        """Whether lines led by a word have it as a keyword."""
+        """Return whether a first word is a keyword in its lines."""
         lexer = self.recognizer.lexer
         first = next(words[0] for lines in files for lead, words in lines if lead == word)
         return first[1] is not None or lexer.is_keyword(first[0])
@@ -142,7 +143,7 @@ class BlockFinder:
                         seen.body_first = True
         seen.repeated = {lead for block in blocks for lead, count in block.items() if count > 1}
         seen.missing = {lead for lead in seen.middles if not all(block[lead] for block in blocks)}
-        if known & seen.middles.keys():  # other words only happen to be met in such blocks
+        if known & seen.middles.keys():  # other words occur in such blocks by chance
             for lead in seen.middles.keys() - known:
                 del seen.middles[lead]
         return seen
@@ -183,7 +184,7 @@ def _is_end(word: str) -> bool:
 
 
 def _depths(opener: str, closer: str, lines: Sequence[_Line]) -> list[int]:
-    """How many blocks are open at each line, that of an opener and a closer included."""
+    """Return the number of open blocks at each line, opening and closing lines included."""
     out = []
     depth = 0
     for lead, _ in lines:
@@ -194,7 +195,7 @@ def _depths(opener: str, closer: str, lines: Sequence[_Line]) -> list[int]:
 
 
 def is_balanced(opener: str, closer: str, lines: Sequence[tuple[str, object]]) -> bool:
-    """Whether each opener has its closer behind it."""
+    """Return whether opening and closing words are balanced."""
     depth = 0
     for lead, _ in lines:
         depth += (lead == opener) - (lead == closer)

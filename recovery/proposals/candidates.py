@@ -1,11 +1,11 @@
-"""Candidate edits for failing lines: sites in the grammar, and what could be written there.
+"""Candidate edits for failing lines: sites in the grammar, and what to write there.
 
-Sites are found from the configurations of the recogniser (`recovery.proposals.site_finder`). There
-are four kinds of edit: inserting the unexpected tokens, accepting them in place of the next
-element, leaving elements out, and an alternative to a rule that was entered or comes next. What is
-written there are the tokens themselves or phrases with rules in place of operands
-(`recovery.proposals.phrases`); where several lines have the same site, phrases that read all of
-them (`recovery.proposals.alignment`).
+Sites follow from the configurations of the recogniser (`recovery.proposals.site_finder`). There are
+four kinds of edit: insert the unexpected tokens, accept them in place of the next element, make
+elements optional, or add an alternative to a rule that was entered or comes next. The text is the
+tokens themselves, or a phrase with rules in place of operands (`recovery.proposals.phrases`). If
+several lines have the same site, it is a phrase that reads all of them
+(`recovery.proposals.alignment`).
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ from recovery.tuning import (
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """Edits that belong together. ``breadth`` says how much they accept: less is stricter."""
+    """Edits that belong together. ``breadth`` estimates how much they accept; less is stricter."""
 
     edits: tuple[Edit, ...]
     breadth: int
 
     @property
     def place(self) -> tuple[str, str, Address]:
-        """Where the last of the edits is, and of which kind it is."""
+        """The kind, rule and address of the last edit."""
         edit = self.edits[-1]
         return type(edit).__name__, getattr(edit, "rule", ""), getattr(edit, "at", ())
 
 
-#: Sites of several lines that may be one: kind, rule, place, word or sign they begin with.
+#: A key under which sites of several lines are one: kind, rule, place, first word or sign.
 _Slot = tuple[str, str, Address, str]
 
 
@@ -70,11 +70,11 @@ class CandidateFinder:
     def find_common(
         self, lines: Sequence[LinePattern], most: int, core: int = 0
     ) -> list[Candidate]:
-        """Candidates for lines that may have one cause, the most promising first.
+        """Return candidates for lines that may have one cause, the most promising first.
 
-        Promising is a site that many of the lines have; ``most`` of them are looked at. What is
-        written there reads what all of the lines have in common, what the first ``core`` of them
-        have, or what one of them has.
+        A site that many of the lines have is promising; at most ``most`` sites are examined. The
+        text written there reads what all of the lines have in common, what the first ``core`` of
+        them have, or what one of them has.
         """
         slots: dict[_Slot, dict[int, list[EditSite]]] = defaultdict(lambda: defaultdict(list))
         support: dict[tuple[Edit, ...], set[int]] = defaultdict(set)
@@ -126,7 +126,7 @@ class CandidateFinder:
     def find_blocks(
         self, line: LinePattern, opener: str, texts: Sequence[str], meant: frozenset[str]
     ) -> list[Candidate]:
-        """Candidates for the block that a line opens; ``texts`` are files with such lines."""
+        """Return candidates for the block that a line opens; ``texts`` have such lines."""
         blocks = self._blocks.find(opener, texts, meant)
         rules = self._site_finder.block_rules(line) if blocks else ()
         return self._ordered(self._as_block(rule, block) for rule in rules for block in blocks)
@@ -183,7 +183,7 @@ class CandidateFinder:
         *,
         looped: bool = False,
     ) -> Iterator[RankedEdits]:
-        """The edits that write symbols for words at their site."""
+        """Yield the edits that write symbols at a site."""
         rule, place = site.rule, site.place
         rank = site.rank + self.phraser.breadth(symbols) + len(" ".join(symbols).split(" "))
         tokens = self._site_finder.reserved(words)
@@ -239,7 +239,7 @@ class CandidateFinder:
 
 
 def _gain_expected(lines: int, rank: int) -> float:
-    """What may be gained where so many lines have a site."""
+    """Return the expected gain of a site that ``lines`` lines have."""
     return lines * float(BREADTH_FACTOR**rank)
 
 
@@ -247,7 +247,7 @@ _T = TypeVar("_T")
 
 
 def _unit(items: tuple[_T, ...]) -> tuple[_T, ...] | None:
-    """The shortest unit that symbols or words repeat, where they are more than one of it."""
+    """Return the shortest sequence whose repetition gives ``items``; ``None`` if there is none."""
     for size in range(1, len(items) // 2 + 1):
         unit = items[:size]
         if len(items) % size == 0 and unit * (len(items) // size) == items:

@@ -1,9 +1,10 @@
-"""Collocations: which rule a grammar usually writes behind a word or sign.
+"""Collocations: which rule a grammar usually has after a word or sign.
 
-Of a few examples the narrowest rule that reads them all is often too narrow: a grammar that has
-``CA expression`` in one place hardly means ``CA number`` in another, and where every ``word =`` has
-an expression behind it, a new one will. And a token that one rule alone writes, being a sentence of
-that rule by itself, is written by the name of that rule: ``name``, not ``NAME``.
+With only a few examples, the narrowest rule that reads them all is often too narrow. A grammar that
+has ``CA expression`` in one place hardly means ``CA number`` in another, and if an expression
+follows every ``word =``, it will follow a new one too. A token that only one rule contains, and
+that is a sentence of this rule by itself, is written by the name of that rule: ``name``, not
+``NAME``.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from grammar.notation.model import Alternative, Element, Group, Literal, Referen
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import USUAL_PART, WORD_LIST_PART
 
-#: The two symbols before a place, the nearer one last; empty where a rule begins.
+#: The two symbols before a place, the nearer one last; empty at the begin of a rule.
 Before = tuple[str, str]
 
 _BEGINNING: Before = ("", "")
@@ -26,7 +27,7 @@ _SYMBOLS = re.compile(r"('(?:[^'\\]|\\.)*'|\w+)([?*]?)")
 
 
 def symbols_in(texts: Iterable[str]) -> list[tuple[Before, str]]:
-    """The tokens and rules of texts that follow one another, each with what is before it."""
+    """Return the tokens and rules of texts in sequence, each with the two symbols before it."""
     out = []
     before = _BEGINNING
     for symbol, suffix in _SYMBOLS.findall(" ".join(texts)):
@@ -37,12 +38,12 @@ def symbols_in(texts: Iterable[str]) -> list[tuple[Before, str]]:
 
 
 def last_two(texts: Iterable[str]) -> Before:
-    """What is before whatever follows the texts."""
+    """Return the two symbols before whatever follows the texts."""
     return symbols_in((*texts, "NEXT"))[-1][0]
 
 
 class Collocations:
-    """What one grammar writes behind what."""
+    """Statistics of one grammar on which symbols follow which."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.grammar = recognizer.grammar
@@ -55,7 +56,7 @@ class Collocations:
                     self._sequence(number, alternative, frozenset([_BEGINNING]))
 
     def usual(self, before: Before) -> dict[str, int]:
-        """The rules, and tokens with a value, usual in places like this, with their counts."""
+        """Return the rules and value tokens that are usual at such places, with their counts."""
         for place in self._places(before):
             found = self._behind.get(place)
             if found:
@@ -64,7 +65,10 @@ class Collocations:
         return {}
 
     def _places(self, before: Before) -> list[Before]:
-        """Kinds of place, the nearest first: behind this word, or behind this sign and a word."""
+        """Return the kinds of place, the nearest first.
+
+        A place is after this word, or after this sign and this or any word.
+        """
         further, nearer = before
         if self._is_word(nearer):
             return [("", nearer)]
@@ -73,7 +77,7 @@ class Collocations:
         return [before] if further else []
 
     def _is_word(self, symbol: str) -> bool:
-        """Whether a symbol is a reserved word, or one that is to be."""
+        """Return whether a symbol is a keyword, present or new."""
         kind = self._lexer.kind_of.get(symbol)
         is_word = kind is None or self._lexer.is_keyword(kind)
         return symbol[:1].isupper() and is_word
@@ -88,7 +92,7 @@ class Collocations:
         return before
 
     def _element(self, rule: int, element: Element, before: frozenset[Before]) -> frozenset[Before]:
-        """What may be before whatever follows the element."""
+        """Return what can precede the symbol after the element."""
         match element:
             case Repeat(item=item, operator=operator):
                 after = self._element(rule, item, before)
@@ -120,10 +124,10 @@ class Collocations:
 
     @cached_property
     def written_by(self) -> dict[str, str]:
-        """For tokens that are a rule by themselves and that no other rule writes: that rule.
+        """The rules for tokens that are a sentence by themselves and that no other rule contains.
 
-        A rule that lists reserved words writes none of them, and of several words in one rule one
-        alone may be meant.
+        A list of keywords is not such a rule, nor is a rule with several keywords, because only one
+        of them may be meant.
         """
         users: dict[str, set[str]] = defaultdict(set)
         alone: set[tuple[str, str]] = set()

@@ -1,4 +1,4 @@
-"""Edit sites: a place in the grammar, and the tokens of a failing line it should accept."""
+"""Edit sites: a place in the grammar, and the tokens of a failing line to accept there."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from grammar.parser.recognizer import Recognizer, State
 from recovery.proposals.segmentation import Word
 from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 
-#: Edits that need no phrase, with their rank: how much they accept.
+#: Complete edits with their rank, which estimates how much they accept.
 RankedEdits = tuple[int, tuple[Edit, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class LinePattern:
-    """What failing lines of one kind share: a form, and the names meant as keywords, by place."""
+    """What failing lines of one kind share: their form, and names meant as keywords, by index."""
 
     form: Form
     keywords: tuple[tuple[int, str], ...]
 
     @property
     def is_enormous(self) -> bool:
-        """Whether it is too long or too deeply nested to have been written by hand."""
+        """Whether the line is too long or too deeply nested to be written by hand."""
         deepest = max(map(len, self.form.before), default=0)
         return len(self.form.kinds) > LONGEST_LINE or deepest > DEEPEST_STACK
 
     def words(self) -> list[Word]:
-        """The tokens of the line."""
+        """Return the tokens of the line."""
         meant = dict(self.keywords)
         return [(kind, meant.get(i)) for i, kind in enumerate(self.form.kinds)]
 
@@ -40,10 +40,10 @@ class LinePattern:
 class EditSite:
     """A place in a rule, and the tokens of a line that it would have to accept.
 
-    ``insert`` before the element at the place, ``lines`` the same with a line end behind them and
-    any number of times; ``widen`` instead of that element; ``alternative`` of the rule, whatever
-    the place, and ``line`` that with a line end behind it. ``rank`` says how much an edit there
-    accepts besides what is written.
+    ``insert`` means before the element at the place; ``lines`` the same, with a line end after them
+    and any number of times; ``widen`` instead of that element; ``alternative`` an alternative of
+    the rule, whatever the place; ``line`` an alternative with a line end. ``rank`` estimates how
+    much an edit there accepts besides its text.
     """
 
     kind: OneOf["insert", "lines", "line", "widen", "alternative"]
@@ -54,16 +54,16 @@ class EditSite:
 
 
 def configurations_of(recognizer: Recognizer, state: State) -> list[Configuration]:
-    """The configurations of a state, calls and returns followed, in an order of their own.
+    """Return the configurations of a state, calls and returns followed, in a fixed order.
 
-    They come as a set of interned objects, whose order changes from run to run.
+    The recogniser returns a set of interned objects, whose order changes from run to run.
     """
     found = recognizer.sites(state)
     return sorted(found, key=lambda c: (c[0], c[1].depth, c[1].positions()))
 
 
 def places_of(recognizer: Recognizer, site: Configuration) -> list[Address]:
-    """The places in the text of its rule that a configuration is at."""
+    """Return the addresses in the text of its rule at which a configuration is."""
     network = recognizer.network
     rule = network.rule[site[0]]
     return sorted(network.automata[rule].places[site[0] - network.entry[rule]])

@@ -1,7 +1,7 @@
-"""Profile of a grammar, by which edits are ranked as restrictive and fitting.
+"""The profile of a grammar, by which edits are ranked as restrictive and fitting.
 
-How many rules lead to a rule, which rules gather kinds of statement or operand, which end with a
-line end or are blocks, and what they write elsewhere.
+It covers how many rules lead to a rule, which rules are choices of statements or operands, which
+end with a line end or are blocks, and what they contain elsewhere.
 """
 
 from __future__ import annotations
@@ -43,34 +43,34 @@ class GrammarProfile:
         self._sequences: dict[str, dict[Address, Alternative]] = {}
 
     def sequence(self, rule: str, address: Address) -> Alternative:
-        """The alternative at an address of a rule."""
+        """Return the alternative at an address of a rule."""
         known = self._sequences.get(rule)
         if known is None:
             known = self._sequences[rule] = dict(sequences(self.grammar.by_name[rule]))
         return known[address]
 
     def alternatives(self, rule: str) -> frozenset[str]:
-        """The alternatives a rule has, as written."""
+        """Return the alternatives of a rule, as written."""
         found = self.grammar.by_name[rule]
         return frozenset(" ".join(found.source_of(a).split()) for a in found.alternatives)
 
     def closing(self, rule: str) -> str | None:
-        """What every alternative of a rule ends with, where that is a line end.
+        """Return the line end with which every alternative of a rule ends, or ``None``.
 
-        An alternative that is a rule which ends so ends so too.
+        An alternative that is a rule with such an end counts too.
         """
         return self.line_end if rule in self._closed else None
 
     @cached_property
     def _closed(self) -> frozenset[str]:
-        """Rules that end with a line end, and write it themselves."""
+        """Rules whose alternatives end with a line end that they write themselves."""
         found: set[str] = set()
         for _ in range(2):  # that a rule is another rule goes no deeper
             for rule in self.grammar.rules:
                 ends = [
                     end
                     for a in (() if rule.is_lexer else rule.alternatives)
-                    # how a block ends says nothing of lines
+                    # the end of a block tells nothing about lines
                     if (end := self._last(rule, a)) or not self._is_block(rule, a)
                 ]
                 if self.line_end in ends and all(e == self.line_end or e in found for e in ends):
@@ -78,11 +78,11 @@ class GrammarProfile:
         return frozenset(found)
 
     def _is_block(self, rule: Rule, alternative: Alternative) -> bool:
-        """Whether a line ends within an alternative."""
+        """Return whether there is a line end inside an alternative."""
         return self.line_end in map(rule.source_of, alternative.elements[:-1])
 
     def _last(self, rule: Rule, alternative: Alternative) -> str:
-        """What an alternative ends with: a line end, or the one rule that it is."""
+        """Return the last element of an alternative if it is a line end or the only element."""
         elements = alternative.elements
         text = rule.source_of(elements[-1]) if elements else ""
         return text if text == self.line_end or len(elements) == 1 else ""
@@ -107,22 +107,22 @@ class GrammarProfile:
         )
 
     def unused_in(self, text: str) -> frozenset[str]:
-        """Rules of a text that nothing in the grammar calls."""
+        """Return the rules in a text that nothing in the grammar calls."""
         return self._unused.intersection(_NAMES.findall(text))
 
     def is_free(self, name: str) -> bool:
-        """Whether a name is that of a rule which nothing calls, or of no rule."""
+        """Return whether a name is that of an uncalled rule, or of no rule."""
         return name in self._unused or name not in self.recognizer.network.entry
 
     def same_text_bonus(self, text: str) -> int:
-        """Steps saved by a text that some rule already has as an optional or repeated part."""
+        """Return the bonus for a text that some rule has as an optional or repeated part."""
         return SAME_TEXT_BONUS if "".join(text.split()) in self._element_texts else 0
 
     def usual_place(self, rule: str, at: Address, text: str) -> Address | None:
-        """Where a part goes that other sequences have beside what is also found here.
+        """Return where a part belongs, judged by its neighbours in other sequences.
 
-        Behind optional parts a line does not show the order; the place of the part elsewhere does.
-        ``None`` where that speaks for no place before ``at``.
+        After optional parts a line does not show the order. Returns ``None`` if there is no
+        evidence for a place before ``at``.
         """
         elements = self.sequence(rule, at[:-1]).elements
         source = self.grammar.by_name[rule].source_of
@@ -140,7 +140,7 @@ class GrammarProfile:
 
     @cached_property
     def _beside(self) -> frozenset[tuple[str, str]]:
-        """Texts of elements that are neighbours in some sequence."""
+        """Pairs of element texts that are neighbours in some sequence."""
         found: set[tuple[str, str]] = set()
         for rule in self.grammar.rules:
             for _, sequence in () if rule.is_lexer else sequences(rule):
@@ -166,7 +166,7 @@ class GrammarProfile:
         return frozenset(network.entry) - used - {self.grammar.start}
 
     def operands(self, text: str) -> frozenset[str]:
-        """The names in a text that has no keyword, none in one that has."""
+        """Return the names in a text without keywords; none for a text with a keyword."""
         names = frozenset(_NAMES.findall(text))
         lexer = self.recognizer.lexer
         known = self.grammar.by_name
@@ -174,7 +174,7 @@ class GrammarProfile:
         return frozenset() if any(words) else names & known.keys()
 
     def is_single_reference(self, rule: str) -> bool:
-        """Whether a rule is nothing but another rule."""
+        """Return whether a rule consists of another rule only."""
         alternatives = self.grammar.by_name[rule].alternatives
         elements = [e for a in alternatives for e in a.elements]
         return (
@@ -182,15 +182,15 @@ class GrammarProfile:
         )
 
     def is_hub(self, rule: str) -> bool:
-        """Whether a rule gathers kinds of something."""
+        """Return whether a rule is a choice between many alternatives."""
         return len(self.grammar.by_name[rule].alternatives) >= HUB_ALTERNATIVES
 
     def has_choice(self, rule: str) -> bool:
-        """Whether a rule has more than one alternative."""
+        """Return whether a rule has more than one alternative."""
         return len(self.grammar.by_name[rule].alternatives) > 1
 
     def near(self, rule: str) -> frozenset[str]:
-        """Rules that a rule refers to."""
+        """Return the rules that a rule refers to."""
         return frozenset(
             e.name
             for a in self.grammar.by_name[rule].alternatives
@@ -199,7 +199,7 @@ class GrammarProfile:
         )
 
     def width(self, rule: str) -> int:
-        """How far an edit reaches: the more, the more rules lead to this one."""
+        """Return how far an edit of a rule reaches: the more rules lead to it, the further."""
         return self._ancestors[rule]
 
     @cached_property
@@ -211,7 +211,7 @@ class GrammarProfile:
 
     @cached_property
     def callers(self) -> dict[str, set[str]]:
-        """For each rule those that call it."""
+        """The callers of each rule."""
         network = self.recognizer.network
         callers: dict[str, set[str]] = {name: set() for name in network.entry}
         for position, calls in enumerate(network.calls):
@@ -236,7 +236,7 @@ class GrammarProfile:
 
     @cached_property
     def line_ends(self) -> frozenset[str]:
-        """Rules that only say where a line ends: nothing of a line belongs there."""
+        """Rules that consist only of line ends."""
         return frozenset(
             rule.name
             for rule in self.grammar.rules
@@ -251,12 +251,12 @@ class GrammarProfile:
 
     @cached_property
     def line_end(self) -> str:
-        """What a rule writes where a line ends."""
+        """The symbol that a rule writes for a line end."""
         return min(self.line_ends, default=self.recognizer.lexer.line_end)
 
     @cached_property
     def loops(self) -> frozenset[str]:
-        """Rules that are repeated somewhere."""
+        """Rules that some rule repeats."""
         return frozenset(
             e.item.name
             for rule in self.grammar.rules
@@ -268,7 +268,7 @@ class GrammarProfile:
 
     @cached_property
     def bodies(self) -> list[tuple[str, ...]]:
-        """What blocks of the grammar have between their first line and their last."""
+        """The bodies of blocks in the grammar, the most frequent first."""
         found: Counter[tuple[str, ...]] = Counter()
         for rule in self.grammar.rules:
             for _, sequence in () if rule.is_lexer else sequences(rule):
@@ -294,9 +294,9 @@ class GrammarProfile:
     # ------------------------------------------------------------------------------- elements
 
     def first(self, sequence: Alternative, number: int) -> frozenset[int]:
-        """The tokens with which the element at a place itself begins.
+        """Return the tokens with which the element at a place begins.
 
-        Only rules that are nothing but a choice of reserved words are looked into.
+        Rules are only expanded if they are a choice of keywords.
         """
         if number > len(sequence.elements):
             return frozenset()
@@ -320,7 +320,7 @@ class GrammarProfile:
     # ------------------------------------------------------------------------- left recursion
 
     def is_left_recursive(self, edit: Edit) -> bool:
-        """Whether an edit makes a rule begin with itself, so that no reading of it would end."""
+        """Return whether an edit makes a rule left-recursive."""
         match edit:
             case AddAlternative(rule=rule, text=text):
                 return rule in self._leading(text)
@@ -334,7 +334,7 @@ class GrammarProfile:
                 return False
 
     def _leading(self, text: str) -> frozenset[str]:
-        """Rules that may come before the first token of a text, the optional ones passed over."""
+        """Return the rules that can come before the first token of a text."""
         network = self.recognizer.network
         found: frozenset[str] = frozenset()
         for symbol in text.replace("(", " ").replace(")", " ").split():
@@ -351,7 +351,7 @@ class GrammarProfile:
         return found
 
     def is_at_start(self, rule: str, at: Address) -> bool:
-        """Whether a place may be reached before the rule has read anything."""
+        """Return whether a place can be reached before the rule has read a token."""
         network = self.recognizer.network
         entry = network.entry[rule]
         places = network.automata[rule].places

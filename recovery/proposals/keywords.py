@@ -1,6 +1,6 @@
-"""The words of a grammar: which are reserved, which have a use, which are also names.
+"""The words of a grammar: which are reserved, which are used, which are also names.
 
-An edit that needs a new word reserves it, and adds it where the grammar lists its words.
+An edit with a new word reserves it, and adds it to the grammar's lists of keywords.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from recovery.tuning import WORD_LIST_PART
 
 
 class Vocabulary:
-    """The reserved words of one grammar, and the rules that are made of them."""
+    """The keywords of one grammar, and the rules that consist of them."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
@@ -24,7 +24,7 @@ class Vocabulary:
     # ------------------------------------------------------------------------------- rules of words
 
     def is_set_of_words(self, rule: str) -> bool:
-        """Whether each alternative of a rule is one token."""
+        """Return whether each alternative of a rule is one token."""
         return all(
             len(a.elements) == 1
             and (
@@ -35,7 +35,7 @@ class Vocabulary:
 
     @cached_property
     def kinds_of_words(self) -> dict[str, str]:
-        """Reserved words that are a choice with others, names too perhaps, with the rule of it."""
+        """For keywords that are a choice with others, the rule of that choice."""
         lexer = self.recognizer.lexer
         found: dict[str, str] = {}
         for rule in self.grammar.rules:
@@ -46,9 +46,9 @@ class Vocabulary:
         return found
 
     def words_of(self, rule: str) -> frozenset[str]:
-        """The tokens of a rule whose alternatives are one token, or one such rule, each.
+        """Return the tokens of a rule that is a choice of tokens, or of other such rules.
 
-        None where an alternative is anything else.
+        Returns none if an alternative is anything else.
         """
         found: set[str] = set()
         todo, seen = [rule], {rule}
@@ -65,7 +65,7 @@ class Vocabulary:
         return frozenset(found)
 
     def is_keyword(self, element: Element) -> bool:
-        """Whether an element is a reserved word, or a choice of such words."""
+        """Return whether an element is a keyword or a choice of keywords."""
         if isinstance(element, Group):
             return all(
                 len(a.elements) == 1 and self.is_keyword(a.elements[0])
@@ -82,7 +82,7 @@ class Vocabulary:
 
     @cached_property
     def word_lists(self) -> tuple[str, ...]:
-        """Rules that list reserved words, many of all there are."""
+        """Rules that list a large share of all keywords."""
         lexer = self.recognizer.lexer
         all_words = sum(lexer.is_keyword(kind) for kind in lexer.kind_of.values())
         return tuple(
@@ -94,7 +94,7 @@ class Vocabulary:
         )
 
     def is_written(self, word: str) -> bool:
-        """Whether some rule has a use for a word; to be listed among all is none."""
+        """Return whether a rule other than the lists of keywords uses a word."""
         return word in self._written
 
     @cached_property
@@ -109,7 +109,7 @@ class Vocabulary:
         )
 
     def reserve(self, keywords: Iterable[str]) -> tuple[Edit, ...]:
-        """The edits that reserve words, and add them where all reserved words are listed."""
+        """Return the edits that reserve words and add them to the lists of keywords."""
         edits: list[Edit] = []
         for word in sorted(set(keywords)):
             edits.append(AddToken(word))
@@ -118,7 +118,7 @@ class Vocabulary:
 
     @cached_property
     def names(self) -> str | None:
-        """The rule of what is a name: a token, and keywords that are names in most places."""
+        """The rule for names: the token of names, and keywords that are names in most places."""
         lexer = self.recognizer.lexer
         for rule in self.grammar.rules:
             if not rule.is_lexer and self.words_of(rule.name):
@@ -132,9 +132,9 @@ class Vocabulary:
         return None
 
     def still_names(self, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
-        """The edits with the words they reserve left names; ``None`` where there is no such rule.
+        """Return the edits with their reserved words left names; ``None`` without a rule for names.
 
-        Such words are in the list of names then, and not in that of all other reserved words.
+        Such words are added to the rule for names, and not to the lists of other keywords.
         """
         if self.names is None:
             return None

@@ -1,7 +1,7 @@
-"""Edit sites for whole lines, of a kind that the grammar does not expect there.
+"""Edit sites for whole lines of a kind that the grammar does not expect there.
 
-Lines may be accepted any number of times, as one more alternative where lines come, or because the
-line end before them was read as something else.
+Such lines may be accepted any number of times, as one more alternative where lines can come, or
+because the line end before them was read as something else.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class LineSiteFinder:
         self._paths = Paths(profile.recognizer.network)
 
     def as_lines(self, before: State, words: list[Word]) -> Iterator[EditSite | RankedEdits]:
-        """The line, any number of times, where no such line is expected."""
+        """Yield sites that accept the line any number of times where it is not expected."""
         recognizer, profile = self.recognizer, self.profile
         kinds = tuple(kind for kind, _ in words)
         if kinds[-1] != recognizer.line_kind:
@@ -68,7 +68,7 @@ class LineSiteFinder:
                     yield EditSite("lines", rule, place, phrase, rank + 2 * UNLIKELY_COST)
 
     def _known_elsewhere(self, before: State, line_rules: tuple[str, ...]) -> Iterator[RankedEdits]:
-        """What reads whole lines elsewhere, as one more kind of the lines that come here."""
+        """Yield edits that accept rules for whole lines as another alternative here."""
         recognizer, profile = self.recognizer, self.profile
         network = recognizer.network
         called = {
@@ -85,13 +85,13 @@ class LineSiteFinder:
                 yield rank, (AddAlternative(rule, line_rule),)
 
     def _is_beside_lines(self, site: Configuration) -> bool:
-        """Whether lines of some kind come any number of times at a configuration."""
+        """Return whether lines of some kind can be repeated at a configuration."""
         network = self.recognizer.network
         called = {network.rule[entry] for entry, _ in network.calls[site[0]]}
         return bool(called & self.profile.loops & self.profile.of_lines)
 
     def after_line_end(self, form: Form, words: list[Word]) -> Iterator[RankedEdits]:
-        """What would read the line, had the line end before it been read otherwise."""
+        """Yield edits that read the line if the line end before it had been read otherwise."""
         recognizer, profile = self.recognizer, self.profile
         way = min(map(self._paths.prefix, form.before), key=len)
         if not way or way[-1] != recognizer.line_kind:
@@ -119,7 +119,7 @@ class LineSiteFinder:
                     )
 
     def _as_alternatives(self, before: State, words: list[Word]) -> Iterator[EditSite]:
-        """The line as an alternative of a rule whose alternatives are whole lines."""
+        """Yield the line as an alternative of a rule whose alternatives are whole lines."""
         network = self.recognizer.network
         rules = {
             network.rule[e]
@@ -133,13 +133,13 @@ class LineSiteFinder:
                 yield EditSite("line", rule, (1, 1), tuple(words[:-1]), rank)
 
     def _rules_of_line(self, kinds: tuple[int, ...]) -> tuple[str, ...]:
-        """Rules of which the line is a whole sentence or the first line."""
+        """Return the rules of which the line is a whole sentence or the first line."""
         matcher = self.phraser.matcher
         whole = matcher.rules_for(kinds) | frozenset(matcher.multi_line_rules(kinds))
         return tuple(sorted(whole - self.profile.line_ends))
 
     def as_new_line(self, before: State, words: list[Word]) -> Iterator[EditSite]:
-        """The whole line as an alternative of a rule that can begin there."""
+        """Yield the line as an alternative of a rule that can begin there."""
         last = len(words) - 1
         end = [words[last][0]]
         network = self.recognizer.network

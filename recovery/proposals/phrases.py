@@ -1,8 +1,8 @@
-"""Phrases: from the tokens a grammar did not expect to the words of a rule that would.
+"""Phrases: unexpected tokens as symbols that a rule can be given.
 
-The same tokens can be written into a rule as they are (``STEP 2``), or with rules in place of
-operands (``STEP literal``, ``STEP expression``). The first is the most restrictive; which is right
-is decided by the corpus and the negatives, so all are proposed.
+The same tokens can be written as they are (``STEP 2``), or with rules in place of operands (``STEP
+literal``, ``STEP expression``). The first is the most restrictive. Corpus and negatives decide
+which is right, so all of them are proposed.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ class Phraser:
         return {name: frozenset(found - {name}) for name, found in callers.items()}
 
     def _is_one_level(self, rule: str) -> bool:
-        """Whether a rule is only an intermediate level of another, which may consist of it alone.
+        """Return whether a rule is only an intermediate level of its callers (``product``).
 
-        One of many kinds that a rule gathers is no such level.
+        One of many alternatives of a rule is no such level.
         """
         known = self.recognizer.grammar.by_name
         return len(self._callers[rule]) == 1 and all(
@@ -61,7 +61,7 @@ class Phraser:
 
     @cached_property
     def _uses(self) -> dict[str, int]:
-        """How often each rule is called: the more, the more general its role."""
+        """The number of calls of each rule: the more, the more general its role."""
         network = self.recognizer.network
         counts = dict.fromkeys(network.entry, 0)
         for calls in network.calls:
@@ -71,7 +71,7 @@ class Phraser:
 
     @cached_property
     def _wider(self) -> dict[str, frozenset[str]]:
-        """For each rule the rules that it may consist of alone (``expression`` of ``literal``)."""
+        """For each rule the rules that it can consist of alone (``literal`` for ``expression``)."""
         network = self.recognizer.network
         direct = {
             rule: {
@@ -91,7 +91,7 @@ class Phraser:
         return out
 
     def would_be_read_twice(self, rule: str, symbol: str) -> bool:
-        """Whether a rule that may consist of this one alone reads the keyword already.
+        """Return whether a rule that can consist of ``rule`` alone already reads the keyword.
 
         Rules that read almost any keyword do not count.
         """
@@ -102,14 +102,14 @@ class Phraser:
         return any(rule in self._wider[reader] for reader in found)
 
     def is_unused(self, rule: str) -> bool:
-        """Whether nothing calls a rule."""
+        """Return whether nothing calls a rule."""
         return not self._uses[rule]
 
     def breadth(self, symbols: Sequence[str]) -> int:
-        """How much a phrase accepts: nothing for tokens, more for rules that consist of more.
+        """Return how much a phrase accepts: nothing for tokens, more for more general rules.
 
-        What the grammar usually writes in such a place (`recovery.proposals.collocations`) counts
-        little; what is narrower than that counts as unlikely to be all that is meant.
+        A rule that is usual at such a place (`recovery.proposals.collocations`) counts little; a
+        narrower rule gets a penalty, because it is unlikely to be meant.
         """
         key = tuple(symbols)
         found = self._breadths.get(key)
@@ -132,13 +132,13 @@ class Phraser:
         return cost + (NARROWER_RULE_COST if is_narrower else 0)
 
     def sign(self, span: Sequence[Word]) -> str | None:
-        """The text of a keyword or sign; ``None`` for what carries a value."""
+        """Return the text of a keyword or sign; ``None`` for a token with a value."""
         if len(span) != 1 or (span[0][1] is None and self.matcher.is_operand(span[0][0])):
             return None
         return self._token(span[0])
 
     def stands_for_a_rule(self, span: Sequence[Word], *, is_listed: bool) -> bool:
-        """Whether some rule reads the span by itself (``TRUE`` is a literal too).
+        """Return whether some rule reads the span by itself (``TRUE`` is a literal too).
 
         A rule that reads almost any keyword does not count, unless the keyword is an item of a
         list.
@@ -155,7 +155,7 @@ class Phraser:
     def rules_for_all(
         self, spans: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
     ) -> tuple[str, ...]:
-        """What reads each of the spans, from the narrowest to the widest."""
+        """Return rules that read each of the spans, from the narrowest to the widest."""
         if any(keyword is not None or kind < 0 for span in spans for kind, keyword in span):
             return ()
         kinds = {tuple(kind for kind, _ in span) for span in spans}
@@ -168,9 +168,9 @@ class Phraser:
     def phrases(
         self, words: Sequence[Word], near: frozenset[str] = frozenset()
     ) -> Iterator[tuple[str, ...]]:
-        """Symbols for the words, the most restrictive first; none where they are too many.
+        """Yield phrases for the words, the most restrictive first; none for too many words.
 
-        ``near`` names rules that the edited rule refers to: they are tried for operands too.
+        ``near`` are rules that the edited rule refers to; they are tried for operands too.
         """
         if not words or len(words) > LONGEST_PHRASE:
             return
@@ -182,7 +182,7 @@ class Phraser:
                     yield shape
 
     def _spellings(self, words: Sequence[Word], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
-        """The words as they are, then with rules for their operands, narrow ones first."""
+        """Yield the words as they are, then with rules for operands, narrow ones first."""
         parts = self.segmenter.parts(words)
         if parts is None:
             return
@@ -203,7 +203,7 @@ class Phraser:
             yield from ((rule,) for rule in ordered[:MOST_OPERAND_RULES])
 
     def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
-        """The symbols, with what the grammar usually writes where that reads the parts."""
+        """Return the symbols, replaced by what the grammar usually has there if it fits."""
         before = ("", "")
         for place, part in enumerate(parts):
             symbols[place] = self.usual_for([part], before) or symbols[place]
@@ -211,7 +211,7 @@ class Phraser:
         return tuple(symbols)
 
     def usual_for(self, spans: Sequence[tuple[Word, ...]], before: Before) -> str | None:
-        """The rule that is usual in such a place, where it reads all the spans."""
+        """Return the rule that is usual at such a place if it reads all the spans, or ``None``."""
         if any(keyword is not None for span in spans for _, keyword in span):
             return None
         kinds = {tuple(kind for kind, _ in span) for span in spans}
@@ -226,7 +226,7 @@ class Phraser:
     def _levels(
         self, part: tuple[Word, ...], near: frozenset[str] = frozenset()
     ) -> tuple[str, ...]:
-        """What reads a part: its token, or rules from the narrowest to the widest."""
+        """Return the symbols for a part: its token, or rules from narrow to wide."""
         if len(part) == 1:
             token = self._token(part[0])
             if token is None or part[0][1] is not None:
@@ -256,7 +256,7 @@ class Phraser:
     def _narrow_to_wide(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
         close = sorted(rules & near)[:MOST_NEAR_RULES]
         rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
-        # a rule that nothing uses was written to be used: it comes first
+        # an unused rule was probably written for this purpose, so it comes first
         narrow = min(
             rules, key=lambda r: (self._uses[r] > 0, len(self._wider[r]), -self._uses[r], r)
         )
@@ -270,7 +270,7 @@ class Phraser:
         return None if kind < 0 else self.spelled(kind)
 
     def spelled(self, kind: int) -> str:
-        """A token as a rule writes it: keywords and kinds by name, signs quoted."""
+        """Return a token as it is written in a rule: by name, or quoted if it is a sign."""
         lexer = self.recognizer.lexer
         if lexer.is_keyword(kind) or lexer.display[kind] == lexer.names[kind]:
             return lexer.names[kind]
@@ -278,7 +278,7 @@ class Phraser:
 
 
 def _as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:
-    """``x a , a , a`` as ``x a (',' a)*``; other symbols as they are."""
+    """Return ``x a , a , a`` as ``x a (',' a)*``, and other symbols unchanged."""
     commas = [place for place, symbol in enumerate(symbols) if symbol == "','"]
     if not commas:
         return symbols

@@ -1,7 +1,4 @@
-"""Matching of tokens to the rules of a grammar that read them.
-
-For each rule: are these tokens a sentence of it, or the beginning of one?
-"""
+"""Which rules read given tokens: as a whole sentence, or as the beginning of one."""
 
 from __future__ import annotations
 
@@ -24,7 +21,7 @@ class RuleMatcher:
 
     @cached_property
     def _entries(self) -> dict[str, State]:
-        """A state at the start of each rule, but for the start rule."""
+        """The state at the start of each rule, except the start rule."""
         network = self.recognizer.network
         return {
             rule: self.recognizer.at_rule(rule)
@@ -33,12 +30,12 @@ class RuleMatcher:
         }
 
     def multi_line_rules(self, kinds: Sequence[int]) -> list[str]:
-        """Rules that continue over the end of a line which begins them so."""
+        """Return the rules that begin with this line and continue after it."""
         ends = self.recognizer.ends
         return [rule for rule, state in self._read(tuple(kinds)).items() if not ends(state)]
 
     def rules_for(self, kinds: tuple[int, ...]) -> frozenset[str]:
-        """Rules of which these tokens are a whole sentence."""
+        """Return the rules of which these tokens are a whole sentence."""
         found = self._spans.get(kinds)
         if found is None:
             if len(self._spans) >= MOST_ANSWERS_KEPT:
@@ -49,13 +46,13 @@ class RuleMatcher:
         return found
 
     def begun_by(self, kinds: tuple[int, ...]) -> frozenset[str]:
-        """Rules of which these tokens are the beginning of a sentence."""
+        """Return the rules of which these tokens begin a sentence."""
         return frozenset(self._read(kinds))
 
     def _read(self, kinds: tuple[int, ...]) -> Mapping[str, State]:
-        """Rules that can begin with these tokens, with the state behind them.
+        """Return the rules that can begin with these tokens, with the state after them.
 
-        Phrases are asked for token by token, so each is read one token further than the last.
+        Results for prefixes are cached, so a phrase is read one token further than the last.
         """
         known = len(kinds)
         while known and kinds[:known] not in self._begun:
@@ -71,7 +68,7 @@ class RuleMatcher:
         return states
 
     def is_more_than_a_name(self, kinds: tuple[int, ...]) -> bool:
-        """Whether some rule reads the tokens that would not with any name for the first of them."""
+        """Return whether some rule reads the tokens, but not with a name as their first."""
         rules = self.rules_for(kinds) - self.keyword_lists
         lexer = self.recognizer.lexer
         if rules and lexer.is_keyword(kinds[0]):
@@ -80,7 +77,7 @@ class RuleMatcher:
 
     @cached_property
     def keyword_lists(self) -> frozenset[str]:
-        """Rules that read many keywords by themselves: they say little about any of them."""
+        """Rules that read many keywords alone, and so tell little about any of them."""
         lexer = self.recognizer.lexer
         keywords = [kind for kind in lexer.kind_of.values() if lexer.is_keyword(kind)]
         counts = Counter(rule for kind in keywords for rule in self.rules_for((kind,)))
@@ -96,12 +93,12 @@ class RuleMatcher:
         return self.rules_for(self._a_name) & others
 
     def may_be_a_name(self, kind: int) -> bool:
-        """Whether a token is a reserved word that some rules read as any other name."""
+        """Return whether a token is a keyword that some rules read like a name."""
         is_word = self.recognizer.lexer.is_keyword(kind)
         return is_word and bool(self.rules_for((kind,)) - self.keyword_lists)
 
     def is_operand(self, kind: int) -> bool:
-        """Whether a token carries a value of its own: a name, a number, a string."""
+        """Return whether a token carries a value: a name, a number, a string."""
         display = self.recognizer.lexer.display[kind]
         return display == self.recognizer.lexer.names[kind] and not (
             self.recognizer.lexer.is_keyword(kind)

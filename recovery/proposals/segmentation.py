@@ -1,6 +1,7 @@
 """Segmentation: the tokens of a line cut into operands and single words or signs.
 
-``STEP A + 1`` is the word ``STEP`` and one operand: some rule reads ``A + 1`` as a whole.
+``STEP A + 1`` is the word ``STEP`` and one operand, because some rule reads ``A + 1`` as a whole.
+The cheapest segmentation is found by dynamic programming.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from recovery.tuning import (
     TOKEN_COST,
 )
 
-#: A token of a line: its kind and, where it is a name meant as a keyword, that keyword.
+#: A token of a line: its kind and, if it is a name meant as a keyword, that keyword.
 Word = tuple[int, str | None]
 
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
@@ -30,7 +31,7 @@ class Segmenter:
         self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
 
     def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
-        """The words cut into the fewest operands and single tokens, unless they are too many."""
+        """Return the words cut into the fewest operands and single tokens; ``None`` if too many."""
         if len(words) > LONGEST_SEGMENTED:
             return None
         key = tuple(words)
@@ -57,12 +58,15 @@ class Segmenter:
         return best[0][1] if best[0] else None
 
     def _seams(self, part: tuple[Word, ...]) -> int:
-        """Where a part could fall into operands: at commas outside of brackets, between values."""
+        """Return the number of places at which a part could be split into operands.
+
+        These are commas outside of brackets, and the boundaries between values.
+        """
         depth = seams = 0
         was_value = False
         matcher, lexer = self.matcher, self.matcher.recognizer.lexer
         first = part[0][0]
-        if lexer.is_keyword(first):  # what follows a word belongs to it
+        if lexer.is_keyword(first):  # the tokens after a keyword belong to it
             kinds = tuple(kind for kind, _ in part)
             is_operand = not matcher.value_rules.isdisjoint(matcher.rules_for(kinds))
             is_a_name = not matcher.value_rules.isdisjoint(matcher.rules_for((first,)))
@@ -77,7 +81,7 @@ class Segmenter:
         return seams
 
     def _can_be_written(self, part: tuple[Word, ...]) -> bool:
-        """Whether a part is one token, or what some rule reads."""
+        """Return whether a part is one token, or some rule reads it."""
         if len(part) == 1:
             return part[0][1] is not None or part[0][0] >= 0
         if any(keyword is not None or kind < 0 for kind, keyword in part):

@@ -1,6 +1,6 @@
-"""How similar an alternative is to those that a rule has: which rule should get it.
+"""How similar an alternative is to those of a rule, to choose the rule that gets it.
 
-A rule that gathers kinds of statement gets one more; a rule of one form gets no other.
+A rule that is a choice of statements may get one more; a rule of a single form should not.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ class Similarity:
         self._leading_words: dict[str, frozenset[str]] = {}
 
     def dissimilarity(self, rule: str, symbols: Sequence[str]) -> int:
-        """Steps against an alternative of a rule: below 0 where the rule has one just like it.
+        """Return a penalty for an alternative of a rule; negative if the rule has a similar one.
 
-        Keywords are alike; so are the same rules, signs and kinds of token. A rule of many
-        alternatives is made to take more, one of a single form is not.
+        Alternatives are compared as sequences of symbol classes: all keywords are one class. A rule
+        with many alternatives takes more of them easily, a rule with one does not.
         """
         known = self._classes.get(rule)
         if known is None:
@@ -78,29 +78,29 @@ class Similarity:
         return NEW_FORM_COST + max(0, MANY_FORMS - len(known))
 
     def _is_one_of_words(self, rule: str) -> bool:
-        """Whether a rule is a choice of words."""
+        """Return whether a rule is a choice of words."""
         return self.profile.has_choice(rule) and self.vocabulary.is_set_of_words(rule)
 
     def _is_known_by(self, rule: str, word: str) -> bool:
-        """Whether one of the rules that a rule gathers is known by a word."""
+        """Return whether a word begins one of the rules between which a rule chooses."""
         return any(
             rule in gathering and name in self.profile.callers and word in self._leads(name)
             for name, gathering in self._gathered.items()
         )
 
     def repeats_sibling(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Whether the symbols begin with a rule that is a sibling of this one in all its callers.
+        """Return whether the symbols begin with another alternative of the same choices.
 
-        What may follow that rule belongs there.
+        What can follow that rule belongs into it.
         """
         return len(symbols) > 1 and bool(
             self._gathered.get(rule, frozenset()) & self._gathered.get(symbols[0], frozenset())
         )
 
     def extends(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Whether the symbols are an alternative that the rule has, with more before or behind it.
+        """Return whether the symbols are an existing alternative with more before or after it.
 
-        That is an optional part of the alternative, and belongs there.
+        The addition is then an optional part of that alternative.
         """
         found = self.profile.grammar.by_name[rule]
         for alternative in found.alternatives:
@@ -114,7 +114,7 @@ class Similarity:
         return False
 
     def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Whether a rule is one kind of statement, known by its words, and the symbols another."""
+        """Return whether a rule is one kind of statement, and the symbols are another kind."""
         leads = self._leads(rule)
         another_word = len(symbols) == 1 and self._is_one_of_words(rule)
         known = "" in leads or symbols[0] in leads or len(leads) >= HUB_ALTERNATIVES
@@ -122,7 +122,7 @@ class Similarity:
 
     @cached_property
     def _gathered(self) -> dict[str, frozenset[str]]:
-        """For each rule the rules that gather it."""
+        """For each rule the rules that have it as an alternative."""
         found: dict[str, set[str]] = defaultdict(set)
         for rule in self.profile.grammar.rules:
             if not rule.is_lexer and self.gathers(rule.name):
@@ -133,13 +133,13 @@ class Similarity:
         return {name: frozenset(rules) for name, rules in found.items()}
 
     def gathers(self, rule: str) -> bool:
-        """Whether most alternatives of a rule are one rule or token each."""
+        """Return whether most alternatives of a rule are a single rule or token."""
         found = self.profile.grammar.by_name[rule]
         single = sum(self._only(found, a) is not None for a in found.alternatives)
         return len(found.alternatives) > 2 and 2 * single >= len(found.alternatives)
 
     def _only(self, rule: Rule, alternative: Alternative) -> Reference | None:
-        """The one rule or token that an alternative is, but for a line end behind it."""
+        """Return the single rule or token of an alternative, a line end after it ignored."""
         elements = alternative.elements
         if len(elements) == 2 and rule.source_of(elements[1]) == self.profile.line_end:
             elements = elements[:1]
@@ -147,7 +147,7 @@ class Similarity:
         return first if isinstance(first, Reference) else None
 
     def _is_single(self, symbols: Sequence[str]) -> bool:
-        """Whether the symbols are one rule or one reserved word, but for a line end."""
+        """Return whether the symbols are one rule or keyword, a line end after it ignored."""
         if len(symbols) == 2 and symbols[1] == self.profile.line_end:
             symbols = symbols[:1]
         if len(symbols) != 1:
@@ -157,7 +157,7 @@ class Similarity:
         return is_rule or self._class_of(symbols[0]) != symbols[0]
 
     def _leads(self, rule: str) -> frozenset[str]:
-        """The reserved words that alternatives begin with; an empty one for those without."""
+        """Return the keywords with which alternatives begin; an empty one for those without."""
         found = self._leading_words.get(rule)
         if found is None:
             alternatives = self.profile.grammar.by_name[rule].alternatives
@@ -166,14 +166,14 @@ class Similarity:
         return found
 
     def _words_of(self, elements: Sequence[Element]) -> list[str]:
-        """What a sequence begins with, optional elements skipped."""
+        """Return the keywords with which a sequence begins, optional elements skipped."""
         for element in elements:
             if not isinstance(element, Repeat) or element.operator == "+":
                 return self._words(element)
         return [""]
 
     def _words(self, element: Element) -> list[str]:
-        """A reserved word, or those of a choice; an empty one for anything else."""
+        """Return the keyword or choice of keywords of an element; else an empty one."""
         if isinstance(element, Reference) and self.vocabulary.is_keyword(element):
             return [element.name]
         if isinstance(element, Group) and self.vocabulary.is_keyword(element):
@@ -198,5 +198,5 @@ class Similarity:
 
 
 def _kind(symbol: str) -> str:
-    """Signs are of one kind."""
+    """Return the symbol, with all signs as one kind."""
     return "sign" if symbol[0] == "'" else symbol

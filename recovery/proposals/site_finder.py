@@ -1,8 +1,8 @@
-"""Edit sites: where the grammar could accept the tokens of a failing line.
+"""Finding edit sites: where the grammar could accept the tokens of a failing line.
 
 The sites follow from the configurations of the recogniser at the offending token and before it, and
-from the positions after which the rest of the line could be read. `recovery.proposals.candidates`
-decides what is written there.
+from the positions from which the rest of the line can be read. `recovery.proposals.candidates`
+decides what to write there.
 """
 
 from __future__ import annotations
@@ -55,24 +55,24 @@ class EditSiteFinder:
         self.similarity = similarity
         self.phraser = phraser
         self._lines = LineSiteFinder(profile, similarity, phraser)
-        #: Where the line looked at can be read on.
+        #: Where the current line can be continued.
         self._resumed: dict[tuple[State, int, int], list[int]] = {}
 
     def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
-        """Sites of a line, and edits that need no phrase; some more than once."""
+        """Yield the sites of a line, and complete edits; with duplicates."""
         recognizer, form = self.recognizer, line.form
         words = line.words()
         self._resumed.clear()
         before = recognizer.restore(form.before)
         starts = {form.index}
-        # a would-be keyword was read as a name and failed the line later than it should have
+        # a would-be keyword was read as a name, so the line failed later than it should have
         starts |= {i for i, _ in line.keywords if i < form.index}
         for start in sorted(starts):
             state, _ = recognizer.run(before, form.kinds[:start])
             for site in configurations_of(self.recognizer, state):
                 yield from self._at_site(state, site, words, start)
         if form.index:
-            # the last token may have been read as what the line leaves out
+            # the last token may have been read as something that the line leaves out
             start = form.index - 1
             state, _ = recognizer.run(before, form.kinds[:start])
             for site in configurations_of(self.recognizer, state):
@@ -88,11 +88,11 @@ class EditSiteFinder:
             yield from self._lines.after_line_end(form, words)
 
     def reserved(self, words: Sequence[Word]) -> tuple[Edit, ...]:
-        """The edits that reserve the would-be keywords among the words."""
+        """Return the edits that reserve the would-be keywords among the words."""
         return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
 
     def block_rules(self, line: LinePattern) -> list[str]:
-        """Rules that can begin where a line begins and whose alternatives are lines or blocks."""
+        """Return the rules for lines or blocks that can begin where a line begins."""
         network = self.recognizer.network
         sites = self.recognizer.sites(self.recognizer.restore(line.form.before))
         rules = {network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]}
@@ -106,7 +106,7 @@ class EditSiteFinder:
     def _taken_for_something_else(
         self, before: State, form: Form, words: list[Word]
     ) -> Iterator[EditSite]:
-        """Alternatives of the rules that the tokens before the failure were taken for."""
+        """Yield alternatives of rules as which earlier tokens were read."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = {frames for _, frames in self._begun(before, form)}
         latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
@@ -136,7 +136,7 @@ class EditSiteFinder:
                 )
 
     def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
-        """The rules that were being read where the line failed, with the frames below them."""
+        """Return the rules that were being read at the failure, with the frames below them."""
         state, _ = self.recognizer.run(before, form.kinds[: form.index])
         rule = self.recognizer.network.rule
         return {
@@ -146,7 +146,7 @@ class EditSiteFinder:
         }
 
     def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[EditSite]:
-        """Sites before the failure, where the line was read as something else."""
+        """Yield sites before the failure, where the line was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = self._begun(before, form)
         for start in range(max(0, form.index - MOST_SKIPPED), form.index):
@@ -164,7 +164,7 @@ class EditSiteFinder:
                         rank += NOT_BEGUN_COST
                     for end in self._reading_on(beyond, words, start, form.index):
                         yield EditSite("alternative", called, (1, 1), tuple(words[start:end]), rank)
-                # the tokens accepted may end where another reading went on, and failed later
+                # the accepted tokens may end where another reading continued and failed later
                 ends = self._reading_on(recognizer.at(site, state), words, start, start + 1)
                 for end, place in product(ends, places_of(self.recognizer, site)):
                     sequence = self.profile.sequence(rule, place[:-1])
@@ -175,7 +175,7 @@ class EditSiteFinder:
                         yield self._insertion(rule, place, words[start:end])
 
     def _reading_on(self, state: State, words: list[Word], start: int, first: int) -> list[int]:
-        """Where from ``first`` on the whole rest of the line can be read from ``state``."""
+        """Return the indices, from ``first`` on, from which the rest can be read in ``state``."""
         kinds = [kind for kind, _ in words]
         ends = range(max(start + 1, first), min(len(kinds), start + MOST_SKIPPED + 1))
         return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
@@ -226,7 +226,7 @@ class EditSiteFinder:
     def _resuming(
         self, state: State, words: list[Word], start: int, earliest: int = 0
     ) -> list[int]:
-        """Where the line can be read on from ``state``, to its end or for some tokens at least."""
+        """Return where the line can be continued from ``state``, to its end or for some tokens."""
         key = state, start, earliest
         found = self._resumed.get(key)
         if found is None:
@@ -240,7 +240,7 @@ class EditSiteFinder:
         for end in range(max(start + 1, earliest), min(len(kinds), start + LONGEST_RUN)):
             unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
             if unknown == end:
-                continue  # a word that the grammar lacks belongs to the phrase
+                continue  # an unknown keyword belongs to the phrase
             _, failed = self.recognizer.run(state, kinds[end:unknown])
             if failed is None:
                 whole.append(end)
@@ -261,21 +261,21 @@ class EditSiteFinder:
         return EditSite("insert", rule, place, tuple(words), width + SITE_COST)
 
     def _is_behind_line_end(self, rule: str, place: Address) -> bool:
-        """Whether a place is behind the end of a line that a rule is: that is the next line."""
+        """Return whether a place is after the line end of a rule, which is the next line."""
         elements = self.profile.sequence(rule, place[:-1]).elements
         return self.profile.closing(rule) is not None and (
             len(place) == 2 and place[-1] > len(elements)
         )
 
     def _insertion_width(self, rule: str) -> int:
-        """How wide an insertion into a rule is; less for a rule that has nothing of its own."""
+        """Return the width of an insertion into a rule; less for a single reference."""
         width = self.profile.width(rule)
         return width - UNLIKELY_COST if self.profile.is_single_reference(rule) else width
 
     def _repetitions(
         self, rule: str, place: Address, words: Sequence[Word]
     ) -> Iterator[RankedEdits | EditSite]:
-        """The operand before a place again, after a sign or word: ``a (',' a)*``."""
+        """Yield the repetition of the operand before a place: ``a (',' a)*``."""
         if place[-1] == 1 or len(words) < 2 or any(keyword for _, keyword in words[1:]):
             return
         before = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 2]
@@ -292,7 +292,7 @@ class EditSiteFinder:
             yield rank, (*self.reserved(words), Insert(rule, place, text))
 
     def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[RankedEdits]:
-        """A rule of several lines that this line begins and that is not known at this place."""
+        """Yield a known block that this line begins and that is not expected at this place."""
         if any(keyword for _, keyword in words):
             return
         rank = self.profile.width(rule) + SITE_COST
@@ -394,7 +394,7 @@ class EditSiteFinder:
         place: Address,
         base: int,
     ) -> list[int]:
-        """Positions just after the element at ``place``."""
+        """Return the positions just after the element at ``place``."""
         following = (*place[:-1], place[-1] + 1)
         network = self.recognizer.network
         rule = network.rule[site[0]]

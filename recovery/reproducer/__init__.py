@@ -1,1 +1,1 @@
-"""The shortest program that fails in the same way."""
+"""Reproducers: the shortest program that fails in the same way as a line."""

@@ -1,8 +1,9 @@
-"""Delta debugging: the fewest items of a sequence that still pass a test.
+"""Delta debugging: a smallest subsequence that still passes a test.
 
-Ddmin with what short sequences afford besides: every stretch is tried and not only halves and
-quarters, pairs that can only go together, and one item in place of many. What comes out
-is 1-minimal: without any single item it would not pass.
+This is ddmin (Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", 2002),
+with additions that short sequences allow: every stretch is tried and not only halves and quarters,
+pairs of items are removed together, and one item can replace many. The result is 1-minimal: without
+any single item it would not pass.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ _T = TypeVar("_T")
 
 
 def without_loops(items: Sequence[_T], places: Sequence[Hashable]) -> list[_T]:
-    """The items without those between two equal places; ``places[i]`` lies before item ``i``.
+    """Return the items without those between equal places; ``places[i]`` lies before item ``i``.
 
-    Untested. Takes one pass, so that the longest sequences are short before the search begins.
+    The result is not tested. It takes one pass, which shortens long sequences before the search.
     """
     last = {place: i for i, place in enumerate(places)}
     out = []
@@ -33,7 +34,7 @@ def without_loops(items: Sequence[_T], places: Sequence[Hashable]) -> list[_T]:
 def minimized(
     items: Sequence[_T], substitutes: Sequence[_T], passes: Callable[[list[_T]], bool]
 ) -> list[_T]:
-    """The items with nothing left that can go or of which a substitute can take the place."""
+    """Return a subsequence in which nothing can be removed or replaced by a substitute."""
     left, size = list(items), -1
     while len(left) != size:
         size = len(left)
@@ -46,7 +47,7 @@ def minimized(
 
 
 def without_stretches(items: list[_T], passes: Callable[[list[_T]], bool]) -> list[_T]:
-    """The items without stretches, long ones first, down to single items until none can go."""
+    """Return the items with stretches removed, from long ones down to single items."""
     size = len(items)
     while size:
         shorter = _without(items, size, passes)
@@ -60,7 +61,7 @@ def without_stretches(items: list[_T], passes: Callable[[list[_T]], bool]) -> li
 
 
 def _without(items: list[_T], size: int, passes: Callable[[list[_T]], bool]) -> list[_T]:
-    """Without stretches of one size, from the end on."""
+    """Return the items with stretches of one size removed, from the end on."""
     for start in range(len(items) - size, -1, -1 if size <= EXHAUSTIVE_ITEMS else -size):
         shorter = items[:start] + items[start + size :]
         if passes(shorter):
@@ -69,7 +70,7 @@ def _without(items: list[_T], size: int, passes: Callable[[list[_T]], bool]) -> 
 
 
 def _without_pairs(items: list[_T], passes: Callable[[list[_T]], bool]) -> list[_T]:
-    """Without two items that can only go together, such as brackets around something."""
+    """Return the items without pairs that can only be removed together, such as brackets."""
     for end in range(len(items) - 1, -1, -1):
         for start in range(end):
             shorter = items[:start] + items[start + 1 : end] + items[end + 1 :]
@@ -81,7 +82,7 @@ def _without_pairs(items: list[_T], passes: Callable[[list[_T]], bool]) -> list[
 def _substituted(
     items: list[_T], substitutes: Sequence[_T], passes: Callable[[list[_T]], bool]
 ) -> list[_T]:
-    """With a substitute in place of stretches of two and more."""
+    """Return the items with stretches of two and more replaced by one substitute."""
     for size in range(len(items), 1, -1):
         for start in range(len(items) - size, -1, -1):
             for substitute in substitutes:

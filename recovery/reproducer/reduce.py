@@ -1,9 +1,9 @@
-"""Reproducers: of a failing line the shortest program that still fails the same way.
+"""Reproducers: the shortest program in which a line fails in the same way.
 
-The line is put into the shortest program that reaches a place where it fails as it did, and then
-tokens are taken away for as long as that stays so. Nothing else in the program may be wrong. Where
-a grammar that mends the line is known, the program has to stay one that it accepts: so it shows the
-whole construct and not a stump.
+The line is put into the shortest program that reaches a state in which it fails in the same way.
+Then tokens are removed as long as that stays so and nothing else in the program is wrong. If an
+edit that repairs the line is known, the edited grammar has to accept the program, so that it shows
+the whole construct.
 """
 
 from __future__ import annotations
@@ -34,8 +34,9 @@ from recovery.tuning import LONGEST_GAP, MOST_CONFIGURATIONS
 class Reproducer:
     """A program in which one line fails.
 
-    ``line`` and ``column`` of the failure count from 1. ``tokens`` counts line ends but not the end
-    of the file; ``beyond`` are those more than the shortest program through the same place has.
+    ``line`` and ``column`` of the failure count from 1. ``tokens`` includes line ends but not the
+    end of the file; ``beyond`` is how many more it has than the shortest program through the same
+    place.
     """
 
     text: str
@@ -57,17 +58,16 @@ class Reducer:
     def reduce(
         self, line: LinePattern, words: Sequence[str], *, mended: Recognizer | None = None
     ) -> Reproducer | None:
-        """The reproducer of a failing line.
+        """Return the reproducer of a failing line; ``None`` if no program fails like it.
 
-        ``words`` are the texts of its tokens in upper case, or of the first of them. ``mended`` is
-        a recogniser that may read the line; it numbers the tokens of this grammar alike. ``None``
-        where no program fails as the line does.
+        ``words`` are the texts of its tokens in upper case, or of the first ones. ``mended`` is a
+        recogniser of an edited grammar that may read the line and numbers the tokens of this
+        grammar in the same way.
         """
         way = self._way(line)
         tokens = self._spelling.tokens(line, words)
         for wider in (None,) if mended is None else (mended, None):
-            # further failures that follow from this one are allowed only where none without is
-            # found
+            # failures that follow from this one are allowed only if there is no program without
             for may_follow in (False, True):
                 test = SameFailure(self._finder, self._spelling, way, wider, may_follow)
                 for programs in self._programs(line, tokens, wider):
@@ -85,7 +85,7 @@ class Reducer:
         return failure_mode(self.recognizer, form.kinds, words, form.index, context)
 
     def _smallest(self, program: _Program, test: SameFailure) -> list[AbstractToken]:
-        """The program with as few tokens as the test allows."""
+        """Return the program with as few tokens as the test allows."""
         line = minimized(
             program.line,
             self._spelling.operands,
@@ -95,13 +95,13 @@ class Reducer:
 
     def _reproducer(self, test: SameFailure, tokens: list[AbstractToken]) -> Reproducer:
         text = self._spelling.text(tokens, test.wider)
-        assert text is not None  # the test has seen it
+        assert text is not None  # the test has rendered it
         failure = self._finder.find(text)[0]
         beyond = self._beyond([*(t.kind for t in tokens), EOF])
         return Reproducer(text, failure.line, failure.column, len(tokens), beyond)
 
     def _beyond(self, kinds: list[int]) -> int:
-        """How many tokens more than its frame a program has."""
+        """Return how many more tokens a program has than its frame."""
         recognizer = self.recognizer
         _, index = recognizer.run(recognizer.start, kinds)
         assert index is not None
@@ -116,7 +116,7 @@ class Reducer:
     def _programs(
         self, line: LinePattern, tokens: list[AbstractToken], wider: Recognizer | None
     ) -> Iterator[list[_Program]]:
-        """Programs around the line, those at one place together, the shortest ways there first."""
+        """Yield groups of programs around the line, one group for each place, shortest first."""
         recognizer, form, line_kind = self.recognizer, line.form, self.recognizer.line_kind
         ways_out = None if wider is None else Paths(wider.network)
         for prefix in self._prefixes(line):
@@ -152,14 +152,14 @@ class Reducer:
         line: list[AbstractToken],
         wider: Recognizer | None,
     ) -> list[list[AbstractToken]]:
-        """The line without what leads from a state back to it, as far as that can be known."""
+        """Return the line with loops in its sequence of states removed, in up to two versions."""
         kinds = [token.kind for token in line]
         states = _states(self.recognizer, start, kinds)
         if wider is not None:
             outset, _ = wider.run(wider.start, kinds_in(wider, before))
             more = _states(wider, outset, kinds_in(wider, line))
             return [without_loops(line, list(zip(_places(states), _places(more), strict=True)))]
-        # what comes behind a failure is all one, but a line that can be read on shows more
+        # tokens after a failure do not matter, but a line that can be continued shows more
         found = [without_loops(line, _places(states))]
         broken = self._broken(start, line)
         if broken.gap:
@@ -174,7 +174,7 @@ class Reducer:
     def _broken(self, start: State, line: list[AbstractToken]) -> _FailurePoint:
         kinds = [token.kind for token in line]
         state, index = self.recognizer.run(start, kinds)
-        if index is None:  # what fails is the end of the file
+        if index is None:  # the end of the file fails
             return _FailurePoint(len(kinds), state, 0, start)
         for gap in range(1, min(len(kinds) - index, LONGEST_GAP + 1)):
             end, failed = self.recognizer.run(state, kinds[index + gap :])
@@ -183,14 +183,14 @@ class Reducer:
         return _FailurePoint(index, state, 0, start)
 
     def _prefixes(self, line: LinePattern) -> Iterator[list[int]]:
-        """Tokens to places where a line can begin, and to the very place where this one began."""
+        """Yield tokens to places where a line can begin, and to where this one began."""
         yield from self._places.values()
         for frames in line.form.before[:MOST_CONFIGURATIONS]:
             yield self._paths.prefix(frames)
 
     @cached_property
     def _places(self) -> dict[State, list[int]]:
-        """The shortest tokens to each place where a line can begin, the fewest first."""
+        """The shortest tokens to each place where a line can begin, the shortest first."""
         recognizer, sentences = self.recognizer, Sentences(self.recognizer.grammar)
         kind_of, line_kind = recognizer.lexer.kind_of, recognizer.line_kind
         found: dict[State, list[int]] = {recognizer.start: []}
@@ -208,7 +208,7 @@ class Reducer:
         return dict(sorted(found.items(), key=lambda item: (len(item[1]), item[1])))
 
     def _endings(self, start: State, line: list[AbstractToken]) -> list[list[AbstractToken]]:
-        """How a program continues behind the line: as without it, or as if it had been read."""
+        """Return how a program can continue after the line, as if it was absent or was read."""
         broken, frames = self._broken(start, line), self.recognizer.frames
         if broken.index == len(line):
             return [[]]
@@ -220,7 +220,7 @@ class Reducer:
 
 @dataclass(frozen=True, slots=True)
 class _Program:
-    """A line in its frame."""
+    """A line with the tokens before and after it."""
 
     before: list[AbstractToken]
     line: list[AbstractToken]
@@ -233,10 +233,10 @@ class _Program:
 
 @dataclass(frozen=True, slots=True)
 class _FailurePoint:
-    """Where a line fails and in what state, and how it can be read on.
+    """Where a line fails and in what state, and how it can be continued.
 
-    ``gap`` is how many tokens there have to be left out for that, and ``end`` the state then; none
-    and the state before the line where it cannot.
+    ``gap`` is the number of tokens to leave out for that, and ``end`` the state after the line. If
+    it cannot be continued, ``gap`` is 0 and ``end`` the state before the line.
     """
 
     index: int
@@ -248,10 +248,10 @@ class _FailurePoint:
 def _readable(
     wider: Recognizer, before: list[AbstractToken], line: list[AbstractToken], index: int
 ) -> tuple[list[AbstractToken], State] | None:
-    """The line as a wider grammar reads it, and the state behind it.
+    """Return the line as a wider grammar reads it, and the state after it.
 
-    Where that fails too, further on than the line did, the tokens there are left out, or else the
-    rest of the line.
+    If that fails too, at a later token than the line did, the tokens there are left out, or else
+    the rest of the line. Returns ``None`` if it fails no later.
     """
     start, failed = wider.run(wider.start, kinds_in(wider, before))
     if failed is not None:
@@ -272,7 +272,7 @@ def _readable(
 def _states(
     recognizer: Recognizer, state: State | None, kinds: Sequence[int]
 ) -> list[State | None]:
-    """The state before each of the tokens; none behind a failure."""
+    """Return the state before each of the tokens; ``None`` after a failure."""
     out: list[State | None] = []
     for kind in kinds:
         out.append(state)
@@ -281,8 +281,9 @@ def _states(
 
 
 def _places(states: Sequence[State | None]) -> list[tuple[int, int] | None]:
-    """What distinguishes states while they are kept.
+    """Return comparable keys for states, valid as long as the states exist.
 
-    Deep tails may be equal and not identical, which costs a loop: comparing them costs more.
+    Equal deep tails may be distinct objects; then a loop is missed, which is cheaper than comparing
+    them.
     """
     return [None if s is None else (id(s.core), id(s.tail)) for s in states]

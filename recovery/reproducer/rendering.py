@@ -1,7 +1,7 @@
 """Rendering: abstract tokens as the text of a readable program.
 
-Names and numbers do not matter to a failure, so they get short ones; words that are meant as
-keywords stay as they are. Blocks are indented, blanks are put as people put them.
+Names and numbers do not matter to a failure, so they become short ones; words that are meant as
+keywords stay. Blocks are indented, and blanks are put as people put them.
 """
 
 from __future__ import annotations
@@ -17,24 +17,24 @@ from grammar.parser.sentences import Speller
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import MOST_NAMES
 
-#: What tokens around a failing line are named; names that occur in one are in upper case.
+#: The name of tokens around a failing line; names from a line itself are in upper case.
 FRAME = "frame"
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-# How names, numbers and texts may look; of each kind the first that the lexer takes for it is used.
+# Forms of names, numbers and texts; for each kind the first one that the lexer accepts is used.
 _FORMS = ("{letter}", "{number}", "{number}.0", '"{letter}"', "#{letter}")
 _UNKNOWN = "?!@^~`|\\"
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
-# Words of lines with parameters, whose direction is written as in ``DEF A(B :IN)``.
+# First words of lines with parameters, whose mode is written as in ``DEF A(B :IN)``.
 _DECLARING = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 _INDENT = "  "
 
 
 class AbstractToken(NamedTuple):
-    """A token not spelled yet.
+    """A token without its final text.
 
-    ``name`` distinguishes tokens of one kind (equal ones are spelled alike) and is the text of an
-    unknown character; ``meant`` is the keyword that a name is meant as.
+    ``name`` distinguishes tokens of one kind: equal names get the same text. For an unknown
+    character it is the text itself. ``meant`` is the keyword that a name is meant as.
     """
 
     kind: int
@@ -74,7 +74,7 @@ class TokenRenderer:
     # -------------------------------------------------------------------------- its tokens
 
     def tokens(self, line: LinePattern, words: Sequence[str]) -> list[AbstractToken]:
-        """The tokens of a failing line, the end of the file left out; ``words`` may be fewer."""
+        """Return the tokens of a failing line without the end of file; ``words`` may be fewer."""
         meant = dict(line.keywords)
         return [
             AbstractToken(kind, words[i] if i < len(words) else f"word {i}", meant.get(i))
@@ -85,7 +85,7 @@ class TokenRenderer:
     def frame(
         self, kinds: Iterable[int], wider: Recognizer | None = None, *, name: str = FRAME
     ) -> list[AbstractToken]:
-        """Tokens of the frame; a kind that only the wider grammar has is a keyword there."""
+        """Return tokens around the line; a kind of the wider grammar alone is a keyword there."""
         own = len(self.lexer.names)
         names = () if wider is None else wider.lexer.names
         return [
@@ -98,9 +98,9 @@ class TokenRenderer:
     # --------------------------------------------------------------------------- its text
 
     def text(self, tokens: Sequence[AbstractToken], wider: Recognizer | None = None) -> str | None:
-        """The program, or ``None`` where no spelling gives these tokens.
+        """Return the program, or ``None`` if no text gives these tokens.
 
-        The wider grammar's lexer takes for keywords what is meant so, and nothing else.
+        The lexer of the wider grammar must take exactly the meant words for keywords.
         """
         texts = self._texts(tokens, [self.lexer, *([wider.lexer] if wider else [])])
         if texts is None:
@@ -149,7 +149,7 @@ class TokenRenderer:
         return "\n".join(lines)
 
     def _spaced(self, tokens: Sequence[AbstractToken], texts: Sequence[str]) -> Iterator[str]:
-        """The texts of a line with blanks between them as people put them."""
+        """Yield the texts of a line with blanks between them, as people put them."""
         inside: list[str] = []  # open brackets
         declares = not _DECLARING.isdisjoint(texts[:2])
         signed = False  # after a sign that belongs to the number behind it
@@ -183,13 +183,13 @@ class TokenRenderer:
 
 
 def _formed(form: str) -> Iterator[str]:
-    """A new text of this form each time."""
+    """Yield new texts of a form."""
     names = (f"{letter}{number or ''}" for number, letter in product(range(MOST_NAMES), _LETTERS))
     return (form.format(letter=name, number=number) for number, name in enumerate(names, 1))
 
 
 class _Blocks:
-    """How deep lines are nested in blocks, asked for in their order."""
+    """The nesting depth of lines, which are passed in order."""
 
     def __init__(self) -> None:
         self._closers: list[frozenset[str]] = []

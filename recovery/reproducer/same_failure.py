@@ -1,6 +1,6 @@
-"""Whether a program fails in the same way as a line, and in no other.
+"""The test of delta debugging: whether a program fails in the same way as a line, and only so.
 
-A failure is the same where the same token could not come and the grammar was doing the same.
+A failure is the same if the offending token and the context in the grammar are the same.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from recovery.tuning import LONGEST_GAP, MOST_TOKENS_READ, TEST_COST
 
 
 class FailureMode(NamedTuple):
-    """What makes two failures alike: the offending token and what the grammar was doing.
+    """What makes two failures equal: the offending token and the context in the grammar.
 
-    ``kind`` is the offending token's; ``meant``, ``before`` and ``lead`` are the keywords meant by
-    it, by the name before it and by the first of the line. ``opening`` is the first token's kind
-    where the line could have ended: then the statement as a whole is what does not continue.
+    ``kind`` is the kind of the offending token. ``meant``, ``before`` and ``lead`` are the keywords
+    meant by it, by the token before it and by the first one of the line. ``opening`` is the kind of
+    the first token if the line could have ended; then the statement as a whole does not continue.
     """
 
     kind: int
@@ -39,7 +39,7 @@ def failure_mode(
     index: int,
     context: FailureContext,
 ) -> FailureMode:
-    """How the line of these tokens fails at ``index``."""
+    """Return how the line of these tokens fails at ``index``."""
     line_kind = recognizer.line_kind
     could_end = line_kind > 0 and recognizer.lexer.display[line_kind] in context.expected
     return FailureMode(
@@ -54,7 +54,7 @@ def failure_mode(
 
 
 def line_at(recognizer: Recognizer, kinds: Sequence[int], index: int) -> tuple[int, int]:
-    """Where the line with that token begins and ends; the end of the file is one of its own."""
+    """Return the range of the line with a token; the end of the file is a line of its own."""
     last, line_kind = len(kinds) - 1, recognizer.line_kind
     if index == last:
         return last, len(kinds)
@@ -64,7 +64,7 @@ def line_at(recognizer: Recognizer, kinds: Sequence[int], index: int) -> tuple[i
 
 
 class SameFailure:
-    """Whether a program fails in a given way, and only so."""
+    """Tests whether a program fails in a given way, and only so."""
 
     def __init__(
         self,
@@ -83,7 +83,7 @@ class SameFailure:
         self._left = MOST_TOKENS_READ
 
     def passes(self, tokens: list[AbstractToken]) -> bool:
-        """Whether the program passes; never once the work allowed has been done."""
+        """Return whether the program passes; always ``False`` once the allowed work is done."""
         self._left -= len(tokens) + TEST_COST
         if self._left < 0:
             return False
@@ -107,7 +107,7 @@ class SameFailure:
         return self._fails_once(tokens)
 
     def _is_right_without(self, kinds: list[int], first: int, index: int, end: int) -> bool:
-        """Whether it is a program without the failing line, or without tokens at the failure."""
+        """Return whether it is valid without the failing line, or without tokens at the failure."""
         cuts = [(first, end), (max(0, first - 1), end)]
         cuts += [(index, index + gap) for gap in range(1, min(end - index, LONGEST_GAP + 1))]
         run, start = self.recognizer.run, self.recognizer.start
@@ -124,6 +124,6 @@ class SameFailure:
 
 
 def kinds_in(recognizer: Recognizer, tokens: list[AbstractToken]) -> list[int]:
-    """Kinds of the tokens where names that are meant as keywords may be keywords."""
+    """Return the kinds of the tokens where names that are meant as keywords may be keywords."""
     kind_of = recognizer.lexer.kind_of
     return [t.kind if t.meant is None else kind_of.get(t.meant, t.kind) for t in tokens]

@@ -1,1 +1,1 @@
-"""Every file of a corpus read under one grammar, and what could not be read."""
+"""The survey: every file of a corpus is read under one grammar, and failures are collected."""

@@ -1,4 +1,4 @@
-"""Failing lines of a file under a grammar, ready to be sent and cached."""
+"""Failing lines of a file under a grammar, in a form that can be sent to a process and cached."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _WORDS_KEPT = 24
 class FailingLine:
     """One failing line of a file.
 
-    ``line`` and ``column`` from 1; ``token`` is the offending token as written; ``source`` the line
-    (cut at 1,000 characters); ``words`` its tokens in upper case, to the offending one and at
-    least 24; ``form`` indexes `Survey.forms`.
+    ``line`` and ``column`` count from 1. ``token`` is the offending token as written, ``source``
+    the line (cut at 1,000 characters). ``words`` are its tokens in upper case, up to the offending
+    one and at least 24. ``form`` is an index into `Survey.forms`.
     """
 
     line: int
@@ -29,7 +29,7 @@ class FailingLine:
     follows: bool
 
     def with_form(self, form: int) -> FailingLine:
-        """The same with another number for its form (`dataclasses.replace` takes twice as long)."""
+        """Return the line with another form (`dataclasses.replace` takes twice as long)."""
         return FailingLine(
             self.line, self.column, self.token, self.source, self.words, form, self.follows
         )
@@ -38,7 +38,7 @@ class FailingLine:
 def failures_of(
     finder: FailureFinder, text: str, forms: dict[Form, int]
 ) -> tuple[FailingLine, ...]:
-    """The failing lines of a program; ``forms`` numbers their forms and is added to."""
+    """Return the failing lines of a program; new forms are added to ``forms`` and numbered."""
     failures = finder.find(text)
     lines = source_lines(text) if failures else []
     return tuple(_failed(failure, lines, forms) for failure in failures)
@@ -60,10 +60,10 @@ def _failed(failure: Failure, lines: list[str], forms: dict[Form, int]) -> Faili
 
 @lru_cache(maxsize=1 << 16)
 def _word(lexeme: str) -> str:
-    """The token in upper case, cut; the same object each time, for there are many."""
+    """Return a token in upper case, cut, and shared between equal tokens to save memory."""
     return lexeme.upper()[:40]
 
 
 def source_lines(text: str) -> list[str]:
-    """The lines of a program as KRL ends them: CRLF, LF or CR, and nothing else."""
+    """Return the lines of a program, separated by CRLF, LF or CR as in KRL."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

@@ -1,4 +1,4 @@
-"""Results of a survey, cached by content, grammar and code."""
+"""The cache of survey results, by content, grammar and code."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from recovery.survey.unreserved_keywords import NameUse
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 
-#: What is kept of a content: its failures, their forms and the names it uses, or why it is no KRL.
+#: The cached result for a content: failures, their forms, used names; or why it is no KRL.
 Kept = tuple[tuple[FailingLine, ...], tuple[Form, ...], NameUse] | str
 
 
 def key_of(grammar: Grammar) -> str:
-    """What results depend on besides the content: the grammar, and all code that reads."""
+    """Return the cache key: the grammar, and all code that influences a result."""
     return f"{grammar.sha256} {code_digest('support', 'grammar', 'recovery')}"
 
 
 def recall(store: ResultStore, digest: str) -> Kept | None:
-    """What was found in a content, or ``None`` where it is new or its entry is damaged."""
+    """Return the cached result of a content, or ``None`` if it is missing or damaged."""
     try:
         data = store.get(digest)
         return None if data is None else _read(data)
@@ -38,7 +38,7 @@ _FAILED = attrgetter(*(field.name for field in fields(FailingLine)))
 
 
 def keep(store: ResultStore, results: Iterable[tuple[str, Kept]]) -> None:
-    """Keep results by the digest of their content."""
+    """Store results by the digests of their contents."""
     store.put((digest, _written(kept)) for digest, kept in results)
 
 

@@ -1,10 +1,10 @@
 """Signatures: the shape of a failing line, in readable words.
 
 Real source has thousands of failing lines and few causes. A signature keeps what distinguishes
-causes (the word a line begins with, the token that could not come, the rule at work) and drops what
-does not (names, numbers, the place in the file). Words that the grammar does not know yet are names
-to its lexer; that such a word is meant as a keyword shows in its neighbours: operands of many kinds
-with no sign between, in several files, and hardly ever as a plain name.
+causes (the first word of the line, the offending token, the rule being read) and drops the rest
+(names, numbers, the position in the file). A word that the grammar does not know is a name to its
+lexer. That it is meant as a keyword shows in its neighbours: different operands without a sign
+between, in several files, and rarely as a plain name.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from recovery.tuning import (
 )
 
 _ELLIPSIS = "…"
-# Signs that no plain name at the beginning of a line has behind it, but a keyword can.
+# Signs that can follow a keyword, but no plain name at the beginning of a line.
 _BEGINS_OPERAND = frozenset("{-+")
 
 
@@ -33,10 +33,10 @@ _BEGINS_OPERAND = frozenset("{-+")
 class Signature:
     """What distinguishes one kind of failure from another.
 
-    ``lead`` is the keyword or would-be keyword the line begins with, empty where it begins with a
-    plain name; ``offender`` the token that could not come: a word, a sign or a kind of token;
-    ``bracket`` the bracket that is open before it, and ``is_first`` whether it comes right behind
-    that: this is shown in the text, and distinguishes no kinds by itself.
+    ``lead`` is the keyword or would-be keyword with which the line begins, empty if it begins with
+    a plain name. ``offender`` is the offending token: a word, a sign or a token kind. ``bracket``
+    is the innermost open bracket, and ``is_first`` says that the offending token follows it
+    directly; this is shown in the text, but is not compared.
     """
 
     rule: str
@@ -47,7 +47,7 @@ class Signature:
 
     @property
     def text(self) -> str:
-        """``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``: what IDs of clusters are made from."""
+        """``TRIGGER … ONSTART``, ``… [ … ,`` or ``… [ ,``: the source of cluster IDs."""
         parts = [self.lead] if self.lead else []
         if self.bracket:
             parts += [_ELLIPSIS, self.bracket]
@@ -61,10 +61,10 @@ class Signature:
 
 
 class SignatureBuilder:
-    """Gives failures their shapes; sees all of them first, to learn the words."""
+    """Builds signatures; it needs all failures at first, to learn the would-be keywords."""
 
     def __init__(self, lexer: Lexer, failures: Iterable[tuple[str, FailingLine, Form]]) -> None:
-        """``failures`` come with the digest of their file."""
+        """Create it; ``failures`` are given with the digest of their file."""
         self.lexer = lexer
         self._name = lexer.name_kind
         self._signs = frozenset(
@@ -122,7 +122,7 @@ class SignatureBuilder:
         )
 
     def _names(self, failed: FailingLine, form: Form) -> Iterator[tuple[int, str]]:
-        """Names on a line, but for those in braces, which have values beside them anyway."""
+        """Yield the names on a line, except in braces, where values follow names anyway."""
         depth = 0
         for place, (kind, word) in enumerate(zip(form.kinds, failed.words, strict=False)):
             if word == "{":
@@ -133,15 +133,18 @@ class SignatureBuilder:
                 yield place, word
 
     def _stands_out(self, form: Form, place: int, word: str) -> bool:
-        """Whether a name is placed like a keyword: alone, or where no other name ever comes."""
+        """Return whether a name is used like a keyword.
+
+        It stands without signs around it, or where other lines never have a different name.
+        """
         is_sole = place == form.index and word in self._sole
         return is_sole or self._stands_alone(form.kinds, place)
 
     def _stands_alone(self, kinds: tuple[int, ...], place: int) -> bool:
-        """Whether the name has no sign on the side where a name in an expression has one.
+        """Return whether a name lacks the sign that a name in an expression has beside it.
 
         A plain name begins a line only before a sign; elsewhere it follows a sign or a keyword. A
-        name that follows an operand, or that an operand follows, is one word too many.
+        name directly before or after an operand is one word too many.
         """
         before = kinds[place - 1] if place else None
         after = kinds[place + 1] if place + 1 < len(kinds) else None
@@ -162,7 +165,7 @@ class SignatureBuilder:
         return kind > 0 and self.lexer.display[kind] == text
 
     def keywords(self, failed: FailingLine, form: Form) -> tuple[tuple[int, str], ...]:
-        """Would-be keywords on a failing line, with their places."""
+        """Return the would-be keywords on a failing line, with their indices."""
         return tuple(
             (place, word)
             for place, word in self._names(failed, form)
@@ -170,10 +173,9 @@ class SignatureBuilder:
         )
 
     def signature(self, failed: FailingLine, form: Form, context: FailureContext) -> Signature:
-        """The shape of a failure.
+        """Return the signature of a failure.
 
-        Its rule, the first word of the line, the open bracket, and the token that cannot come; a
-        name that is meant as a keyword is shown as that word.
+        A name that is meant as a keyword is shown as that word.
         """
         kinds, index = form.kinds, form.index
         meant = dict(self.keywords(failed, form))
@@ -194,7 +196,7 @@ class SignatureBuilder:
         return known.get(kind) or self.lexer.display[kind]
 
     def _open_bracket(self, kinds: tuple[int, ...]) -> str:
-        """The innermost bracket that is open before the offending token."""
+        """Return the innermost bracket that is open before the offending token."""
         closed = 0
         for kind in reversed(kinds):
             text = self.lexer.display[kind] if kind > 0 else ""

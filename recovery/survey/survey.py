@@ -1,8 +1,8 @@
-"""The survey: every file of a corpus read under one grammar, every failure collected.
+"""The survey: every file of a corpus is read under one grammar, and all failures are collected.
 
 Files are surveyed in parallel processes, each with its own recogniser. Results come back in the
-order of discovery, so the same corpus gives the same survey. A file with the content of an earlier
-one is not read again, but counted with it.
+order of discovery, so the same corpus always gives the same survey. A file with the content of an
+earlier one is not read again, but counted as a copy of it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress
 
-# One task for a process: enough work to outweigh its passage, little enough to keep memory flat.
+# Size of a task: large enough to outweigh its transfer, small enough to bound memory.
 _TASK_BYTES = 1 << 20
 _TASK_FILES = 64
 _SMALL = 8 << 20
@@ -41,9 +41,9 @@ _SMALL = 8 << 20
 
 @dataclass(frozen=True, slots=True)
 class SurveyedFile:
-    """A distinct content: where it lies, and what failed in it.
+    """A distinct content, with its locations and its failures.
 
-    ``places`` are (path, origin) of the file and of every copy of it, in the order of discovery;
+    ``places`` are (path, origin) of the file and of every copy, in the order of discovery;
     ``found`` is the first of them.
     """
 
@@ -55,11 +55,11 @@ class SurveyedFile:
 
     @property
     def path(self) -> str:
-        """The first of its places, as people are shown it."""
+        """The path of the first location, as it is shown."""
         return self.found.path
 
     def lines(self) -> list[str]:
-        """The lines of the file, read again; empty where it has changed since the survey."""
+        """Return the lines of the file, read again; empty if it has changed since the survey."""
         file = read_source(self.found)
         if isinstance(file, Skipped) or digest(file.data) != self.digest:
             return []
@@ -68,9 +68,9 @@ class SurveyedFile:
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What reading a corpus under a grammar found.
+    """The result of reading a corpus under a grammar.
 
-    ``unreserved`` are words of the files that parse which may be keywords that the grammar lacks;
+    ``unreserved`` are words in files that parse which may be keywords missing in the grammar;
     ``seconds`` is wall-clock time.
     """
 
@@ -92,16 +92,16 @@ def survey(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> Survey:
-    """Read everything below ``roots`` under ``grammar``.
+    """Return the survey of everything below ``roots`` under ``grammar``.
 
-    ``jobs`` is the number of processes, by default one a core, or one for a small corpus;
-    ``scheduler`` the address of a Dask cluster that reads instead (`support.parallel.ordered_map`).
-    ``cache`` is the folder where results are kept for the next time; without one nothing is kept.
-    ``on_found`` gets the number of candidates once it is known, ``on_done`` how many more have
-    been dealt with.
+    ``jobs`` is the number of processes; the default is one for each core, or one for a small
+    corpus. ``scheduler`` is the address of a Dask cluster that does the work instead
+    (`support.parallel.ordered_map`). ``cache`` is the folder for cached results; without it nothing
+    is cached. ``on_found`` is called with the number of candidates, ``on_done`` with the number of
+    files that have been finished since its last call.
 
-    Raises `support.files.discovery.IngestError` where there is nothing to survey, and
-    `support.parallel.workers.WorkersError` where there are no workers.
+    Raises `support.files.discovery.IngestError` if there is nothing to survey, and
+    `support.parallel.workers.WorkersError` if there are no workers.
     """
     began = time.perf_counter()
     candidates = list(discover(roots))
@@ -119,13 +119,16 @@ def survey(
 
 
 def _processes(candidates: Iterable[Found | Skipped]) -> int:
-    """One a core, or one for a small corpus, where more would cost more than they save."""
+    """Return the number of cores; 1 for a small corpus, where more processes would not pay."""
     size = sum(c.size for c in candidates if isinstance(c, Found))
     return 1 if size < _SMALL else os.cpu_count() or 1
 
 
 def survey_texts(programs: Sequence[tuple[str, str]], grammar: Grammar) -> Survey:
-    """Read programs given as (path, text) in this process; each counts as a file of its own."""
+    """Return the survey of programs given as (path, text), read in this process.
+
+    Each counts as a file of its own.
+    """
     began = time.perf_counter()
     finder = FailureFinder(Recognizer(grammar))
     forms: dict[Form, int] = {}
@@ -177,7 +180,7 @@ class _Content:
 
 
 class _Gathered:
-    """Results so far, by content."""
+    """The results so far, by content."""
 
     def __init__(self, store: ResultStore) -> None:
         self.store = store
@@ -189,7 +192,7 @@ class _Gathered:
         self.read_now = 0
 
     def register(self, found: Found, data: bytes) -> bool:
-        """Note a content and where it lies; returns whether it has to be read."""
+        """Record a content and its location; return whether it has to be read."""
         place = (found.path, found.origin)
         key = digest(data)
         known = self.contents.get(key)
@@ -205,7 +208,7 @@ class _Gathered:
         return True
 
     def add(self, done: list[Kept]) -> None:
-        """Take the results of the next task."""
+        """Add the results of the next task."""
         keys = [self.submitted.popleft() for _ in done]
         keep(self.store, zip(keys, done, strict=True))
         for key, kept in zip(keys, done, strict=True):
@@ -240,7 +243,7 @@ class _Gathered:
 def _tasks(
     candidates: Iterable[Found | Skipped], gathered: _Gathered
 ) -> Iterator[tuple[bytes, ...]]:
-    """Cut the contents that have to be read into tasks."""
+    """Yield the contents that have to be read, grouped into tasks."""
     contents: list[bytes] = []
     size = 0
     for candidate in candidates:

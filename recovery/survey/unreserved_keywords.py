@@ -1,8 +1,8 @@
 """Unreserved keywords: keywords that a grammar lacks and reads as names, without a failure.
 
-Take ``TRUE`` out of a grammar and every program still parses: the word becomes a variable. No
-failure shows it, but its uses do: programs of several origins read it, and none declares it,
-assigns it, calls it or indexes it. Real variables are bound somewhere.
+Remove ``TRUE`` from a grammar and every program still parses, because the word becomes a variable.
+No failure shows it, but its uses do: programs of several origins read it, and none declares,
+assigns, calls or indexes it. A real variable is bound somewhere.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
 
 @dataclass(frozen=True, slots=True)
 class UnreservedKeyword:
-    """A word that is read everywhere and bound nowhere; ``files`` and ``origins`` count readers."""
+    """A word that is read but never bound; ``files`` and ``origins`` count where it is read."""
 
     word: str
     files: int
@@ -25,14 +25,14 @@ class UnreservedKeyword:
 
 
 class NameUse(NamedTuple):
-    """The names of a program that parses, in upper case: only read there, and bound there."""
+    """The names of a program that parses, in upper case: those only read, and those bound."""
 
     read: tuple[str, ...] = ()
     bound: tuple[str, ...] = ()
 
 
 def names_used(text: str, lexer: Lexer) -> NameUse:
-    """How a program that parses uses its names."""
+    """Return how a program that parses uses its names."""
     name = lexer.name_kind
     lexemes = [lexeme for lexeme in lexer.lexemes(text) if lexeme]
     kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
@@ -48,7 +48,7 @@ def names_used(text: str, lexer: Lexer) -> NameUse:
 
 
 class UnreservedKeywords:
-    """Counts how programs use names, and suspects those that are read and bound nowhere."""
+    """Counts how programs use names, and lists those that are read and never bound."""
 
     def __init__(self) -> None:
         self._readers: dict[str, Counter[str]] = {}
@@ -56,7 +56,7 @@ class UnreservedKeywords:
         self._origins: set[str] = set()
 
     def add(self, origin: str, used: NameUse) -> None:
-        """Count one program more."""
+        """Count the names of one program."""
         self._origins.add(origin)
         for word in used.bound:
             self._bound.add(word)
@@ -66,7 +66,7 @@ class UnreservedKeywords:
                 self._readers.setdefault(word, Counter())[origin] += 1
 
     def found(self) -> tuple[UnreservedKeyword, ...]:
-        """Suspected keywords, the most read first."""
+        """Return the suspected keywords, the most widely used first."""
         needed = UNRESERVED_ORIGINS if len(self._origins) > 1 else 1
         found = [
             UnreservedKeyword(word, readers.total(), len(readers))
@@ -77,10 +77,10 @@ class UnreservedKeywords:
 
 
 def _is_read(before: str, after: str, behind_name: bool) -> bool:
-    """Whether a name is used as a value: behind an operator, a bracket or a word like WHEN.
+    """Return whether a name is used as a value: after an operator, a bracket or a word like WHEN.
 
-    A name at the start of a line, behind a type, a dot or DECL, or before ``=``, ``(``, ``[`` or a
-    dot is bound there, or part of something that is.
+    A name at the start of a line, after a type, a dot or DECL, or before ``=``, ``(``, ``[`` or a
+    dot is bound, or part of something that is.
     """
     if behind_name or not before.strip() or before in (".", ":", "{"):
         return False
