@@ -1,4 +1,4 @@
-"""The advance run: how far it goes, what stops it, CONTINUE, and values that exist twice."""
+"""What stops the advance run, and what a profile says about the first motion."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -75,27 +75,3 @@ def test_coincidence_run(go: Go) -> None:
     assert [(1.0, 1, True)] == ran.outputs()
     assert False is ran.last("B")
     assert [(0.0, 1, True)] == go(text).outputs()
-
-
-def test_fault_of_a_motion_stops_the_arm(go: Go) -> None:
-    """A point that cannot be reached stops the arm with the documented message [MOT-15]."""
-    ran = go(program("PTP {A1 1}", "WAIT SEC 0", "PTP {A1 500}"))
-    assert [1447] == ran.messages()
-    assert ("fault", 2_000_000) == (ran.outcome.ending, ran.outcome.time)
-    ran = go(program("PTP {A1 1}", "PTP {A1 500}"))
-    assert ["brake"] == ran.arm.calls
-    assert ("fault", 10_000) == (ran.outcome.ending, ran.outcome.time)
-
-
-def test_proceed_takes_a_fault_of_the_controller(go: Go) -> None:
-    """ON_ERROR_PROCEED takes it, and $ERR tells number, line and module [TYP-13, FCT-07]."""
-    ran = go(
-        program(
-            *("ON_ERROR_PROCEED", "PTP {A1 500}", "N=$ERR.NUMBER", "L=$ERR.LINE_NR"),
-            *("I=STRLEN($ERR.MODULE[])", "B=$ERR.INTERPRETER==#R_INT", "ERR_CLEAR($ERR)"),
-            "M=$ERR.NUMBER",
-            declarations="INT N,L,M,I\nBOOL B\n",
-        )
-    )
-    assert "end" == ran.outcome.ending
-    assert (1447, 6, 4, True, 0) == tuple(ran.last(name) for name in "NLIBM")

@@ -60,11 +60,6 @@ class Ran:
             if one.kind == kind and fields.items() <= dict(one.fields).items()
         ]
 
-    def last(self, name: str) -> Any:
-        """What was assigned to a variable last."""
-        told = [one.fields for one in self.events if one.kind == "assign"]
-        return [one["value"] for one in told if one["name"] == name][-1]
-
     def messages(self) -> list[int]:
         """The numbers of messages."""
         return [one.fields["number"] for one in self.events if one.kind == "message"]
@@ -75,31 +70,6 @@ def program(body: str, routines: str = "") -> str:
     return f"DEF main()\nREAL R,Q\nINT I\n{FIRST}{body}END\n{routines}"
 
 
-def test_output_behind_the_start() -> None:
-    """The output comes 20 ms after the start of the motion, and the blend is there [TRG-01]."""
-    ran = Ran(
-        program(
-            "TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[1]=TRUE\nLIN {Y 0} C_DIS\n"
-            "TRIGGER WHEN DISTANCE=1 DELAY=0 DO $OUT[2]=TRUE\nLIN {Y -100} C_DIS\nLIN {Z 700}\n"
-        )
-    )
-    assert [20_000] == [
-        out - start
-        for out, start in zip(
-            ran.times("out", number=1), ran.times("motion_start", motion=3), strict=True
-        )
-    ]
-    assert ran.times("out", number=2) == ran.times("blend_apex", motion=4)
-    assert "end" == ran.outcome.ending
-
-
-def test_positions_of_a_motion() -> None:
-    """$POS_BACK is where the running motion began, $POS_FOR where it goes [MOT-18]."""
-    ran = Ran(program("LIN {Y -100}\nWAIT SEC 0\nCONTINUE\nR=$POS_BACK.Y\nQ=$POS_FOR.Y\n"))
-    assert pytest.approx(100, abs=1e-3) == ran.last("R")
-    assert pytest.approx(-100, abs=1e-3) == ran.last("Q")
-
-
 def test_actual_position_in_frames_set_behind_the_last_motion() -> None:
     """Once the arm stands the main run has caught up: PTP $POS_ACT leads nowhere [MOT-18]."""
     frames = "$TOOL={X 0,Y 0,Z 150,A 0,B 30,C 0}\n$BASE={X 300,Y 20,Z 10,A 45,B 0,C 0}\n"
@@ -108,14 +78,6 @@ def test_actual_position_in_frames_set_behind_the_last_motion() -> None:
     assert 3 == ran.controller.points[-1].number
     before, after = (ran.arm.position(time).axes for time in ran.times("motion_end")[-2:])
     assert pytest.approx(before, abs=1e-4) == after
-
-
-def test_status_and_turn_of_a_position() -> None:
-    """$POS_ACT has the Status and Turn of the axes [POS-03, POS-07]."""
-    ran = Ran(program("I=$POS_ACT.S\nR=$POS_ACT.T\n"))
-    assert 2 == ran.last("I")
-    axes = ran.arm.position(ran.outcome.time).axes
-    assert sum(1 << place for place, axis in enumerate(axes) if axis < 0) == ran.last("R")
 
 
 def test_points() -> None:
@@ -146,40 +108,6 @@ def test_points_leave_out_motions_to_where_the_arm_is() -> None:
     ran = Ran(program("LIN {Y -100}\nLIN {Y -100}\nLIN {Z 700}\n"))
     assert [3171] == ran.messages()
     assert [1, 2, 3, 5] == [one.number for one in ran.controller.points]
-
-
-def test_status_monitoring() -> None:
-    """A path motion that ends with another Status than programmed is a message [POS-10]."""
-    body = "LIN {{X 500,Y -100,Z 600,A 180,B 0,C 180,S {}}}\nWAIT SEC 0\n"
-    checked = "$CP_STATMON=#CHECK_S\n"
-    assert [] == Ran(program(checked + body.format(2))).messages()
-    assert [2936] == Ran(program(checked + body.format(6))).messages()
-    assert [] == Ran(program("$CP_STATMON=#NONE\n" + body.format(6))).messages()
-
-
-@pytest.mark.parametrize(
-    ("line", "number"),
-    [
-        ("LIN {X 5000}", 1366),
-        ("PTP {A1 179,A2 90,A3 90,A4 0,A5 0,A6 0}", 1447),
-        ("CIRC {X 600,Y 100,Z 600},{X 500,Y 0,Z 600}", 1456),
-    ],
-)
-def test_bad_input(line: str, number: int) -> None:
-    """What cannot be done is the documented message, and the arm stops [MOT-12, MOT-15]."""
-    ran = Ran(program(f"LIN {{Y 0}}\nWAIT SEC 0\n{line}\n"))
-    assert [number] == ran.messages()
-    assert "fault" == ran.outcome.ending
-    assert pytest.approx(0, abs=1e-3) == ran.controller.variables.read(("$POS_ACT", "Y"))
-
-
-def test_bad_input_while_the_arm_moves() -> None:
-    """A fault that the advance run meets stops the arm on its path [MOT-15]."""
-    ran = Ran(program("WAIT SEC 0\n$VEL.CP=0.1\nLIN {Y -100}\nLIN {X 5000}\n"))
-    assert [1366] == ran.messages()
-    y = ran.controller.variables.read(("$POS_ACT", "Y"))
-    assert -100 < y <= 100
-    assert [] == ran.times("motion_end", motion=3)
 
 
 class Colliding:
