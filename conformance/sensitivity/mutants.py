@@ -84,7 +84,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.state.variables.Variables.part_type",
             "interp.controller.quiet_time",
             "interp.controller.scheduler.Scheduler._free_slices",
-            "interp.controller.state.variables.Variables._is_loose",
+            "interp.controller.state.variables.Variables._is_untyped_part",
         ),
     ),
     # left out: files of machine data, what checks them, and torques; motions written in Python and
@@ -104,8 +104,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             *(
                 f"interp.robot.api.control_core.ControlCore.{name}"
                 for name in (
-                    *("link", "run_out", "apply", "_act", "_end_path", "_stuck"),
-                    *("_check", "_check_link", "_settle", "_cancel_stuck", "_drop_behind"),
+                    *("link", "run_out", "apply", "_act", "_end_path", "_first_deadlocked"),
+                    *("_check", "_check_link", "_settle", "_cancel_deadlocked", "_drop_behind"),
                 )
             ),
             "interp.robot.kinematics.*._check_*",

@@ -120,4 +120,4 @@ def _ending() -> Iterator[Callable[[], Any]]:
         return counted
 
     yield on(Scheduler, "_collect", make)
-    yield on(ControlCore, "_pass", make)
+    yield on(ControlCore, "_handle_arm_event", make)

@@ -104,11 +104,11 @@ class _Stepping:
         return self.way == "into" or executor.height < self.height + (self.way == "over")
 
 
-class _Again(Exception):
+class _RunAgain(Exception):
     """Leaves a run because another one is to begin."""
 
 
-class _Left(Exception):
+class _SessionEnded(Exception):
     """Leaves a run because the session ends."""
 
 
@@ -153,22 +153,22 @@ class Debugger:
             try:
                 result = begin()
                 self._end(str(getattr(result, "outcome", "")))
-            except _Again:
+            except _RunAgain:
                 continue
-            except _Left:
+            except _SessionEnded:
                 return None
             return result
 
     def _end(self, text: str) -> None:
         """Report the end of a run to the client, which may continue with another run."""
-        self._history.ends(self._count())
+        self._history.ends(self._begun_count())
         if self._history.is_searched():
             self._history.end_search()
-            raise _Again
+            raise _RunAgain
         robot = self._tasks["robot"]
         self._history.arrived(robot)  # if no statement came that could be returned to
         self._is_ended = True
-        self._stopped(robot, Stop("ended", "robot", robot.at, text=text))
+        self._handle_stop(robot, Stop("ended", "robot", robot.at, text=text))
 
     def around(self, inside: Any, per_slice: int, task: TaskName = "robot") -> DebuggedExecutor:
         """Return an executor that stops for this debugger; ``inside`` is an `Inspectable`."""
@@ -202,7 +202,7 @@ class Debugger:
         for unit in self._program.units.values():
             for one in breakpoints:
                 place = unit.module.path, one.line
-                if _is_of(one.file, unit.module.path):
+                if _is_path_of(one.file, unit.module.path):
                     is_only = place not in self._places
                     guard = guard_of(one.condition) if one.condition and is_only else None
                     is_signal = guard is not None and guard.name.upper() in signals
@@ -216,7 +216,7 @@ class Debugger:
 
     def lines(self, file: str) -> tuple[int, ...]:
         """Return the lines of a file at which a program can stop, in ascending order."""
-        units = [one for one in self._program.units.values() if _is_of(file, one.module.path)]
+        units = [one for one in self._program.units.values() if _is_path_of(file, one.module.path)]
         routines = [one for unit in units for one in self._program.routines_of(unit)]
         return tuple(sorted({line for one in routines for line in statement_lines(one)}))
 
@@ -332,7 +332,7 @@ class Debugger:
     def places(self) -> Breaks:
         """The breakpoints that the debugger wants to see, even where `unseen` allows more."""
         history = self._history
-        is_idle = history.is_repeating and not history.is_looking(self._count())
+        is_idle = history.is_repeating and not history.is_looking(self._begun_count())
         return _NOWHERE if is_idle else self._places
 
     def unseen(self, shows_places: bool) -> int:
@@ -345,7 +345,7 @@ class Debugger:
             looks = (self._places and not shows_places) or self._watches or self._stepping
             if looks or self._is_to_pause or self._is_selected or not self._is_begun:
                 return 0
-        return history.unseen(self._count(), shows_places)
+        return history.unseen(self._begun_count(), shows_places)
 
     def begins(self, executor: DebuggedExecutor) -> int | None:
         """Decide what happens before a statement: return a line to continue at, else ``None``.
@@ -354,10 +354,10 @@ class Debugger:
         others (see `unseen`).
         """
         history = self._history
-        history.comes(self._count())
+        history.comes(self._begun_count())
         if history.is_idle:
-            stop = self._why(executor)
-            return None if stop is None else self._stopped(executor, stop)
+            stop = self._reason_to_stop(executor)
+            return None if stop is None else self._handle_stop(executor, stop)
         line: int | None = None
         for change in history.due():
             if isinstance(change, Assigned):
@@ -369,27 +369,27 @@ class Debugger:
             self._is_begun = True
             for hits in self._hits.values():
                 del hits[bisect_right(hits, history.here[0]) :]
-            self._changed(executor)  # the watches take the values of this moment
-            return self._stopped(executor, arrived)
+            self._watch_stop(executor)  # the watches take the values of this moment
+            return self._handle_stop(executor, arrived)
         if line is not None or history.is_repeating:
             return line
-        stop = self._why(executor)
-        return None if stop is None else self._stopped(executor, stop)
+        stop = self._reason_to_stop(executor)
+        return None if stop is None else self._handle_stop(executor, stop)
 
     def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
         """Stop at a fault that the program does not handle."""
-        self._history.comes(self._count())
+        self._history.comes(self._begun_count())
         self._end_search_at(None)
         if self.stops_at_faults and not self._history.is_repeating:
             stop = Stop("fault", executor.task, request.at, text=str(request.fault))
-            self._stopped(executor, stop)
+            self._handle_stop(executor, stop)
 
     def _end_search_at(self, executor: DebuggedExecutor | None) -> None:
         if self._history.is_searched(executor):
             self._history.end_search()
-            raise _Again
+            raise _RunAgain
 
-    def _count(self) -> int:
+    def _begun_count(self) -> int:
         count = 0
         for one in self._tasks.values():
             count += one.inside.begun
@@ -397,7 +397,7 @@ class Debugger:
 
     # ----------------------------------------------------------------------- why to stop
 
-    def _why(self, executor: DebuggedExecutor) -> Stop | None:
+    def _reason_to_stop(self, executor: DebuggedExecutor) -> Stop | None:
         """Return why to stop here, or ``None``."""
         task, at = executor.task, executor.at
         if not self._is_begun:
@@ -409,26 +409,26 @@ class Debugger:
         if self._is_to_pause:
             self._is_to_pause = False
             return Stop("pause", task, at)
-        changed = self._changed(executor)
+        changed = self._watch_stop(executor)
         if changed is not None:
             return changed
         step = self._stepping
         if step is not None and step.is_over(executor, self._ended_motions(step.way)):
             return Stop("step", task, at)
-        return self._broken(executor)
+        return self._breakpoint_stop(executor)
 
     def _ended_motions(self, way: str) -> int:
         return self.arm.ended if way == "motion" else 0
 
-    def _broken(self, executor: DebuggedExecutor) -> Stop | None:
+    def _breakpoint_stop(self, executor: DebuggedExecutor) -> Stop | None:
         """Return the stop of a breakpoint at this statement, if one applies."""
         at, task = executor.at, executor.task
         found: Stop | None = None
         for one in self._breakpoints.get(at.line, ()):
-            if not _is_of(one.file, at.file):
+            if not _is_path_of(one.file, at.file):
                 continue
-            text = self._unmet(one, task)
-            if text is None or not self._counts(one):
+            text = self._breakpoint_note(one, task)
+            if text is None or not self._hit_counts(one):
                 continue
             if one.log is None:
                 found = found or Stop("breakpoint", task, at, text=text)
@@ -436,7 +436,7 @@ class Debugger:
                 self._log(self._log_text(one.log, task))
         return found
 
-    def _unmet(self, one: Breakpoint, task: TaskName) -> str | None:
+    def _breakpoint_note(self, one: Breakpoint, task: TaskName) -> str | None:
         """Return ``None`` if the condition is FALSE, else "", or why it cannot be evaluated."""
         if one.condition is None:
             return ""
@@ -445,7 +445,7 @@ class Debugger:
         except RuntimeFailure as error:
             return str(error)
 
-    def _counts(self, one: Breakpoint) -> bool:
+    def _hit_counts(self, one: Breakpoint) -> bool:
         """Return whether this hit counts; all hits are stored, so that going back undoes them."""
         if one.hits is None:
             return True
@@ -464,14 +464,14 @@ class Debugger:
                 parts[place] = f"({error})"
         return "".join(parts)
 
-    def _changed(self, executor: DebuggedExecutor) -> Stop | None:
+    def _watch_stop(self, executor: DebuggedExecutor) -> Stop | None:
         """Return the stop of the first watch that changed.
 
         A watch that is unknown here, or has no value, has not changed.
         """
         found: Stop | None = None
         for one in self._watches:
-            if not self._is_here(one, executor):
+            if not self._applies(one, executor):
                 continue
             is_known, one.is_known = one.is_known, True
             before, now = one.value, self._value_of(executor.task, 0, one.watch.text)
@@ -482,7 +482,7 @@ class Debugger:
                 found = Stop("watch", executor.task, executor.at, one.watch, before, now)
         return found
 
-    def _is_here(self, one: _Watched, executor: DebuggedExecutor) -> bool:
+    def _applies(self, one: _Watched, executor: DebuggedExecutor) -> bool:
         """Return whether a watch applies here: its name refers to the variable that was watched."""
         if one.place is not None:
             if one.place[:2] != (executor.task, executor.height):
@@ -496,10 +496,10 @@ class Debugger:
 
     # ----------------------------------------------------------------------- commands
 
-    def _stopped(self, executor: DebuggedExecutor, stop: Stop) -> int | None:
+    def _handle_stop(self, executor: DebuggedExecutor, stop: Stop) -> int | None:
         """Execute commands of the client; return a line to continue at, else ``None``.
 
-        Raises `_Again` or `_Left` to leave this run.
+        Raises `_RunAgain` or `_SessionEnded` to leave this run.
         """
         while True:
             self._stepping = None
@@ -513,19 +513,19 @@ class Debugger:
                     if self._history.here > START:
                         stepped = self._tasks.get(task or stop.task, executor)
                         is_of_places = way == "go" and not self._watches
-                        self._history.look_back(self._fitting(way, stepped), is_of_places)
-                        raise _Again
+                        self._history.look_back(self._search_test(way, stepped), is_of_places)
+                        raise _RunAgain
                     text = "this is the first statement"
                 case Restart():
                     self._history.forget()
                     self._is_begun = False
                     for hits in self._hits.values():
                         del hits[:]
-                    raise _Again
+                    raise _RunAgain
                 case Quit():
-                    raise _Left
+                    raise _SessionEnded
                 case Select() as selected:
-                    text = self._against(selected, executor, stop)
+                    text = self._reason_against(selected, executor, stop)
                     if not text:
                         self._history.change(Selected(selected.line))
                         self._is_selected = True
@@ -541,10 +541,10 @@ class Debugger:
     def _step(self, way: str, executor: DebuggedExecutor) -> _Stepping:
         return _Stepping(way, executor.task, executor.height, self._ended_motions(way))
 
-    def _fitting(self, way: str, executor: DebuggedExecutor) -> Fits:
+    def _search_test(self, way: str, executor: DebuggedExecutor) -> Fits:
         """Return the test for the statement to go back to."""
         if way == "go":
-            return lambda one: self._changed(one) or self._broken(one)
+            return lambda one: self._watch_stop(one) or self._breakpoint_stop(one)
         step = self._step(way, executor)
 
         def fits(one: DebuggedExecutor) -> Stop | None:
@@ -556,7 +556,7 @@ class Debugger:
 
         return fits
 
-    def _against(self, selected: Select, executor: DebuggedExecutor, stop: Stop) -> str:
+    def _reason_against(self, selected: Select, executor: DebuggedExecutor, stop: Stop) -> str:
         """Return why a line cannot be selected; "" if it can."""
         if self._is_ended or stop.reason == "fault":
             return "the program has ended"
@@ -568,7 +568,7 @@ class Debugger:
             return "an action is no routine"
         if routine is None:
             return f"{frame.name} is not known"
-        if selected.file and not _is_of(selected.file, executor.at.file):
+        if selected.file and not _is_path_of(selected.file, executor.at.file):
             return f"{selected.file}:{selected.line} is not in {frame.name}"
         return reason_against(routine, executor.at.line, selected.line)
 
@@ -581,7 +581,7 @@ def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame
     return replace(frame, name=f"{kind} {priority or ''}".rstrip() + f" in {frame.name}")
 
 
-def _is_of(wanted: str, file: str) -> bool:
+def _is_path_of(wanted: str, file: str) -> bool:
     """Return whether ``wanted`` is the path of a file or the end of that path."""
     wanted, file = wanted.replace("\\", "/").upper(), file.upper()
     return file == wanted or file.endswith(f"/{wanted}")

@@ -173,7 +173,7 @@ class CheckedProgram:
             for name in sorted(answers, key=lambda one: one.span):
                 answer = answers[name]
                 is_type = isinstance(answer, Found) and answer.symbol.kind in _TYPES
-                is_declared = isinstance(answer, Found) and _is_own(answer.module)
+                is_declared = isinstance(answer, Found) and _is_project_file(answer.module)
                 places.setdefault((name.key, is_type, is_declared), (unit, name))
         used = [
             (one, *places[key])
@@ -242,7 +242,7 @@ class CheckedProgram:
         return found
 
 
-def _is_own(module: Module | None) -> bool:
+def _is_project_file(module: Module | None) -> bool:
     """Return whether a module is a file of the project itself, and no stand-in."""
     if module is None or module.folder == FOLDER:
         return False
@@ -284,7 +284,7 @@ def load(
     Raises `LinkError` with the first error. If ``unread`` is given, other files that cannot be read
     are left out, and the reasons are added to that list.
     """
-    by_path, files, wrong = _files(sources, stands_in=stands_in)
+    by_path, files, wrong = _read_files(sources, stands_in=stands_in)
     for path, (error, found) in wrong.items():
         if found is None and (unread is None or path == main):
             raise error
@@ -307,7 +307,7 @@ def load_all(
     (path, reason) for each file that cannot be read. Each project is loaded once. Without
     ``stands_in``, a file that cannot be read is left out of its project.
     """
-    by_path, files, wrong = _files(sources, stands_in=stands_in)
+    by_path, files, wrong = _read_files(sources, stands_in=stands_in)
     programs: list[CheckedProgram] = []
     for project in link(files, system).projects:
         first = project.modules[0].path
@@ -320,7 +320,7 @@ def load_all(
     return tuple(programs), tuple((path, str(error)) for path, (error, _) in wrong.items())
 
 
-def _files(
+def _read_files(
     sources: Iterable[Source], *, stands_in: bool
 ) -> tuple[dict[str, Source], list[File], dict[str, tuple[LinkError, Readable | None]]]:
     """Return the sources by path, the files to link, and the errors by path.

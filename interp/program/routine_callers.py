@@ -56,7 +56,7 @@ class Callers:
 
 def with_callers(program: CheckedProgram) -> Callers:
     """Append callers to the main file of a program, one for each routine that needs one."""
-    return _added(program, lambda one: not program.can_begin(one))
+    return _with_callers_added(program, lambda one: not program.can_begin(one))
 
 
 def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProgram:
@@ -79,7 +79,7 @@ def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProg
     def point(type_: Structure, name: str) -> str:
         return signatures.value(type_, name) if is_position(type_) else ""
 
-    made = _added(
+    made = _with_callers_added(
         program, lambda one: one.node is routine.node, _constants(program, routine), point
     )
     if not made.called:
@@ -116,7 +116,7 @@ def _constants(program: CheckedProgram, routine: Routine) -> Mapping[str, str]:
     return known
 
 
-def _added(
+def _with_callers_added(
     program: CheckedProgram,
     is_called: Callable[[Routine], bool],
     known: Mapping[str, str] | None = None,
@@ -129,7 +129,11 @@ def _added(
     taken = {routine.node.name.key for routine in routines}
     names = (name for number in count() if (name := f"{_PREFIX}{number}") not in taken)
     for name, routine in zip(names, routines, strict=False):
-        lines = _lines(program, routine, name, known or {}, point) if is_called(routine) else None
+        lines = (
+            _caller_lines(program, routine, name, known or {}, point)
+            if is_called(routine)
+            else None
+        )
         if lines is not None:
             parts += lines
             called[name] = routine.name
@@ -137,7 +141,7 @@ def _added(
     return Callers(source, called)
 
 
-def _lines(
+def _caller_lines(
     program: CheckedProgram,
     routine: Routine,
     name: str,
@@ -150,30 +154,30 @@ def _lines(
         type_ = None if found is None else program.type_of(found)
         if type_ is None or not is_complete_parameter(type_):
             return None
-        declared.append(_declared(f"P{number}", type_))
+        declared.append(_declaration(f"P{number}", type_))
         value = known.get(parameter.name.key)
         if value is not None and isinstance(type_, Scalar | Enumeration):
             given.append(f"P{number}={value}")
         else:
-            given += islice(_given(f"P{number}", type_, point), _MOST_VALUES)
-        arguments.append(f"P{number}{_whole(type_)}")
+            given += islice(_assignments(f"P{number}", type_, point), _MOST_VALUES)
+        arguments.append(f"P{number}{_brackets(type_)}")
     call = f"{routine.name}({','.join(arguments)})"
     result = program.result_of(routine)
     if result is not None:
         if not is_complete(result):
             return None
-        declared.append(_declared("R", result))
-        call = f"R{_whole(result)}={call}"
+        declared.append(_declaration("R", result))
+        call = f"R{_brackets(result)}={call}"
     return [f"DEF {name}()", *declared, *given, call, "END"]
 
 
-def _declared(name: str, type_: Type) -> str:
+def _declaration(name: str, type_: Type) -> str:
     if isinstance(type_, Array):
         return f"DECL {type_.element} {name}[{','.join(map(str, _sizes(type_)))}]"
     return f"DECL {type_} {name}"
 
 
-def _whole(type_: Type) -> str:
+def _brackets(type_: Type) -> str:
     return f"[{',' * (len(type_.sizes) - 1)}]" if isinstance(type_, Array) else ""
 
 
@@ -181,20 +185,20 @@ def _sizes(type_: Array) -> list[int]:
     return [size or _LENGTH for size in type_.sizes]
 
 
-def _given(place: str, type_: Type, point: _MakeValue) -> Iterator[str]:
+def _assignments(place: str, type_: Type, point: _MakeValue) -> Iterator[str]:
     """Yield assignments that give every part of a variable a value."""
     match type_:
         case Array(element=element) if element == CHAR and len(type_.sizes) == 1:
             yield f'{place}[]="A"'
         case Array(element=element):
             for indices in product(*(range(1, size + 1) for size in _sizes(type_))):
-                yield from _given(f"{place}[{','.join(map(str, indices))}]", element, point)
+                yield from _assignments(f"{place}[{','.join(map(str, indices))}]", element, point)
         case Structure(members=members):
             value = point(type_, place)
             if value:
                 yield f"{place}={value}"
             for member in members if not value else ():
-                yield from _given(f"{place}.{member.name}", member.type, point)
+                yield from _assignments(f"{place}.{member.name}", member.type, point)
         case Enumeration(constants=constants):
             yield f"{place}=#{constants[0]}"
         case _:

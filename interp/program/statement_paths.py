@@ -38,10 +38,10 @@ def way_to(routine: Routine, line: int) -> tuple[ast.Statement, ...]:
 
     Return an empty tuple if no statement begins there.
     """
-    return next(_ways(routine, line, routine.node.body), ())
+    return next(_paths_to(routine, line, routine.node.body), ())
 
 
-def _ways(
+def _paths_to(
     routine: Routine, line: int, body: Sequence[ast.Statement]
 ) -> Iterator[tuple[ast.Statement, ...]]:
     for statement in body:
@@ -50,7 +50,7 @@ def _ways(
         if routine.unit.line(statement) == line:
             yield (statement,)
         for inner in _bodies(statement):
-            for way in _ways(routine, line, inner):
+            for way in _paths_to(routine, line, inner):
                 yield (statement, *way)
 
 

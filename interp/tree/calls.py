@@ -96,11 +96,11 @@ class Calls(Expressions):
         function = System.load().functions[name]
         if name in BUILTINS and function.stops:
             yield StopAdvance(self.at())
-        places, values = yield from self._given(node, function.parameters)
+        places, values = yield from self._evaluate_arguments(node, function.parameters)
         if is_value and function.result == UNKNOWN:
             raise untyped_result(name)
         if name in BUILTINS:
-            _check(zip(function.parameters, node.arguments, places, values, strict=False))
+            _check_arguments(zip(function.parameters, node.arguments, places, values, strict=False))
             result, changes = call(name, values, Surroundings(self.run.random, self.find))
         else:
             values = [copied(value) for value in values]
@@ -111,7 +111,7 @@ class Calls(Expressions):
                 yield from self.store(place, changes[number])
         return result
 
-    def _given(
+    def _evaluate_arguments(
         self, node: ast.Call, parameters: Sequence[PredefinedParameter]
     ) -> Steps[tuple[list[Place | None], list[Value | None]]]:
         """Return the places of the arguments passed :OUT, and the values of all arguments."""
@@ -150,10 +150,10 @@ class Calls(Expressions):
         return "" if is_empty else known(value)
 
 
-_Given = tuple[PredefinedParameter, ast.Expression | None, Place | None, Value | None]
+_Argument = tuple[PredefinedParameter, ast.Expression | None, Place | None, Value | None]
 
 
-def _check(given: Iterable[_Given]) -> None:
+def _check_arguments(given: Iterable[_Argument]) -> None:
     """Fault ``argument`` if a predefined function does not accept one of its arguments [ARI-04].
 
     An argument passed by reference must have exactly the parameter's type; others are converted.

@@ -155,14 +155,14 @@ class TreeExecutor:
         try:
             while stack:
                 try:
-                    asked = _sent(stack[-1].steps, reply)
+                    asked = _resume(stack[-1].steps, reply)
                 except StopIteration as done:
                     done_with = stack.pop()
                     if stack:
-                        self._left(done_with)
+                        self._popped(done_with)
                     reply = done.value
                     continue
-                reply = self._looked_up(asked, read, stack)
+                reply = self._reply_to_condition(asked, read, stack)
         finally:
             self._run.guard, self._run.depth, self._run.cells = guard, depth, cells
             self._run.skips = skips
@@ -181,7 +181,7 @@ class TreeExecutor:
         """
         while self._run.depth > depth or self._stack[-1].interrupted is not None:
             active = self._stack.pop()
-            self._left(active)
+            self._popped(active)
             below = active.interrupted
             self._resumed_at_end = (below.final or below.resumed_at_end) if below else None
         self._run.guard = Guard.OFF
@@ -241,17 +241,17 @@ class TreeExecutor:
         while True:
             active = self._stack[-1]
             try:
-                asked = _sent(active.steps, reply)
+                asked = _resume(active.steps, reply)
             except StopIteration as done:
                 if active.interrupted is not None or len(self._stack) == 1:
                     return self._ended(active)
-                self._left(self._stack.pop())
+                self._popped(self._stack.pop())
                 reply = done.value
                 continue
             except RuntimeFailure as error:
-                if not self._is_for_caller(active, error):
+                if not self._fails_in_caller(active, error):
                     return Fail(self._at(), error)
-                self._left(self._stack.pop())
+                self._popped(self._stack.pop())
                 reply = error
                 continue
             if not isinstance(asked, Call):
@@ -283,7 +283,7 @@ class TreeExecutor:
         self._run.cells += frame.cells
         return _Active(Statements(self._run, frame).routine(routine.node), frame)
 
-    def _is_for_caller(self, active: _Active, error: RuntimeFailure) -> bool:
+    def _fails_in_caller(self, active: _Active, error: RuntimeFailure) -> bool:
         """Return whether a failure of a called routine is a failure of the calling statement.
 
         This is so if the routine faults before its first statement. If failures are skipped, it is
@@ -297,7 +297,7 @@ class TreeExecutor:
             run.skips and error.slug == "no_result"
         )
 
-    def _left(self, active: _Active) -> None:
+    def _popped(self, active: _Active) -> None:
         """Update the state after a routine or an action was popped from the stack."""
         if active.interrupted is None:
             self._run.depth -= 1
@@ -320,7 +320,7 @@ class TreeExecutor:
     def _at(self) -> At:
         return self._run.at(self._stack[-1].frame)
 
-    def _looked_up(self, asked: Request | Call, read: Reader, stack: list[_Active]) -> Any:
+    def _reply_to_condition(self, asked: Request | Call, read: Reader, stack: list[_Active]) -> Any:
         """Return the reply to a request, or start the call, that a condition makes."""
         match asked:
             case Call():
@@ -335,6 +335,6 @@ class TreeExecutor:
         raise LinkError("a condition can only compute and read")
 
 
-def _sent(steps: Steps[Any], reply: Any) -> Request | Call:
+def _resume(steps: Steps[Any], reply: Any) -> Request | Call:
     """Resume a generator with a reply, or with an exception to be raised in it."""
     return steps.throw(reply) if isinstance(reply, Exception) else steps.send(reply)

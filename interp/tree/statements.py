@@ -60,7 +60,7 @@ class Selected(Exception):
 _Loop = TypeVar("_Loop", bound=ast.Node)
 
 
-def _left_by_exit(
+def _catches_exit(
     loop: Callable[[Statements, _Loop], Steps[None]],
 ) -> Callable[[Statements, _Loop], Steps[None]]:
     def left(self: Statements, node: _Loop) -> Steps[None]:
@@ -218,7 +218,7 @@ class Statements(Motions):
         self._branch(0)
         yield from self._block(node.default or ())
 
-    @_left_by_exit
+    @_catches_exit
     def _for(self, node: ast.For) -> Steps[None]:  # [CTL-05, CTL-06]
         step = 1 if node.step is None else (yield from self.integer(node.step))
         counter = self.variable(node.counter)
@@ -233,7 +233,7 @@ class Statements(Motions):
             value = known((yield from self.read(counter)))
             yield from self.store(counter, apply("+", value, step))
 
-    @_left_by_exit
+    @_catches_exit
     def _while(self, node: ast.While) -> Steps[None]:  # [CTL-01]
         last = None
         while self._way or (yield from self._is_true(node.condition)):
@@ -241,7 +241,7 @@ class Statements(Motions):
             yield from self._begin(node)
             last = self.run.again(node, last)
 
-    @_left_by_exit
+    @_catches_exit
     def _repeat(self, node: ast.Repeat) -> Steps[None]:  # [CTL-01]
         is_done, last = False, None
         while not is_done:
@@ -250,7 +250,7 @@ class Statements(Motions):
             last = self.run.again(node, last)
             is_done = yield from self._is_true(node.condition)
 
-    @_left_by_exit
+    @_catches_exit
     def _loop(self, node: ast.Loop) -> Steps[None]:  # [CTL-01]
         last = None
         while True:

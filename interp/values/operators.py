@@ -184,9 +184,9 @@ UNARY: Mapping[str, tuple[str, ...]] = {
 }
 
 #: Operators that accept a CHAR and use its code.
-_OF_LETTERS = operations.EQUALITY | operations.ORDER | operations.BITWISE | {"B_NOT"}
+_ACCEPTS_CHAR = operations.EQUALITY | operations.ORDER | operations.BITWISE | {"B_NOT"}
 #: The primitives that convert one kind to another.
-_WAYS: Mapping[tuple[Kind, Kind], tuple[str, ...]] = {
+_CONVERSIONS: Mapping[tuple[Kind, Kind], tuple[str, ...]] = {
     ("INT", "REAL"): ("int_to_real",),
     ("CHAR", "INT"): ("char_to_int",),
     ("CHAR", "REAL"): ("char_to_int", "int_to_real"),
@@ -207,21 +207,24 @@ def select(operator: str, *kinds: Kind) -> Selection | None:
         raise ValueError(f"{operator!r} is no operator of so many operands: {len(kinds)}")
     for name in table[operator]:
         primitive = PRIMITIVES[name]
-        ways = [
-            _way(kind, to, operator) for kind, to in zip(kinds, primitive.operands, strict=True)
+        per_operand = [
+            _conversion(kind, to, operator)
+            for kind, to in zip(kinds, primitive.operands, strict=True)
         ]
-        if all(way is not None for way in ways):
-            conversions = tuple(tuple(PRIMITIVES[step] for step in way or ()) for way in ways)
+        if all(conversion is not None for conversion in per_operand):
+            conversions = tuple(
+                tuple(PRIMITIVES[step] for step in conversion or ()) for conversion in per_operand
+            )
             return Selection(conversions, primitive, primitive.result)
     return None
 
 
-def _way(kind: Kind, to: Kind, operator: str) -> tuple[str, ...] | None:
+def _conversion(kind: Kind, to: Kind, operator: str) -> tuple[str, ...] | None:
     if kind == to:
         return ()
-    if kind == "CHAR" and operator not in _OF_LETTERS:
+    if kind == "CHAR" and operator not in _ACCEPTS_CHAR:
         return None
-    return _WAYS.get((kind, to))
+    return _CONVERSIONS.get((kind, to))
 
 
 # ------------------------------------------------------------------------------- kinds

@@ -34,11 +34,11 @@ fulfil waits after 1
 """
 
 #: The largest number of inputs that are tried: more would have too many combinations.
-_MOST: Final = 10
+_MOST_INPUTS: Final = 10
 #: The time in µs after which a line that reads inputs counts as a wait.
 _POLLED: Final = 1_000_000
 #: The delay of flags as a multiple of that of inputs: usually the program sets its flags itself.
-_PATIENCE: Final = 5
+_FLAG_DELAY: Final = 5
 
 #: ``$IN`` or ``$FLAG``, and the number.
 _Place = tuple[str, int]
@@ -84,7 +84,7 @@ class AutomaticInputs:
     def _delay(self) -> int:
         """How long the program must wait until the next change, in µs."""
         assert self._after is not None, "it fulfils waits"
-        return self._after * (_PATIENCE if self._changes[0][0][0] == "$FLAG" else 1)
+        return self._after * (_FLAG_DELAY if self._changes[0][0][0] == "$FLAG" else 1)
 
     def was_read(self, path: Path, at: At) -> None:
         """Note that a line has read a variable; change an input if it has waited long enough."""
@@ -119,7 +119,7 @@ class AutomaticInputs:
             self._since, self._before = (at, now), now
             self._changes.clear()
             found = [place for place in self._read if place not in self._scripted]
-            if len(found) <= _MOST:
+            if len(found) <= _MOST_INPUTS:
                 inputs = [place for place in found if place[0] == "$IN"]
                 self._changes += _combinations({place: self._has(place) for place in inputs})
                 flags = [place for place in found if place[0] == "$FLAG"]

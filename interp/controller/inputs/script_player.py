@@ -49,11 +49,11 @@ class ScriptPlayer:
         self._steps: dict[Cause, list[ScriptStep]] = defaultdict(list)
         self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
         self._held: dict[Becomes, bool] = {}
-        self._ahead: list[ScriptStep] = []
+        self._pending: list[ScriptStep] = []
         for step in script.steps:
             self._check(step)
             if isinstance(step.cause, AtTime):
-                self._coming(step.cause.time + step.delay, step)
+                self._schedule(step.cause.time + step.delay, step)
             else:
                 self._steps[step.cause].append(step)
         for cause in self._steps:
@@ -90,11 +90,11 @@ class ScriptPlayer:
 
     def _happened(self, cause: Cause) -> None:
         for step in self._steps.get(cause, ()):
-            self._coming(self._state.clock.now + step.delay, step)
+            self._schedule(self._state.clock.now + step.delay, step)
 
-    def _coming(self, time: int, step: ScriptStep) -> None:
-        self._ahead.append(step)
-        self._state.actions.add(time, partial(self._do, step))
+    def _schedule(self, time: int, step: ScriptStep) -> None:
+        self._pending.append(step)
+        self._state.actions.add(time, partial(self._perform, step))
 
     def awaits(self, button: str) -> bool:
         """Return whether a step that presses a button is pending or may still be caused.
@@ -110,14 +110,14 @@ class ScriptPlayer:
         ]
         return any(
             isinstance(action, Press) and action.button == button
-            for step in (*self._ahead, *may_come)
+            for step in (*self._pending, *may_come)
             for action in step.actions
         )
 
     # ------------------------------------------------------------------------- what is done
 
-    def _do(self, step: ScriptStep) -> None:
-        self._ahead.remove(step)
+    def _perform(self, step: ScriptStep) -> None:
+        self._pending.remove(step)
         for action in step.actions:
             match action:
                 case Assign(path, value):

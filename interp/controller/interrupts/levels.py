@@ -55,13 +55,13 @@ class Levels:
         """End the top level; return what to wait for before the level below continues."""
         level = task.levels[-1]
         if not level.has_braked or not level.has_moved:
-            return self._left(task)
+            return self._finish(task)
         end = End(level.at)
         return Blocked(
-            end, lambda: not level.motions, lambda: self._return(task, end), is_open=False
+            end, lambda: not level.motions, lambda: self._return_to_path(task, end), is_open=False
         )
 
-    def _return(self, task: Task, end: End) -> Answer:
+    def _return_to_path(self, task: Task, end: End) -> Answer:
         """Move back to where BRAKE stopped the arm, if the routine has moved it away from there."""
         level = task.levels[-1]
         here = self._positions.actual().axes
@@ -70,9 +70,9 @@ class Levels:
                 self._queue.plan_return(task, level.at, level.braked_at)
             except Fault as error:
                 return error
-        return Blocked(end, lambda: not level.motions, lambda: self._left(task), is_open=False)
+        return Blocked(end, lambda: not level.motions, lambda: self._finish(task), is_open=False)
 
-    def _left(self, task: Task) -> Answer:
+    def _finish(self, task: Task) -> Answer:
         level = task.levels[-1]
         self.pop(task)
         if level.has_braked:

@@ -168,7 +168,7 @@ class PredefinedRoutines:
             raise fault("argument")
         number: Any = message.get("NR") or 0
         given: Any = message.get("MSG_TXT")
-        text = _filled(text_of(given), parameters)
+        text = _with_parameters(text_of(given), parameters)
         return self._state.messages.show(task.name, request.at, kind, number, text), {}
 
     def _exists_message(self, _task: Task, request: Invoke) -> Outcome:
@@ -247,7 +247,7 @@ class PredefinedRoutines:
         from interp.robot.kinematics.targets import turn_of
 
         target = target_of(known(request.arguments[0]))
-        axes = _all_of(target, _AXES)
+        axes = _components(target, _AXES)
         kinematics, placement = self._kinematics()
         flange = Pose.from_matrix(kinematics.forward(axes).tolist())
         status = int(kinematics.status(axes))
@@ -262,9 +262,9 @@ class PredefinedRoutines:
         target = target_of(known(request.arguments[0]))
         start = target_of(known(request.arguments[1]))
         kinematics, placement = self._kinematics()
-        point = Pose.of(*_all_of(target, "XYZABC"))
+        point = Pose.of(*_components(target, "XYZABC"))
         externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
-        origin = _all_of(start, _AXES)
+        origin = _components(start, _AXES)
         status, turn = target.get("S"), target.get("T")
         try:
             found = solve(
@@ -323,15 +323,15 @@ class PredefinedRoutines:
             return self._state.profile.sizes[_SIZES[name]], {}
         return self._state.variables.size(f"${name}"), {}
 
-    def _no_message(self, _task: Task, _request: Invoke) -> Outcome:
+    def _receive_mailbox(self, _task: Task, _request: Invoke) -> Outcome:
         """MBX_REC: return 1 because no message has come (unconfirmed); a message would be 0."""
         return 1, {}
 
-    def _fine(self, _task: Task, _request: Invoke) -> Outcome:
+    def _system_state(self, _task: Task, _request: Invoke) -> Outcome:
         """GETSYSSTATE: return that the state is known, and 0 for no fault (unconfirmed)."""
         return True, {1: 0, 2: 0.0}
 
-    def _zero(self, _task: Task, _request: Invoke) -> Outcome:
+    def _sync(self, _task: Task, _request: Invoke) -> Outcome:
         """SYNC: return 0, because there is no other robot."""
         return 0, {}
 
@@ -346,14 +346,14 @@ def _int(request: Invoke, place: int) -> int:
     return found
 
 
-def _all_of(target: Target, names: Sequence[str]) -> list[float]:
+def _components(target: Target, names: Sequence[str]) -> list[float]:
     """Return components of a position; faults ``uninitialised`` if one has no value [TYP-13]."""
     if not target.keys() >= set(names):
         raise fault("uninitialised")
     return [target[name] for name in names]
 
 
-def _filled(text: str, parameters: Any) -> str:
+def _with_parameters(text: str, parameters: Any) -> str:
     """Return the text of a message, with its parameters in place of %1 to %3."""
     for place, one in enumerate(parameters or (), start=1):
         if not isinstance(one, StructureValue):
@@ -392,7 +392,7 @@ _RULES: Mapping[str, _Rule] = {
     "WSPACETAKE": PredefinedRoutines._workspace,
     "GETVARSIZE": PredefinedRoutines._size,
     "IS_KEY_PRESSED": PredefinedRoutines._no,
-    "MBX_REC": PredefinedRoutines._no_message,
-    "GETSYSSTATE": PredefinedRoutines._fine,
-    "SYNC": PredefinedRoutines._zero,
+    "MBX_REC": PredefinedRoutines._receive_mailbox,
+    "GETSYSSTATE": PredefinedRoutines._system_state,
+    "SYNC": PredefinedRoutines._sync,
 }

@@ -88,15 +88,15 @@ class Variables:
         self._newest = System.load()
         self._values: dict[str, Any] = {}
         self._live: dict[str, Live] = {}
-        self._loose: dict[Path, Value] = {}
+        self._untyped_parts: dict[Path, Value] = {}
         self.writes = 0
         self.has_read_changing = False
         self._twins = {
             entry.twin: name
-            for name, entry in ((name, self.entry(name)) for name in _twice())
+            for name, entry in ((name, self.entry(name)) for name in _with_twins())
             if entry is not None and entry.twin is not None
         }
-        self._twice = frozenset(self._twins.values())
+        self._with_twins = frozenset(self._twins.values())
         self._snapshot: Snapshot | None = None
         self._values["$ADVANCE"] = profile.advance
         for name, data in profile.values.items():
@@ -164,8 +164,8 @@ class Variables:
         if live is not None:
             self.has_read_changing = self.has_read_changing or name not in _STEADY
             return live.read(path)
-        if self._is_loose(path):
-            return self._loose.get(path, 0)
+        if self._is_untyped_part(path):
+            return self._untyped_parts.get(path, 0)
         root = self.main[self._twins[name]] if name in self._twins else self._root(name)
         return part(root, path[1:])
 
@@ -188,12 +188,12 @@ class Variables:
             self.writes += name not in _SIGNALS
             live.write(path, value)
             return
-        if self._is_loose(path):
+        if self._is_untyped_part(path):
             self.writes += 1
-            self._loose[path] = copied(value)
+            self._untyped_parts[path] = copied(value)
             return
         before = self._text(path)
-        if name in self._twice:  # existing snapshots keep the old value
+        if name in self._with_twins:  # existing snapshots keep the old value
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
@@ -206,7 +206,7 @@ class Variables:
         except Fault:
             return None
 
-    def _is_loose(self, path: Path) -> bool:
+    def _is_untyped_part(self, path: Path) -> bool:
         """Return whether a path is a part of a variable of unknown type, perhaps of an option.
 
         With a tolerant profile such a part can be written and read.
@@ -219,7 +219,7 @@ class Variables:
     def snapshot(self, changes: Iterable[tuple[Path, Value]] = ()) -> Snapshot:
         """Return the present values of the advance run, with changes for one motion only."""
         if self._snapshot is None:
-            self._snapshot = {name: self._root(name) for name in sorted(self._twice)}
+            self._snapshot = {name: self._root(name) for name in sorted(self._with_twins)}
         changed: dict[str, Any] = {}
         for path, value in changes:
             name = str(path[0])
@@ -262,7 +262,7 @@ class Variables:
             self._values[name] = copied(value)
 
 
-def _twice() -> list[str]:
+def _with_twins() -> list[str]:
     variables = System.load().variables
     return [name for name in variables if variables[name].twin is not None]
 

@@ -70,7 +70,7 @@ class ControlCore:
         self._order = count()
         self._links: dict[Event, list[Link]] = defaultdict(list)
         #: The number of links that may still start a command.
-        self._chances: dict[Command, int] = {}
+        self._start_links: dict[Command, int] = {}
         #: Planned motions that have not ended, by number, in their order.
         self._motions: dict[int, MotionCommand] = {}
         #: Ended motions, as long as places in the blend after them may still be passed.
@@ -110,7 +110,7 @@ class ControlCore:
         """Add a link between loaded commands; raise `CommandError` if it is inconsistent."""
         link = Link(event, effect, command, delay)
         self._check_link(link, frozenset())
-        if effect == "start" and command not in self._chances:
+        if effect == "start" and command not in self._start_links:
             raise CommandError(f"{link}: it is not waiting for a start")
         self._attach(link)
 
@@ -221,7 +221,7 @@ class ControlCore:
             if self._due and self._due[0][0] <= due:
                 self._act_when_due()
             else:
-                self._pass(self.arm.take())
+                self._handle_arm_event(self.arm.take())
         self.now = time
 
     def _settle(self) -> None:
@@ -236,14 +236,14 @@ class ControlCore:
                 self._finish(command, CommandState.ENDED, "ended")
             return
         if effect == "start":
-            self._lose_chance(command, is_taken=True)
+            self._drop_start_link(command, is_taken=True)
         self._act(effect, command)
 
-    def _pass(self, event: ArmEvent) -> None:
+    def _handle_arm_event(self, event: ArmEvent) -> None:
         """Handle an event of the path."""
         what = _WHAT[event.kind]
         if event.kind == "stopped":
-            self._tell(None, what, arm=event)
+            self._emit(None, what, arm=event)
             if self._is_ending:
                 self.discard(self.now)
             return
@@ -251,7 +251,7 @@ class ControlCore:
         if event.kind == "motion_start" and command is not None:
             command.state = CommandState.ACTIVE
         if event.kind != "motion_end" or command is None:
-            self._tell(command, what, key=event.key, arm=event)
+            self._emit(command, what, key=event.key, arm=event)
             return
         del self._motions[event.motion]
         self._behind[event.motion] = command
@@ -278,7 +278,7 @@ class ControlCore:
 
     def _begin(self, command: Command) -> None:
         """Start a command because of an event; a motion is planned only now."""
-        self._chances.pop(command, None)
+        self._start_links.pop(command, None)
         if isinstance(command, MotionCommand):
             try:
                 self._plan_all(self.now, [command])
@@ -311,7 +311,7 @@ class ControlCore:
                 return  # it is planned, and starts when the arm reaches it
             case OutputCommand(path=path, value=value):
                 command.state = CommandState.ACTIVE
-                self._tell(command, "started")
+                self._emit(command, "started")
                 try:
                     self._switch(path, value, self.now)
                 except Fault as fault:
@@ -320,7 +320,7 @@ class ControlCore:
                     self._finish(command, CommandState.ENDED, "ended")
             case _:
                 command.state = CommandState.ACTIVE
-                self._tell(command, "started")
+                self._emit(command, "started")
                 if isinstance(command, WaitCommand):
                     self._schedule(command.duration, None, command)
 
@@ -342,8 +342,8 @@ class ControlCore:
         fault: Fault | None = None,
     ) -> None:
         command.state = state
-        self._chances.pop(command, None)
-        self._tell(command, what, arm=arm, fault=fault)
+        self._start_links.pop(command, None)
+        self._emit(command, what, arm=arm, fault=fault)
         is_behind = command in self._behind.values()
         self._drop(command, _BEHIND if is_behind else frozenset())
 
@@ -352,9 +352,9 @@ class ControlCore:
     def _attach(self, link: Link) -> None:
         self._links[link.event].append(link)
         if link.effect == "start":
-            self._chances[link.command] = self._chances.get(link.command, 0) + 1
+            self._start_links[link.command] = self._start_links.get(link.command, 0) + 1
 
-    def _tell(
+    def _emit(
         self,
         command: Command | None,
         what: What,
@@ -380,7 +380,7 @@ class ControlCore:
         for event in [event for event in mine if event.what not in but]:
             for link in self._links.pop(event):
                 if link.effect == "start":
-                    self._lose_chance(link.command, is_taken=False)
+                    self._drop_start_link(link.command, is_taken=False)
 
     def _drop_behind(self, numbers: Iterable[int]) -> None:
         for number in numbers:
@@ -388,25 +388,25 @@ class ControlCore:
             if command is not None:
                 self._drop(command)
 
-    def _lose_chance(self, command: Command, *, is_taken: bool) -> None:
-        left = self._chances.get(command)
+    def _drop_start_link(self, command: Command, *, is_taken: bool) -> None:
+        left = self._start_links.get(command)
         if left is None:
             return
-        self._chances[command] = left - 1
+        self._start_links[command] = left - 1
         if is_taken or command.state is not CommandState.LINKED:
             return
         if left == 1:
             self._finish(command, CommandState.CANCELLED, "cancelled")
         else:
-            self._cancel_stuck()
+            self._cancel_deadlocked()
 
-    def _cancel_stuck(self) -> None:
-        while (stuck := self._stuck()) is not None:
-            self._finish(stuck, CommandState.CANCELLED, "cancelled")
+    def _cancel_deadlocked(self) -> None:
+        while (deadlocked := self._first_deadlocked()) is not None:
+            self._finish(deadlocked, CommandState.CANCELLED, "cancelled")
 
-    def _stuck(self) -> Command | None:
+    def _first_deadlocked(self) -> Command | None:
         """Return the first of the commands that wait only for one another, if there are any."""
-        waiting = [one for one in self._chances if one.state is CommandState.LINKED]
+        waiting = [one for one in self._start_links if one.state is CommandState.LINKED]
         coming = {command for _, _, effect, command in self._due if effect == "start"}
         starts = [
             (link.command, event.command)

@@ -28,7 +28,7 @@ _UNDETERMINED = 2e-9
 """Sine of A5 below which A4 is free and stays where it is: 1e-7 degrees."""
 _BENT = 1e-3
 """Sine of A5 above which the wrist is clearly bent."""
-_SAME_WAY = 30.0  # degrees between two samples up to which a path counts as continuous
+_LARGEST_STEP = 30.0  # degrees between two samples up to which a path counts as continuous
 _MARGIN = 1e-7
 """mm of reach that may be lost by rounding."""
 _OVERHEAD = 1e-3
@@ -110,13 +110,13 @@ class CentralWrist:
         sine = np.hypot(wrist[..., 0, 2], wrist[..., 1, 2])
         is_straight = sine < _STRAIGHT
         sine[is_straight] = 0.0
-        ways = []
+        solutions = []
         for sign in (1.0, -1.0):
             a4 = np.arctan2(sign * wrist[..., 1, 2], sign * wrist[..., 0, 2])
             a5 = sign * np.arctan2(sine, wrist[..., 2, 2])
             a4 = np.where(is_straight, self._zeros[3], a4)
-            ways.append(self._degrees(main, a4, a5, wrist))
-        degrees: Array = np.concatenate(ways, axis=-2)
+            solutions.append(self._degrees(main, a4, a5, wrist))
+        degrees: Array = np.concatenate(solutions, axis=-2)
         degrees -= 360.0 * np.ceil((degrees - 180.0) / 360.0)
         return degrees + 0.0
 
@@ -159,7 +159,7 @@ class CentralWrist:
         found = self._degrees(main, a4, sign * np.arctan2(sine, wrist[:, 2, 2]), wrist)
         path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
         steps = np.abs(np.diff(path, axis=0))
-        return path[1:] if bool((steps < _SAME_WAY).all()) else None
+        return path[1:] if bool((steps < _LARGEST_STEP).all()) else None
 
     def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
         """Return the main axes of the upright arm, and the rotation that remains for its wrist."""

@@ -22,7 +22,7 @@ from interp.robot.kinematics.solver import Array, matrix_of
 from interp.values.faults import Fault
 
 _STARTS = 96
-_WAYS = 16
+_MOST_SOLUTIONS = 16
 _ROUNDS = 60
 _NEAR_ROUNDS = 25
 _HOPEFUL = 20, 0.05
@@ -91,14 +91,14 @@ class NumericKinematics:
         given = np.asarray(poses, dtype=np.float64)
         shape = given.shape[:-2]
         given = given.reshape(-1, 4, 4)
-        found = np.full((len(given), _WAYS, ROBOT_AXES), math.nan)
+        found = np.full((len(given), _MOST_SOLUTIONS, ROBOT_AXES), math.nan)
         starts = self._starts()
         for place, pose in enumerate(given):
             if (np.abs(pose) < _FAR).all():
                 ends = self._solve(np.tile(pose, (len(starts), 1, 1)), starts, _ROUNDS)
-                ways = _distinct(self._wrapped(self._degrees(ends)))
-                found[place, : len(ways)] = ways[:_WAYS]
-        return found.reshape(*shape, _WAYS, ROBOT_AXES)
+                solutions = _distinct(self._wrapped(self._degrees(ends)))
+                found[place, : len(solutions)] = solutions[:_MOST_SOLUTIONS]
+        return found.reshape(*shape, _MOST_SOLUTIONS, ROBOT_AXES)
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
         """See `interp.robot.kinematics.solver.Kinematics.inverse_near`."""
@@ -315,11 +315,11 @@ def _bound(value: float, sign: float, is_linear: bool) -> float:
     return value if abs(value) < most or (is_linear and math.isfinite(value)) else sign * most
 
 
-def _distinct(ways: Array) -> Array:
+def _distinct(solutions: Array) -> Array:
     """Return the solutions ``(n, 6)`` without NaN and duplicates, in their order."""
     kept: list[Array] = []
-    for way in ways[~np.isnan(ways).any(axis=1)]:
-        differences = (np.abs((way - other + 180.0) % 360.0 - 180.0).max() for other in kept)
+    for solution in solutions[~np.isnan(solutions).any(axis=1)]:
+        differences = (np.abs((solution - other + 180.0) % 360.0 - 180.0).max() for other in kept)
         if all(difference > _SAME for difference in differences):
-            kept.append(way)
+            kept.append(solution)
     return np.array(kept).reshape(-1, ROBOT_AXES)

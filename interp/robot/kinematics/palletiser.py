@@ -19,13 +19,13 @@ from interp.robot.kinematics.central_wrist import CentralWrist
 from interp.robot.kinematics.machine_data import MachineDataError, Palletising
 from interp.robot.kinematics.solver import Array, matrix_of
 
-_WAYS = 4
+_SOLUTIONS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
 _FLAT = 1e-6
 """Length of the projection of the flange axis on the arm's plane, below which it is undefined."""
 _ROUNDS = 100  # more than a few are needed only near axis 1
 _BESIDE = 1e-6  # mm by which the tip may be missed
-_SAME_WAY = 30.0  # degrees between two samples up to which a path counts as continuous
+_LARGEST_STEP = 30.0  # degrees between two samples up to which a path counts as continuous
 
 
 class Palletiser:
@@ -101,7 +101,7 @@ class Palletiser:
     def inverse(self, poses: npt.ArrayLike) -> Array:
         """Return four solutions, which differ in shoulder and elbow; A4 is 0 in all of them."""
         reached = self._reachable(np.asarray(poses, dtype=np.float64))
-        main = self._arm.inverse(reached)[..., :_WAYS, :3]
+        main = self._arm.inverse(reached)[..., :_SOLUTIONS, :3]
         return self._with_wrist(main, reached[..., None, :, :])
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
@@ -117,7 +117,7 @@ class Palletiser:
         references = np.array(start, dtype=np.float64)
         found = self.inverse_near(poses, np.tile(references, (len(poses), 1)))
         path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
-        is_plain = bool((np.abs(np.diff(path, axis=0)) < _SAME_WAY).all())
+        is_plain = bool((np.abs(np.diff(path, axis=0)) < _LARGEST_STEP).all())
         return path[1:] if is_plain else None
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:

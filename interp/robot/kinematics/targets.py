@@ -77,7 +77,7 @@ def check_limits(axes: Sequence[Axis], values: Sequence[float]) -> None:
     """Raise `Fault` 1447 if a value exceeds a software limit switch, or is NaN."""
     for axis, value in zip((axis.unlimited() for axis in axes), values, strict=True):
         if not axis.lower - _LIMIT <= value <= axis.upper + _LIMIT:
-            raise _beyond(axis, value)
+            raise _limit_fault(axis, value)
 
 
 def check_path(axes: Sequence[Axis], path: Array) -> None:
@@ -93,7 +93,7 @@ def check_path(axes: Sequence[Axis], path: Array) -> None:
     if len(beyond):
         check_limits(axes, path[-1].tolist())
         row, column = beyond[0]
-        where = _outside(axes[column], float(path[row, column]))
+        where = _limit_text(axes[column], float(path[row, column]))
         text = f"the path leads onto a software limit switch: {where}"
         raise Fault("software_limit", text, number=1211, rules=("MOT-15",))
 
@@ -121,10 +121,10 @@ def solve(
     Raises `Fault` 1366 if no such solution exists, 1447 if it exists but not within the software
     limits [MOT-15].
     """
-    ways = np.empty((0, 6))
+    solutions = np.empty((0, 6))
     if flange.is_finite:
-        ways = arm.inverse(arm.about_tips(matrix_of(flange), matrix_of(tool)))
-    return _choose(arm, ways, status, turn, start, preference)
+        solutions = arm.inverse(arm.about_tips(matrix_of(flange), matrix_of(tool)))
+    return _choose(arm, solutions, status, turn, start, preference)
 
 
 def ptp_target(
@@ -150,9 +150,9 @@ def ptp_target(
     if Singularity.OVERHEAD in found.singularities and keeps[0]:
         zero, turned = arm.forward(((0.0,) * 6, (-start[0], *(0.0,) * 5)))
         moved = turned @ np.linalg.inv(zero) @ matrix_of(flange)
-        ways = arm.inverse(arm.about_tips(moved, matrix_of(tool)))
-        ways[:, 0] += start[0]
-        found = _choose(arm, ways, status, turn, start, preference)
+        solutions = arm.inverse(arm.about_tips(moved, matrix_of(tool)))
+        solutions[:, 0] += start[0]
+        found = _choose(arm, solutions, status, turn, start, preference)
     if Singularity.WRIST in found.singularities:
         found = _settled_wrist(arm, found, start[3] if keeps[2] else 0.0, turn, start)
     return found
@@ -165,8 +165,8 @@ def follow(arm: Kinematics, flanges: npt.ArrayLike, start: Sequence[float]) -> A
     the previous one. Raises `Fault` as `solve` does, for the first sample out of reach, and as
     `check_path` does.
     """
-    ways = arm.inverse(flanges)
-    path = _nearest_ways(arm, ways, np.asarray(start, dtype=np.float64))
+    solutions = arm.inverse(flanges)
+    path = _nearest_solutions(arm, solutions, np.asarray(start, dtype=np.float64))
     check_path(arm.machine.axes, path)
     return path
 
@@ -176,47 +176,51 @@ def follow(arm: Kinematics, flanges: npt.ArrayLike, start: Sequence[float]) -> A
 
 def _choose(
     arm: Kinematics,
-    ways: Array,
+    solutions: Array,
     status: int | None,
     turn: int | None,
     start: Sequence[float] | None,
     preference: TargetStatus,
 ) -> Solution:
-    ways = ways[~np.isnan(ways).any(axis=1)]
+    solutions = solutions[~np.isnan(solutions).any(axis=1)]
     if status is None and start is not None and preference is TargetStatus.SOURCE:
         status = int(arm.status(start))
     if status is not None:
-        ways = ways[_have_status(arm, ways, status)]
-    if not len(ways):
+        solutions = solutions[_with_status(arm, solutions, status)]
+    if not len(solutions):
         raise Fault("unreachable", "the target cannot be reached", number=1366, rules=("MOT-15",))
     origin = tuple(start) if start is not None else (0.0,) * 6
     limited = arm.machine.axes
     for axes in (limited, tuple(axis.unlimited() for axis in limited)):
-        fits = (_fit(axes, way.tolist(), turn, origin) for way in ways)
+        fits = (_within_limits(axes, solution.tolist(), turn, origin) for solution in solutions)
         fitting = [fit for fit in fits if fit is not None]
         if fitting:
             break
     else:
-        named = zip(axes, ways[0].tolist(), strict=True)
-        raise next(_beyond(axis, value) for axis, value in named if not _turns(axis, value, 0.0))
+        named = zip(axes, solutions[0].tolist(), strict=True)
+        raise next(
+            _limit_fault(axis, value) for axis, value in named if not _full_turns(axis, value, 0.0)
+        )
     found = min(fitting, key=lambda fit: _effort(limited, fit, origin))
     return Solution(found, int(arm.status(found)), turn_of(found), singularities(arm, found))
 
 
-def _have_status(arm: Kinematics, ways: Array, status: int) -> npt.NDArray[np.bool_]:
+def _with_status(arm: Kinematics, solutions: Array, status: int) -> npt.NDArray[np.bool_]:
     """Return which solutions ``(n, 6)`` have a Status; in a singularity its bit is ignored."""
-    free = 1 * (arm.distance_to_axis_1(ways) <= _OVERHEAD)
-    free |= 2 * (np.abs(ways[:, 2] - arm.elbow) <= _ZERO)
-    free |= 4 * (np.abs(ways[:, 4]) <= _ZERO)
-    have: npt.NDArray[np.bool_] = (arm.status(ways) ^ status) & _ALL_BITS & ~free == 0
+    free = 1 * (arm.distance_to_axis_1(solutions) <= _OVERHEAD)
+    free |= 2 * (np.abs(solutions[:, 2] - arm.elbow) <= _ZERO)
+    free |= 4 * (np.abs(solutions[:, 4]) <= _ZERO)
+    have: npt.NDArray[np.bool_] = (arm.status(solutions) ^ status) & _ALL_BITS & ~free == 0
     return have
 
 
-def _fit(axes: Sequence[Axis], way: Sequence[float], turn: int | None, origin: Axes) -> Axes | None:
+def _within_limits(
+    axes: Sequence[Axis], solution: Sequence[float], turn: int | None, origin: Axes
+) -> Axes | None:
     """Return a solution with full turns added so that all axes are within limits, or ``None``."""
     fitted = []
-    for place, (axis, value) in enumerate(zip(axes, way, strict=True)):
-        choices = _turns(axis, value, origin[place])
+    for place, (axis, value) in enumerate(zip(axes, solution, strict=True)):
+        choices = _full_turns(axis, value, origin[place])
         if turn is not None:
             is_negative = bool(turn >> place & 1)
             choices = [c for c in choices if (c < -_ZERO) == is_negative] or choices
@@ -231,7 +235,7 @@ def _nearest(choices: Sequence[float], origin: float) -> float:
     return min(choices, key=lambda choice: (round(abs(choice - origin), 6), -choice))
 
 
-def _turns(axis: Axis, value: float, origin: float) -> list[float]:
+def _full_turns(axis: Axis, value: float, origin: float) -> list[float]:
     """Return the angles within the limits that differ from ``value`` by full turns."""
     lower = max(axis.lower, min(origin, 0.0) - 360.0) - _LIMIT
     upper = min(axis.upper, max(origin, 0.0) + 360.0) + _LIMIT
@@ -245,9 +249,9 @@ def _effort(machine_axes: Sequence[Axis], axes: Axes, origin: Axes) -> tuple[flo
 
     They are in degrees instead of seconds if speeds are unknown.
     """
-    ways = [abs(value - start) for value, start in zip(axes, origin, strict=True)]
+    travels = [abs(value - start) for value, start in zip(axes, origin, strict=True)]
     speeds = [axis.dynamics.velocity if axis.dynamics else 1.0 for axis in machine_axes]
-    times = [way / speed for way, speed in zip(ways, speeds, strict=True)]
+    times = [travel / speed for travel, speed in zip(travels, speeds, strict=True)]
     return max(times), sum(times)
 
 
@@ -259,7 +263,7 @@ def _settled_wrist(
     difference = found.axes[3] - a4
     a5 = found.axes[4] * math.cos(math.radians(difference))
     a6 = found.axes[5] + axes[3].direction * axes[5].direction * difference
-    settled = _fit(axes, (*found.axes[:3], a4, a5, a6), turn, tuple(start))
+    settled = _within_limits(axes, (*found.axes[:3], a4, a5, a6), turn, tuple(start))
     if settled is None:
         return found
     return replace(found, axes=settled, status=int(arm.status(settled)), turn=turn_of(settled))
@@ -268,13 +272,13 @@ def _settled_wrist(
 # ---------------------------------------------------------------------------------------- a path
 
 
-def _nearest_ways(arm: Kinematics, ways: Array, start: Array) -> Array:
+def _nearest_solutions(arm: Kinematics, solutions: Array, start: Array) -> Array:
     """Return the path sample by sample; in a straight wrist, axis 4 keeps its value."""
-    path = np.empty((len(ways), 6))
+    path = np.empty((len(solutions), 6))
     before = start
     forearm, hand = arm.machine.axes[3].direction, arm.machine.axes[5].direction
-    for place, way in enumerate(ways):
-        choices = way.copy()
+    for place, solution in enumerate(solutions):
+        choices = solution.copy()
         straight = np.abs(choices[:, 4]) <= _ZERO
         choices[straight, 5] += forearm * hand * (choices[straight, 3] - before[3])
         choices[straight, 3] = before[3]
@@ -286,16 +290,16 @@ def _nearest_ways(arm: Kinematics, ways: Array, start: Array) -> Array:
     return path
 
 
-def _near(ways: Array, origin: Array) -> Array:
+def _near(solutions: Array, origin: Array) -> Array:
     """Return solutions with full turns added so that they are nearest to an origin."""
-    near: Array = ways + 360.0 * np.round((origin - ways) / 360.0)
+    near: Array = solutions + 360.0 * np.round((origin - solutions) / 360.0)
     return near
 
 
-def _beyond(axis: Axis, value: float) -> Fault:
-    text = f"the point lies behind a software limit switch: {_outside(axis, value)}"
+def _limit_fault(axis: Axis, value: float) -> Fault:
+    text = f"the point lies behind a software limit switch: {_limit_text(axis, value)}"
     return Fault("software_limit", text, number=1447, rules=("MOT-15",))
 
 
-def _outside(axis: Axis, value: float) -> str:
+def _limit_text(axis: Axis, value: float) -> str:
     return f"{axis.name} at {round(value, 4) + 0.0:g}, not within {axis.lower:g} to {axis.upper:g}"

@@ -300,7 +300,7 @@ class PosePathCurve:
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
-        robot = self._beside(u, self._table.at(u))
+        robot = self._exact_axes(u, self._table.at(u))
         return np.concatenate((robot, self.others.at(u)), axis=1)
 
     def rates(self, u: Array) -> Rates:
@@ -311,7 +311,7 @@ class PosePathCurve:
         )
         return first, second, third
 
-    def _beside(self, u: Array, references: Array) -> Array:
+    def _exact_axes(self, u: Array, references: Array) -> Array:
         """Return the exact six axes, given approximate ones."""
         robot = self.arm.inverse_near(self._flanges(u), references)
         lost = np.isnan(robot).any(axis=1)
@@ -319,13 +319,13 @@ class PosePathCurve:
             robot[lost] = references[lost]
         return robot
 
-    def _along(self, u: Array, start: Array) -> Array:
+    def _axes_along(self, u: Array, start: Array) -> Array:
         """Return the six axes at increasing parameters, continuous from the start."""
         flanges = self._flanges(u)
         axes = self.arm.inverse_along(flanges, start.tolist())
         return follow(self.arm, flanges, start.tolist()) if axes is None else axes
 
-    def _befores(self, u: Array) -> Array:
+    def _chains_before(self, u: Array) -> Array:
         """Return the transforms before the points of the path, in the chain to the flange."""
         if not self.placement.is_carried:
             return self._before
@@ -335,7 +335,7 @@ class PosePathCurve:
         poses = poses_of(self.tool_path, u)
         is_turned = self.placement.mode is IpoMode.TCP
         tools = np.linalg.inv(poses) if is_turned else poses
-        flanges: Array = self._befores(u) @ tools @ self._after
+        flanges: Array = self._chains_before(u) @ tools @ self._after
         return flanges if is_turned else self.arm.about_tips(flanges, self._tool)
 
     def _points(self, start: Array) -> tuple[Array, Array]:
@@ -343,7 +343,7 @@ class PosePathCurve:
         count = _FEWEST
         while True:
             grid = np.linspace(0.0, 1.0, count)
-            axes = self._along(grid, start)
+            axes = self._axes_along(grid, start)
             rough = np.abs(np.diff(axes, n=4, axis=0)).max()
             if rough < _SMOOTH:
                 break

@@ -52,14 +52,14 @@ class WristCurve(PosePathCurve):
         #: ``None``: the orientation is not that of the path, so only the axes can be blended.
         self.pose_path = None
 
-    def _along(self, u: Array, start: Array) -> Array:
-        return self._beside(u, start + u[:, None] * (self._to - self._from))
+    def _axes_along(self, u: Array, start: Array) -> Array:
+        return self._exact_axes(u, start + u[:, None] * (self._to - self._from))
 
-    def _beside(self, u: Array, references: Array) -> Array:
+    def _exact_axes(self, u: Array, references: Array) -> Array:
         axes = references.copy()
         axes[:, _MAIN:] = self._from[_MAIN:] + u[:, None] * (self._to - self._from)[_MAIN:]
         positions, _ = self.tool_path.at(u)
-        before = self._befores(u)
+        before = self._chains_before(u)
         wanted = (before[..., :3, :3] @ positions[:, :, None])[:, :, 0] + before[..., :3, 3]
         shifts = np.vstack((np.zeros((1, 6)), _STEP * np.eye(6)[:_MAIN]))
         for _ in range(_ROUNDS):

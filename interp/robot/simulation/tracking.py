@@ -187,11 +187,11 @@ class Tracking:
         try:
             measured = self._robot.follow(samples)
         except RobotFault as fault:
-            self._keep(times[times < fault.time], samples.axes, None)
+            self._store(times[times < fault.time], samples.axes, None)
             raise
-        self._keep(times, samples.axes, measured)
+        self._store(times, samples.axes, measured)
 
-    def _keep(self, times: npt.NDArray[np.int64], axes: Array, measured: Measured | None) -> None:
+    def _store(self, times: npt.NDArray[np.int64], axes: Array, measured: Measured | None) -> None:
         if not len(times):
             return
         rows = np.flatnonzero(times % self._cycle == 0)
@@ -212,7 +212,7 @@ class Tracking:
         """Return X to C of the tool in the base in force (n, 6), and X to Z in $WORLD (n, 3)."""
         flanges = self._kinematics.forward(axes[:, :ROBOT_AXES])
         points, tips = np.empty((len(times), 6)), np.empty((len(times), 3))
-        for rows, placement in self._stretches(times):
+        for rows, placement in self._placement_rows(times):
             before = np.linalg.inv(placement.chains_before(axes[rows, ROBOT_AXES:]))
             standing = flanges[rows] @ matrix_of(placement.tool)
             poses = before @ standing
@@ -221,7 +221,7 @@ class Tracking:
             tips[rows] = (placement.feet(axes[rows, ROBOT_AXES:]) @ standing)[:, :3, 3]
         return points, tips
 
-    def _stretches(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:
+    def _placement_rows(self, times: npt.NDArray[np.int64]) -> Iterator[tuple[slice, Placement]]:
         """Yield the rows during which each placement was in force."""
         known = times.tolist()
         starts = [bisect_right(known, time - 1) for time in self._place_times]
