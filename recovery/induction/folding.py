@@ -498,9 +498,10 @@ class Folding:
         return bool(self._ending_words(element))
 
     def _ending_words(self, element: Element) -> frozenset[str]:
+        words = frozenset[str]()
         if isinstance(element, Repeat) and element.operator != "+":
-            return self._words(element.item)
-        return frozenset()
+            words = self._words(element.item)
+        return frozenset() if self.lexer.name in words else words  # any name is no word
 
     def _alternative(self, rule: str, number: int) -> Alternative:
         return self.grammar.by_name[rule].alternatives[number - 1]

@@ -9,7 +9,7 @@ is written as the narrowest rules that read all examples of it.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -311,33 +311,41 @@ class FormWriter:
         return self.rules.names or self.rules.lexer.name
 
 
-def is_loose(form: str, lines: Iterable[Sequence[Symbol]]) -> bool:
-    """Whether a form can be shorter than each of its lines, of lists only the first item counted.
+def is_loose(form: str, lines: Sequence[Sequence[Symbol]]) -> bool:
+    """Whether a form can have fewer operands than any of its lines, lists as short as they may be.
 
     Parts that exclude each other may then all be left out.
     """
-    return _shortest(read_rule(f"form : {form} ;").alternatives) < min(map(_length, lines))
+    words = frozenset[str]().union(*map(_texts, lines))
+    return _fewest(read_rule(f"form : {form} ;").alternatives, words) < min(map(_operands, lines))
 
 
-def _length(line: Sequence[Symbol]) -> int:
-    """The symbols of a line up to its first comma, those in brackets too."""
+def _texts(line: Sequence[Symbol]) -> frozenset[str]:
+    inner = (_texts(symbol.inside) for symbol in line if symbol.inside)
+    return frozenset(symbol.text for symbol in line).union(*inner)
+
+
+def _operands(line: Sequence[Symbol]) -> int:
+    """The operands of a line up to its first comma, those in brackets too."""
     first = split_at_commas(line)[0]
-    return sum(1 if symbol.inside is None else 2 + _length(symbol.inside) for symbol in first)
+    return sum(s.is_operand if s.inside is None else _operands(s.inside) for s in first)
 
 
-def _shortest(alternatives: Iterable[Alternative]) -> int:
-    """How many symbols the shortest of alternatives has."""
-    return min(sum(map(_shortest_of, alternative.elements)) for alternative in alternatives)
+def _fewest(alternatives: Iterable[Alternative], words: Set[str]) -> int:
+    """The operands of that of the alternatives which has fewest, where ``words`` are none."""
+    return min(sum(_fewest_of(e, words) for e in a.elements) for a in alternatives)
 
 
-def _shortest_of(element: Element) -> int:
+def _fewest_of(element: Element, words: Set[str]) -> int:
     match element:
         case Repeat(item=item, operator=operator):
-            return _shortest_of(item) if operator == "+" else 0
+            return _fewest_of(item, words) if operator == "+" else 0
         case Group(alternatives=alternatives):
-            return _shortest(alternatives)
+            return _fewest(alternatives, words)
+        case Reference(name=name):
+            return int(name not in words)
         case _:
-            return 1
+            return 0
 
 
 def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
@@ -354,7 +362,8 @@ def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
 def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int) -> int:
     """How many symbols at the end of a list's first piece belong to the list."""
     texts = {text for shape in shapes for text in shape}
-    if _sketch(s.text for s in first) in set(map(_sketch, shapes)):
+    heads = [s.text for s in first]
+    if _sketch(heads) in set(map(_sketch, shapes)):
         return len(first)
     if len(first) <= longest and texts.issuperset(s.text for s in first):
         return len(first)
@@ -364,7 +373,9 @@ def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int)
             if size == 1 and [s.text for s in first[-3:-1]] == ["", _EQUALS]:
                 return 3
             return size
-    return 0
+    # one that is set to nothing where the others are is an item too
+    are_set = all(shape[:2] == ("", _EQUALS) for shape in shapes)
+    return int(are_set and len(first) > 1 and first[-1].is_operand and _EQUALS not in heads)
 
 
 def _sketch(texts: Iterable[str]) -> tuple[str, ...]:

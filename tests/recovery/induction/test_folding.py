@@ -90,6 +90,8 @@ def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
         "one form for kindWord in line",
         "one form for DIM in line",
         "one form for DIM in later",
+        "line reads what DIM begins in later",
+        "later reads what DIM begins in line",
         "line reads what GO begins in later",
         "later reads what GO begins in line",
         "a list behind DIM in line",

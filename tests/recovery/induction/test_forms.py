@@ -5,7 +5,7 @@ import pytest
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.forms import FormWriter, samples_of
+from recovery.induction.forms import FormWriter, is_loose, samples_of
 from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
 
 _GRAMMAR = """grammar Toy;
@@ -138,6 +138,28 @@ def test_a_word_between_a_word_and_operands(writer: FormWriter) -> None:
 def test_names_with_a_sign_between(writer: FormWriter) -> None:
     """An operand that is never anything but two names and a sign is written so."""
     assert "PAIR NAME '+' NAME" == writer.form([_symbols(writer, "PAIR A + B")])
+
+
+def test_an_item_that_is_set_to_nothing(writer: FormWriter) -> None:
+    """It is an item where the items of other lists are set to something."""
+    lines = ("LIST A = 1, B = 2", "LIST INSIDE ON A")
+    form = "LIST (INSIDE expression)? NAME ('=' expression)? (',' NAME ('=' expression)?)*"
+    assert form == writer.form([_symbols(writer, line) for line in lines])
+
+
+@pytest.mark.parametrize(
+    ("form", "loose"),
+    [
+        ("PAIR (LEFT NAME)? (LIST expression index?)?", True),
+        ("PAIR (LEFT NAME | LIST expression index?)", False),
+        ("PAIR LEFT? LIST? expression index?", False),
+        ("PAIR '(' NAME? ')'", True),
+    ],
+)
+def test_a_loose_form(writer: FormWriter, form: str, loose: bool) -> None:
+    """Its operands may all be left out, where each line has one."""
+    lines = [_symbols(writer, line) for line in ("PAIR LEFT A", "PAIR LIST 1", "PAIR LIST A[1]")]
+    assert loose == is_loose(form, lines)
 
 
 def test_a_list_may_hold_itself() -> None:
