@@ -316,12 +316,13 @@ def is_loose(form: str, lines: Sequence[Sequence[Symbol]]) -> bool:
 
     Parts that exclude each other may then all be left out.
     """
-    words = frozenset[str]().union(*map(_texts, lines))
+    words = frozenset[str]().union(*map(texts_of, lines))
     return _fewest(read_rule(f"form : {form} ;").alternatives, words) < min(map(_operands, lines))
 
 
-def _texts(line: Sequence[Symbol]) -> frozenset[str]:
-    inner = (_texts(symbol.inside) for symbol in line if symbol.inside)
+def texts_of(line: Sequence[Symbol]) -> frozenset[str]:
+    """The texts of a line's symbols, those in brackets too."""
+    inner = (texts_of(symbol.inside) for symbol in line if symbol.inside)
     return frozenset(symbol.text for symbol in line).union(*inner)
 
 

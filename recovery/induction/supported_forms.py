@@ -9,9 +9,9 @@ from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.notation.model import Element, Reference, walk
-from recovery.induction.forms import FormWriter
+from recovery.induction.forms import FormWriter, is_loose, texts_of
 from recovery.induction.line_symbols import WORD, LineSymbols
-from recovery.induction.symbols import BRACKETS, Symbol, operands_of
+from recovery.induction.symbols import BRACKETS, UNKNOWN, Symbol, operands_of
 from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
 
@@ -42,7 +42,8 @@ class SupportedForms:
         having = {shape: self.origins_of(numbers) for shape, numbers in shapes.items()}
         least = min(least, len(frozenset[str]().union(*having.values())))
         known = self.supported(having, old, max(least, self._least))
-        shapes = {shape: shapes[shape] for shape in known}
+        # what has a character that begins no token has no form
+        shapes = {shape: shapes[shape] for shape in known if UNKNOWN not in texts_of(shape)}
         lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
         choices = [
             [shape for shape, numbers in shapes.items() if len(numbers) >= least]
@@ -52,8 +53,8 @@ class SupportedForms:
             [shape for shape in shapes if all(lines[symbol.text] >= least for symbol in shape)]
             for least in (2, 4)
         ]
-        texts = [self.writer.form([*old, *chosen]) for chosen in choices if chosen]
-        yield from dict.fromkeys(text for text in texts if text)
+        found = [(self.writer.form(some), some) for c in choices if c for some in [[*old, *c]]]
+        yield from dict.fromkeys(t for t, some in found if t and not is_loose(t, some))
 
     def origins_of(self, numbers: Iterable[int]) -> frozenset[str]:
         """Those that have one of some lines."""

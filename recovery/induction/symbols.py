@@ -20,6 +20,8 @@ from recovery.proposals.rule_matcher import RuleMatcher
 
 #: Signs that come in pairs.
 BRACKETS: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
+#: The text of what is no token.
+UNKNOWN = "?"
 # Signs behind a name at the head of a line.
 _BEHIND_NAMES = frozenset({"=", ".", "[", "(", ":"})
 #: A token of a line: its kind, and the word it is meant as where the grammar lacks that.
@@ -380,7 +382,7 @@ class SymbolReader:
     def text(self, kind: int) -> str:
         """What a rule writes for a token."""
         if kind <= 0:
-            return "?"
+            return UNKNOWN
         shown = self.lexer.display[kind]
         is_sign = shown != self.lexer.names[kind] and not self.lexer.is_keyword(kind)
         return f"'{shown}'" if is_sign else self.lexer.names[kind]
