@@ -239,8 +239,7 @@ class Folding:
     def _named_types(self) -> Iterator[Inferred]:
         """Words that declare as types do are names: where a type may stand a name may."""
         heads = [self._words(e[0]) for _, _, e in self._lines() if self._is_name(e[1])]
-        known = self.rules.type_words - self.rules.named_words
-        of_types = [words for words in heads if len(words & known) > 1]
+        of_types = [words for words in heads if len(words & self.types) > 1]
         for word in sorted(frozenset[str]().union(*of_types) - self.types - {self.lexer.name}):
             if self.rules.names:
                 edits = (AddAlternative(self.rules.names, word),)
@@ -322,8 +321,8 @@ class Folding:
                     yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
 
     def _headers(self) -> Iterator[Inferred]:
-        """Any operand where a name is all that opens a block, if most others open with any."""
-        widest, end = self.rules.widest, self.profile.line_end
+        """Any operand where a variable is all that opens a block, if most others open with any."""
+        widest, end, variable = self.rules.widest, self.profile.line_end, self.writer.variable
         alone: list[tuple[str, int]] = []
         others = 0
         for name in self.rules.reaches:
@@ -334,7 +333,8 @@ class Folding:
                     case (Reference(is_token=True), Reference() as operand, following, *_):
                         others += operand.name == widest
                         ends = self._source(name, [following]) == end
-                        alone += [(name, number)] if ends and self._is_name(operand) else []
+                        is_one = self._is_name(operand) or operand.name == variable
+                        alone += [(name, number)] if ends and is_one else []
         for name, number in alone if others > len(alone) else ():
             edits = (Replace(name, (number, 2), widest or ""),)
             title = f"any operand opens a block in {name} {number}"

@@ -9,7 +9,7 @@ is written as the narrowest rules that read all examples of it.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -188,12 +188,23 @@ class FormWriter:
             if rules is None:
                 return None
             words += rules
-        words = list(dict.fromkeys(words))
+        words = [word for word in dict.fromkeys(words) if not self._is_covered(word, words)]
         text = " | ".join(words)
         is_one = len(words) == 1 and " " not in text
         if factor.often:
             return f"{text if is_one else f'({text})'}{factor.often}"
         return text if len(words) == 1 else f"({text})"
+
+    def _is_covered(self, rule: str, others: Collection[str]) -> bool:
+        """Whether a rule is a choice of words each of which another of the rules reads."""
+        known = self.rules.grammar.by_name.get(rule)
+        every = [a.elements for a in known.alternatives] if known and not known.is_lexer else [()]
+        words = {e[0].name for e in every if len(e) == 1 and isinstance(e[0], Reference)}
+        kinds = self.rules.lexer.kind_of
+        if len(words) < len(every) or not words <= kinds.keys():
+            return False
+        read = (self.rules.matcher.rules_for((kinds[word],)) for word in words)
+        return bool(frozenset[str](others).difference({rule}).intersection(*read))
 
     def cover(self, operands: Sequence[Operand]) -> list[str] | None:
         """The narrowest rules or tokens that read the operands together; ``None`` without any."""
