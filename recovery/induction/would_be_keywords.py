@@ -188,7 +188,8 @@ class WouldBeKeywords:
     def _of_types(self) -> frozenset[str]:
         """Names of types: between a word and a last operand, where others have a type.
 
-        None begins a line or is ahead of a type. And the names behind them: what is declared.
+        None begins a line or is ahead of two operands. And the names behind them, of what they
+        declare.
         """
         typed: set[tuple[str, str]] = set()
         found: dict[tuple[str, str], set[str]] = defaultdict(set)
@@ -200,10 +201,10 @@ class WouldBeKeywords:
             for place in range(1, len(line) - 1):
                 if is_value[place + 1] and line[place] in self._types:
                     typed.add((line[0], line[place - 1]))
-                elif kinds[place] == self._name:
-                    if line[place + 1] in self._types or self._is_beside(line, place + 1):
+                elif is_value[place + 1] and kinds[place] == self._name:
+                    if self._is_beside(line, place + 1):
                         others.add(line[place])
-                    elif is_value[place + 1]:
+                    else:
                         found[line[0], line[place - 1]].add(line[place])
         names = frozenset[str]().union(*(found[around] for around in typed)) - others
         declared = {b for line in self.corpus.lines for a, b in pairwise(line) if a in names}
