@@ -22,11 +22,15 @@ from conformance.evaluation.motions import (
     follows,
 )
 from conformance.evaluation.path_geometry import change_rates
+from conformance.evaluation.place_laws import axes_of
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
 
-#: Fraction of a time that rounding may add, and seconds for its two ends.
-_SHARE, _ENDS = 5e-4, 3e-4
+#: Fraction and seconds by which a duration may be shorter or longer than computed: ends lie between
+#: two samples, so the computed length may be too large.
+_SHORTER, _LONGER = (1e-4, 1e-4), (1e-5, 2e-5)
+#: Seconds by which rounding to microseconds may change a duration between known ends.
+_ROUNDED: Final = 1.5e-6
 #: Seconds below which a motion is not checked: there are too few samples between its ends.
 _SHORTEST: Final = 0.2
 #: Fraction of a time by which a motion back may take longer, because its samples differ.
@@ -46,8 +50,9 @@ _RAMP: Final = 0.08
 
 def duration_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield motions with an implausible duration, in a run whose override is 100."""
-    for one in motions:
-        yield from _motion_violations(one)
+    for before, one in zip((None, *motions), motions, strict=False):
+        yield from _start_violations(before, one)
+        yield from _motion_violations(one, None if before is None else _known_way(before, one))
     yield from _sequence_violations(motions)
 
 
@@ -68,11 +73,27 @@ def seconds_of(length: float, speed: float, acceleration: float, jerk: float) ->
     return 2.0 * ramp(low)
 
 
-def _motion_violations(one: EndedMotion) -> Iterator[Violation]:
+def _start_violations(before: EndedMotion | None, one: EndedMotion) -> Iterator[Violation]:
+    """Yield a motion from rest that does not begin at the microsecond from which it can.
+
+    That is when it is planned, or when the motion before ends.
+    """
+    if not one.begins or one.is_held or (before is not None and not follows(before, one)):
+        return
+    if before is None and one.motion.number > 1:
+        return
+    wanted = one.planned if before is None else max(one.planned, before.end)
+    if one.start != wanted:
+        law = "a motion from rest begins as soon as it is planned and the one before has ended"
+        yield one.broken(law, f"{one.start} us, not {wanted} us")
+
+
+def _motion_violations(one: EndedMotion, way: Array | None) -> Iterator[Violation]:
     """Yield a PTP that differs from the time of its axes [MOT-20], or an implausible LIN or CIRC.
 
     Implausible is faster than speed and acceleration allow, or for a LIN slower although all axes
     are far from their limits. A CIRC also has centripetal acceleration, so it may be slower.
+    ``way`` is the movement of the axes if the program tells it: then microseconds count.
     """
     motion = one.motion
     took = (one.end - one.start) / 1e6
@@ -81,7 +102,7 @@ def _motion_violations(one: EndedMotion) -> Iterator[Violation]:
     is_free = True
     if motion.kind in ("PTP", "SPTP"):
         wanted, law, rule = (
-            _seconds_of_axes(one, one.ends[1] - one.ends[0]),
+            _seconds_of_axes(one, one.ends[1] - one.ends[0] if way is None else way),
             "a PTP is as quick as its axes allow",
             "MOT-20",
         )
@@ -93,11 +114,26 @@ def _motion_violations(one: EndedMotion) -> Iterator[Violation]:
             "",
         )
         is_free = took > wanted and "CIRC" not in motion.kind and _largest_load(one) < _IDLE
-    rounding = wanted * _SHARE + _ENDS
-    if max(took, wanted) < _SHORTEST:
+    shorter, longer = (fraction * wanted + ends for fraction, ends in (_SHORTER, _LONGER))
+    if way is not None:
+        shorter = longer = _ROUNDED
+    elif max(took, wanted) < _SHORTEST:
         return
-    if wanted and (took < wanted - rounding or (is_free and took > wanted + rounding)):
+    if wanted and (took < wanted - shorter or (is_free and took > wanted + longer)):
         yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
+
+
+def _known_way(before: EndedMotion, one: EndedMotion) -> Array | None:
+    """Return the movement of the axes in a PTP between two targets that are given as axes."""
+    if not before.stops or not one.begins or not follows(before, one) or before.is_held:
+        return None
+    if before.motion.parts or one.motion.parts or one.motion.kind not in ("PTP", "SPTP"):
+        return None
+    unknown = np.full(one.ends.shape[1], math.nan)
+    start = axes_of(before, unknown)
+    end = axes_of(one, unknown if start is None else start)
+    way = None if start is None or end is None else end - start
+    return None if way is None or np.isnan(way).any() else way
 
 
 def _seconds_of_axes(one: EndedMotion, way: Array) -> float:

@@ -128,7 +128,7 @@ def _programmed_paths(
             axes = one.ends[0] if one.begins else axes
             point = None if axes is None else _tool(one, axes)[0]
         placement = one.motion.settings.placement
-        start, axes = axes, one.ends[1] if one.stops else _axes(one, axes)
+        start, axes = axes, one.ends[1] if one.stops else axes_of(one, axes)
         origin, point = point, _point(one, one.motion.target, point)
         if axes is not None:
             point = _tool(one, axes)[0]
@@ -169,7 +169,7 @@ def _tool(one: EndedMotion, axes: Array) -> Array:
     return points
 
 
-def _axes(one: EndedMotion, before: Array | None) -> Array | None:
+def axes_of(one: EndedMotion, before: Array | None) -> Array | None:
     """Return the axes of a target given as axes; omitted ones keep their value [MOT-16]."""
     names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
     target = one.motion.target

@@ -186,7 +186,8 @@ def test_modules_decide_semantics() -> None:
     names = set(all_mutants())
     functions = [one for one, _, _ in _changes(module)]
     left = {one for at, one in enumerate(functions) if f"{module}:{at}" not in names}
-    assert {f"TreeExecutor.{one}" for one in ("ask_at", "frames", "look", "put", "select")} == left
+    of_debuggers = ("ask_at", "break_at", "frames", "look", "put", "select")
+    assert {f"TreeExecutor.{one}" for one in of_debuggers} == left
 
 
 def test_lines_that_a_case_runs() -> None:

@@ -185,6 +185,32 @@ def test_a_ptp_is_as_quick_as_its_axes() -> None:
     assert ("MOT-02", 7) in broken(settings_of(7, axis_velocity=(10.0,) * 12))
 
 
+@pytest.mark.parametrize(("later", "is_right"), [(0, True), (1, True), (3, False), (-3, False)])
+def test_a_ptp_between_known_axes_takes_its_time_to_the_microsecond(
+    later: int, is_right: bool
+) -> None:
+    """Rounding is one; three are too many, and too few."""
+    run = seen(_SHORT)
+    events = tuple(
+        replace(one, time=(one.time or 0) + later)
+        if (one.kind, one.fields.get("motion")) in {("motion_end", 2), ("motion_start", 3)}
+        else one
+        for one in run.events
+    )
+    motions = tuple(ended(replace(run, events=events)))[:2]
+    found = [one.event.line for one in duration_violations(motions) if one.event]
+    assert [7] * (not is_right) == found
+
+
+def test_a_motion_from_rest_begins_at_once() -> None:
+    """Not a microsecond after the one before."""
+    path = seen().path
+    assert path is not None
+    late = replace(path, motions=tuple((time + 1, motion) for time, motion in path.motions))
+    found = [one.law for one in duration_violations(tuple(ended(replace(seen(), path=late))))]
+    assert any("begins as soon as" in law for law in found)
+
+
 @pytest.mark.parametrize(
     ("line", "changed"),
     [
