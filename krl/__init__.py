@@ -1,6 +1,6 @@
-"""The workbench for KRL: the command `krl`, and `check`, `run`, `recover` and `load_backup`.
+"""The KRL workbench: the command `krl`, and `check`, `run`, `recover` and `load_backup`.
 
-What is imported from here is loaded when it is first asked for, as the command starts quickly.
+The functions are imported on first use, so that the command starts quickly.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ __all__ = ["check", "load_backup", "recover", "run"]
 
 
 def __getattr__(name: str) -> Any:
-    """A function of `krl.library`."""
+    """Return a function of `krl.library`, imported on first use."""
     if name not in __all__:
         raise AttributeError(f"module 'krl' has no attribute {name!r}")
     if hiding := hiding_package():

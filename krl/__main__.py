@@ -1,4 +1,4 @@
-"""`python -m krl` is `krl`, for places where scripts are not on the search path."""
+"""`python -m krl` is `krl`, for systems where scripts are not on the search path."""
 
 from krl.cli import main
 

@@ -1,4 +1,4 @@
-"""The entry point of `krl`; `krl.commands.app` says which commands there are."""
+"""The entry point of `krl`; `krl.commands.app` lists the commands."""
 
 import os
 import sys
@@ -8,12 +8,12 @@ from krl.hidden_packages import hiding_package
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `krl` with `arguments` (those of the process by default) and return its exit status."""
+    """Run `krl` with `arguments` (default: those of the process) and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
     if hiding := hiding_package():
         sys.stderr.write(f"krl: {hiding}\n")
         return 2
-    from krl import errors  # what could be hidden is imported below
+    from krl import errors  # imports packages that could be hidden, so not at the top
     from krl.commands.app import app
 
     if "_KRL_COMPLETE" in os.environ:  # the shell asks what could be typed

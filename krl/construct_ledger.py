@@ -12,7 +12,7 @@ from krl.errors import as_input_errors, one_line
 if TYPE_CHECKING:
     from recovery.ledger.evaluation import Evaluation
 
-# In the working folder: only a checkout's grammar grows.
+# Paths in the working folder: constructs can only be accepted in a checkout.
 GRAMMAR = Path("grammar", "KRL.g4")
 PRELIMINARY = Path("grammar", "preliminary.g4")
 GENERATED = Path("grammar", "_generated")
@@ -20,7 +20,7 @@ LEDGER = Path("grammar", "constructs")
 
 
 def checkout_or_packaged(path: Path) -> Path:
-    """Where to read one of these: in the working folder of a checkout, or in the package."""
+    """Return where to read one of these paths: in the checkout, or else in the package."""
     from grammar.notation.generate import GRAMMAR as OURS
 
     return path if path.parent.is_dir() else OURS.parent / path.relative_to("grammar")
@@ -28,7 +28,7 @@ def checkout_or_packaged(path: Path) -> Path:
 
 @contextmanager
 def expected_errors() -> Iterator[None]:
-    """Turn what the packages below raise about input into `InputError`."""
+    """Raise exceptions of the packages below about input as `InputError`."""
     from grammar.notation.generate import GenerationError
     from grammar.notation.model import GrammarError
     from recovery.ledger.construct import LedgerError
@@ -49,7 +49,7 @@ def expected_errors() -> Iterator[None]:
 
 
 def print_evaluation(found: "Evaluation") -> None:
-    """Print the figures of a construct that was evaluated, and the objections to it."""
+    """Print the figures of an evaluated construct, and the objections to it."""
     from recovery.ledger.overview import counts_of
 
     construct = found.construct
@@ -71,13 +71,13 @@ def print_evaluation(found: "Evaluation") -> None:
 
 
 def print_refusals(refusals: Iterable[tuple[str, str]]) -> None:
-    """Print where something is refused, and why."""
+    """Print the refusals: where and why."""
     for where, why in refusals:
         typer.echo(one_line(f"refused: {where}: {why}"))
 
 
 def print_table(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print in columns as wide as their text, so that pipes and logs get each row on one line."""
+    """Print rows in columns as wide as their text, one line per row in pipes and logs."""
     lines = [[one_line(cell) for cell in row] for row in ((heading, *rows) if heading else rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     for line in lines:

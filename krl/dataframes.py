@@ -27,14 +27,14 @@ Record = Mapping[str, Any] | Sequence[Mapping[str, Any]]
 
 
 class CommandError(Exception):
-    """A command could not be carried out; the text is what it said."""
+    """A command failed; the message is what it wrote to stderr."""
 
 
 def record(command: str, *arguments: str | Path) -> Any:
-    """Run a ``krl`` command that knows ``--json`` in this process, and return what it wrote.
+    """Run a ``krl`` command that has ``--json`` in this process, and return its record.
 
-    `krl check` has ``--format json`` instead, which is seen to. Findings are no error. Raises
-    `CommandError` where the command ends with status 2.
+    For `krl check`, ``--format json`` is used instead. Findings are no error. Raises `CommandError`
+    if the command ends with status 2.
     """
     from krl.cli import main
 
@@ -52,7 +52,7 @@ def record(command: str, *arguments: str | Path) -> Any:
 
 
 def clusters(survey: Record | Path | str) -> pd.DataFrame:
-    """A row a cluster: id, title, rule, failures, files, origins, unlocks, reproducer."""
+    """Return a row for each cluster: id, title, rule, failures, files, origins and more."""
     columns = ("id", "title", "rule", "failures", "files", "origins", "unlocks", "reproducer")
     rows = (
         {**one, "reproducer": _text(one.get("reproducer"))} for one in _list(survey, "clusters")
@@ -61,7 +61,7 @@ def clusters(survey: Record | Path | str) -> pd.DataFrame:
 
 
 def proposals(survey: Record | Path | str) -> pd.DataFrame:
-    """A row a proposed edit, with the id of its cluster."""
+    """Return a row for each proposed edit, with the id of its cluster."""
     columns = ("cluster", "edit", "restores", "breaks", "accepts_negatives", "ambiguities")
     rows = (
         {"cluster": cluster["id"], **proposal}
@@ -72,13 +72,13 @@ def proposals(survey: Record | Path | str) -> pd.DataFrame:
 
 
 def failures(survey: Record | Path | str) -> pd.DataFrame:
-    """A row a parse failure: path, line, column, token, text, rule, cluster, follows."""
+    """Return a row for each parse failure: path, line, column, token, text, rule and more."""
     columns = ("path", "line", "column", "token", "text", "rule", "cluster", "follows")
     return frame(_list(survey, "failures"), columns)
 
 
 def growth(replay: Record | Path | str) -> pd.DataFrame:
-    """A row a step of the ledger: number, id, title, files that parse, bytes, and the metrics."""
+    """Return a row for each step of the ledger: number, id, title, files, bytes, metrics."""
     columns = ("number", "id", "title", "parsed", "files", "parsed_bytes", "bytes", "restored")
     steps = _list(replay, "steps")
     rows = [{**step, **step.get("metrics", {})} for step in steps]
@@ -87,13 +87,13 @@ def growth(replay: Record | Path | str) -> pd.DataFrame:
 
 
 def findings(checked: Record | Path | str) -> pd.DataFrame:
-    """A row a finding of ``krl check``: path, line, column, severity, code, message."""
+    """Return a row for each finding of ``krl check``: path, position, severity, code, message."""
     columns = ("path", "line", "column", "end_column", "severity", "code", "message")
     return frame(_list(checked, None), columns)
 
 
 def trace(file: Path | str) -> pd.DataFrame:
-    """A row an event of a trace, the JSON Lines of ``krl run --trace``: t in µs, task, kind, at."""
+    """Return a row for each event of a trace (``krl run --trace``): t in µs, task, kind, at."""
     text = Path(file).read_text(encoding="utf-8")
     return frame(
         (json.loads(line) for line in text.splitlines()), ("t", "task", "kind", "at"), True
@@ -101,7 +101,10 @@ def trace(file: Path | str) -> pd.DataFrame:
 
 
 def path(file: Path | str) -> pd.DataFrame:
-    """A row an interpolation cycle of ``krl run --path``: t in µs, axes in degrees, pose in mm."""
+    """Return a row for each interpolation cycle (``krl run --path``): t in µs, axes, pose.
+
+    Axes are in degrees, the pose in mm.
+    """
     import pandas as pd
 
     is_text = Path(file).suffix.lower() == ".csv"
@@ -109,13 +112,13 @@ def path(file: Path | str) -> pd.DataFrame:
 
 
 def cases(conformed: Record | Path | str) -> pd.DataFrame:
-    """A row a conformance case: name, suite, title, rules, phase, verdict, negative, may_fail."""
+    """Return a row for each conformance case: name, suite, title, rules, phase, verdict …."""
     columns = ("name", "suite", "title", "rules", "phase", "verdict", "negative", "may_fail")
     return frame(_list(conformed, "cases"), columns)
 
 
 def results(conformed: Record | Path | str) -> pd.DataFrame:
-    """A row a case on an executor and robot: name, executor, robot, verdict, reason, seconds."""
+    """Return a row for each case on an executor and robot: verdict, reason, seconds and more."""
     columns = ("name", "executor", "robot", "verdict", "reason", "ending", "seconds")
     rows = (
         {"name": case["name"], **result}
@@ -126,13 +129,13 @@ def results(conformed: Record | Path | str) -> pd.DataFrame:
 
 
 def rules(conformed: Record | Path | str) -> pd.DataFrame:
-    """A row a rule of KRL: id, tier, may_fail, statement, and the cases that show it."""
+    """Return a row for each rule of KRL: id, tier, may_fail, statement, cases and more."""
     columns = ("id", "tier", "may_fail", "profile", "source", "statement", "cases")
     return frame(_list(conformed, "rules"), columns)
 
 
 def nightly_runs(history: Path | str = Path("reports", "history.jsonl")) -> pd.DataFrame:
-    """A row a nightly run: date, files that parse, verdicts, divergences, every bench figure."""
+    """Return a row for each nightly run: date, files that parse, verdicts, bench figures."""
     from reports.nightly.history import read_history
 
     rows = []
@@ -150,7 +153,7 @@ def nightly_runs(history: Path | str = Path("reports", "history.jsonl")) -> pd.D
 
 
 def _list(given: Record | Path | str, key: str | None) -> list[Mapping[str, Any]]:
-    """The rows under a key of a record, or of the file that holds it."""
+    """Return the rows under a key of a record or of the file with the record."""
     loaded: Any = given
     if isinstance(given, str | Path):
         loaded = json.loads(Path(given).read_text(encoding="utf-8"))
@@ -169,7 +172,10 @@ def _text(reproducer: Any) -> str:
 def frame(
     rows: Iterable[Mapping[str, Any]], columns: Sequence[str], is_open: bool = False
 ) -> pd.DataFrame:
-    """The rows with these columns, which are there without any row; ``is_open``: and others."""
+    """Return the rows with these columns, which exist even without rows.
+
+    With ``is_open``, other columns of the rows follow.
+    """
     import pandas as pd
 
     table = pd.DataFrame(list(rows))

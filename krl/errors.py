@@ -1,8 +1,8 @@
-"""Expected errors become one line on stderr and an exit status here, and only here.
+"""The place where expected errors become one line on stderr and an exit status.
 
-Commands return their status, or raise `InputError` with a sentence for the person at the keyboard.
-No exception leaves `run` as a traceback, but for a defect in krl itself where the environment
-variable KRL_TRACEBACK is set.
+Commands return their status, or raise `InputError` with a sentence for the user. No exception
+leaves `run` as a traceback, except for a defect in krl itself if the environment variable
+KRL_TRACEBACK is set.
 """
 
 import errno
@@ -22,20 +22,20 @@ FINE: Final = 0
 FINDINGS: Final = 1
 BAD_INPUT: Final = 2
 INTERRUPTED: Final = 130
-"""As a shell reports a program that Ctrl-C ended."""
+"""The status that shells report for a program ended by Ctrl-C."""
 READER_GONE: Final = 141
-"""As a shell reports a program whose reader, such as `head`, went away: no result to trust."""
+"""The status that shells report for a program whose reader, such as `head`, has gone."""
 
-_LONGEST_LINE = 2_000  # words of input may be of any length; two long paths fit in
+_LONGEST_LINE = 2_000  # enough for two long paths; words of the input may have any length
 
 
 class InputError(Exception):
-    """Wrong usage or unreadable input; its text is the line that the person reads."""
+    """Wrong usage or unreadable input; the message is the line that the user reads."""
 
 
 @contextmanager
 def as_input_errors(*kinds: type[Exception]) -> Iterator[None]:
-    """Raise exceptions of these kinds, whose texts a person can act on, as `InputError`."""
+    """Raise exceptions of these kinds, whose messages a user can act on, as `InputError`."""
     try:
         yield
     except kinds as error:
@@ -43,20 +43,20 @@ def as_input_errors(*kinds: type[Exception]) -> Iterator[None]:
 
 
 def one_line(text: str) -> str:
-    """`text` on one line: blanks folded, anything that could steer a terminal spelt out."""
+    """Return `text` on one line, with blanks folded and control characters escaped."""
     return shown(" ".join(text.split()))
 
 
 def shown(text: str) -> str:
-    """`text`, which is a line, with anything that could steer a terminal spelt out."""
+    """Return a line with control characters escaped, so that it cannot steer a terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
-    """Run the command line `arguments` (those of the process by default); return the status.
+    """Run the command line `arguments` (default: those of the process); return the status.
 
-    A command may return its status, or nothing for 0. The status is 2, after one line on stderr,
-    for wrong usage, unreadable input, and a defect of ours.
+    A command may return its status, or nothing for 0. Wrong usage, unreadable input and defects
+    give one line on stderr and the status 2.
     """
     given = list(sys.argv[1:] if arguments is None else arguments)
     if os.name == "nt":  # shells there leave wildcards to the program
@@ -107,7 +107,7 @@ def _refuse(message: str, status: int = BAD_INPUT, name: str = "krl: ") -> int:
 
 
 def _usage(error: typer.TyperException) -> str:
-    """What is wrong with the command line, and where to read how it goes."""
+    """Return what is wrong with the command line, and where to find help."""
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "krl"
     # Pydantic puts the words in front of what a converter of an option says.
@@ -121,7 +121,7 @@ def _about(error: OSError) -> str:
 
 
 def _expanded(arguments: Sequence[str]) -> list[str]:
-    """`arguments` with every wildcard that fits something replaced by what it fits."""
+    """Return `arguments` with wildcards replaced by the matching files, if there are any."""
     expanded: list[str] = []
     for argument in arguments:
         wild = "*" in argument or "?" in argument
@@ -131,7 +131,7 @@ def _expanded(arguments: Sequence[str]) -> list[str]:
 
 
 def _print_anything() -> None:
-    """Let a file name that the console cannot show be printed as escapes."""
+    """Make the streams escape characters that the console cannot show."""
     for stream in (sys.stdout, sys.stderr):
         if reconfigure := getattr(stream, "reconfigure", None):
             reconfigure(errors="backslashreplace")
@@ -145,7 +145,7 @@ def _reader_gone(error: OSError) -> bool:
 
 
 def _leave_quietly() -> int:
-    # What is still buffered would fail once more when Python closes the stream.
+    # The rest of the buffer would fail again when Python closes the stream.
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)

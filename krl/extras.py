@@ -1,4 +1,4 @@
-"""Packages that only some commands need, and the extras of the package that install them."""
+"""Packages that only some commands need, and the extras that install them."""
 
 import json
 import sys
@@ -27,15 +27,15 @@ _EXTRA_OF = {
     "xdist": "test",
 }
 
-#: Packages that the arm imports when it first needs them, which would be in the midst of work.
+#: Packages that the arm imports on first use, in the middle of a run.
 ARM = ("scipy",)
 
 
 @contextmanager
 def expected_extras(*names: str) -> Iterator[None]:
-    """Turn the absence of such a package into `InputError`; any other is a defect.
+    """Raise `InputError` if an optional package is missing; for other packages it is a defect.
 
-    ``names`` are packages that are imported later: their absence is found at once.
+    ``names`` are packages that are imported later and are checked at once.
     """
     try:
         need(*names)
@@ -48,7 +48,7 @@ def expected_extras(*names: str) -> Iterator[None]:
 
 
 def need(*names: str) -> None:
-    """Raise `InputError` where some of the packages are not installed, before any work."""
+    """Raise `InputError` if some of the packages are not installed."""
     if missing := [name for name in names if find_spec(name) is None]:
         raise _refused(missing)
 
@@ -62,9 +62,10 @@ def _refused(missing: Sequence[str]) -> InputError:
 
 
 def _cure(extras: set[str]) -> str:
-    """The command that installs extras, by the tool and from the file that installed us.
+    """Return the command that installs extras with the tool that installed krl.
 
-    The environments of `uv tool` and pipx have no pip, and are made anew: what is there is named.
+    The environments of `uv tool` and pipx have no pip and have to be reinstalled, so the extras
+    that are already installed are included.
     """
     from importlib import metadata
 

@@ -1,4 +1,4 @@
-"""Whether another project hides a package of ours; imports nothing that may be hidden."""
+"""Whether another project hides one of our packages; imports nothing that could be hidden."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -7,7 +7,7 @@ _OURS = ("conformance", "grammar", "interp", "recovery", "reports", "support")
 
 
 def hiding_package() -> str | None:
-    """What to say, in one line, where another package hides one of ours: the names are common."""
+    """Return a message if another package hides one of ours, whose names are common; else None."""
     home = Path(__file__).parents[1]
     for name in _OURS:
         spec = find_spec(name)

@@ -19,7 +19,7 @@ from grammar.semantics.predefined import System
 from support.files.atomic_write import write_atomic
 
 _EDITORS = Path(__file__).parents[1] / "editors"
-#: The rules whose words have a colour of their own.
+#: Rules of the grammar whose words have a colour of their own.
 _MOTIONS = "motion splineMotion splineBlock approximatedSplineMotion emilyMotion criterion"
 _TYPES = "predefinedType positionType"
 _PATTERNS = "NAME ENUM_CONSTANT INTEGER REAL_NUMBER BIT_STRING STRING HEADER COMMENT"
@@ -28,10 +28,10 @@ _OPERATORS = "disjunction exclusion conjunction factor"
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """Words by their colour, each in one row, sorted, and patterns of tokens by their names.
+    """The words of each colour, sorted, and the patterns of some tokens by name.
 
-    ``contextual`` are keywords that can be names too: they are names before ``=``, ``[``, ``.``,
-    ``(`` and behind a dot.
+    ``contextual`` are keywords that can also be names: before ``=``, ``[``, ``.`` or ``(``, and
+    after a dot.
     """
 
     keywords: tuple[str, ...]
@@ -46,7 +46,7 @@ class Words:
 
 @cache
 def words() -> Words:
-    """The words of the grammar in force, and the predefined routines."""
+    """Return the words of the current grammar, and the predefined routines."""
     grammar = krl_grammar()
     left = {text for text in grammar.literal_tokens if text[0].isalpha()}
 
@@ -67,7 +67,7 @@ def words() -> Words:
 
 
 def _tokens(grammar: Grammar, rules: list[str]) -> set[str]:
-    """The words of the tokens that some rules name."""
+    """Return the texts of the tokens in some rules."""
     texts = {name: text for text, name in grammar.literal_tokens.items()}
     return {
         texts[node.name]
@@ -164,7 +164,7 @@ def _vim() -> str:
     return "\n".join([*lines, "let b:current_syntax = 'krl'", ""])
 
 
-#: What is made, and from what.
+#: The generated files and the functions that generate them.
 FILES = {
     _EDITORS / "vscode" / "syntaxes" / "krl.tmLanguage.json": _textmate,
     _EDITORS / "vim" / "syntax" / "krl.vim": _vim,
@@ -172,7 +172,7 @@ FILES = {
 
 
 def main() -> int:
-    """Write the files, or say which are stale."""
+    """Write the files, or print which ones are stale."""
     parser = argparse.ArgumentParser(description=__doc__)
     chosen = parser.add_mutually_exclusive_group(required=True)
     chosen.add_argument("--write", action="store_true")

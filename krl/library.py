@@ -51,7 +51,7 @@ _COORDINATES = "X Y Z A B C S T A1 A2 A3 A4 A5 A6 E1 E2 E3 E4 E5 E6".split()
 
 
 def _brief(result: Any) -> str:
-    """What a notebook shows of a result: its fields, collections by how much they hold."""
+    """Return the representation of a result: its fields, with the sizes of collections."""
     values = ((one.name, getattr(result, one.name)) for one in fields(result) if one.repr)
     said = (
         f"{name}=<{len(value)}>" if isinstance(value, tuple | Mapping) else f"{name}={value!r}"
@@ -62,7 +62,7 @@ def _brief(result: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What the check says of a place; lines and columns count from 1."""
+    """A finding of the check; lines and columns count from 1."""
 
     path: str
     line: int
@@ -82,21 +82,21 @@ class Findings:
 
     @property
     def errors(self) -> tuple[Finding, ...]:
-        """Those that a controller would refuse the program for."""
+        """Findings for which a controller would reject the program."""
         return tuple(one for one in self.findings if one.severity == "error")
 
     def to_dataframe(self) -> pd.DataFrame:
-        """A row a finding."""
+        """Return a table with a row for each finding."""
         return _table(self.findings, Finding)
 
 
 def check(
     *paths: PathLike, complete: bool = False, packages: Sequence[str] = (), jobs: int | None = None
 ) -> Findings:
-    """The findings about files, folders and archives, as `krl check` has them without settings.
+    """Return the findings in files, folders and archives, like `krl check` without settings.
 
-    ``complete``: no file is missing; ``packages`` are option packages that are there; ``jobs`` is
-    the number of processes, by default as many as are worth it. Raises `InputError`.
+    ``complete`` says that no file is missing; ``packages`` are the installed option packages;
+    ``jobs`` is the number of processes, by default as many as are useful. Raises `InputError`.
     """
     from grammar.check.project.batch import CheckOptions, check_paths
     from krl.running.program_loading import project_paths
@@ -122,9 +122,10 @@ def check(
 class Run:
     """A run: how it ended (``end``, ``halt``, ``fault``, ``time`` …), when, and what happened.
 
-    ``at`` is ``file:line`` where a program ended it, ``error`` why; both may be empty. ``events``
-    are those of the trace; ``path`` are the set-points of the arm, ``None`` without a robot;
-    ``notes`` list, as `krl run` does, the stand-ins and the lines that failed and were skipped.
+    ``at`` is ``file:line`` if a program ended it, ``error`` the reason; both may be empty.
+    ``events`` are those of the trace; ``path`` are the set-points of the arm, ``None`` without a
+    robot; ``notes`` list the stand-ins and the lines that failed and were skipped, as `krl run`
+    does.
     """
 
     ending: str
@@ -138,7 +139,7 @@ class Run:
     __repr__ = _brief
 
     def to_dataframe(self) -> pd.DataFrame:
-        """A row an event of the trace: t in µs, task, kind, at, and the fields of its kind."""
+        """Return a table with a row for each event: t in µs, task, kind, at, and its fields."""
         from krl.dataframes import frame
 
         rows = (
@@ -148,7 +149,10 @@ class Run:
         return frame(rows, ("t", "task", "kind", "at"), True)
 
     def path_dataframe(self) -> pd.DataFrame:
-        """A row an interpolation cycle, as `krl run --path` writes it; raises `InputError`."""
+        """Return a table with a row for each interpolation cycle, as `krl run --path` writes it.
+
+        Raises `InputError` without a robot.
+        """
         import pandas as pd
 
         if self.path is None:
@@ -176,11 +180,11 @@ def run(
     full: bool = False,
     strict: bool = False,
 ) -> Run:
-    """A run of a program, as `krl run` does it.
+    """Run a program like `krl run`, and return the run.
 
-    ``io`` are lines of a script of inputs, or ``"auto"``; ``seconds`` is the most virtual time;
-    ``full`` records every line and assignment too; ``strict`` allows no stand-ins for what the
-    project lacks. Raises `InputError`.
+    ``io`` are lines of an input script, or ``"auto"``; ``seconds`` is the greatest virtual time;
+    ``full`` also records every line and assignment; ``strict`` allows no stand-ins for missing
+    parts of the project. Raises `InputError`.
     """
     from interp.controller.inputs.automatic_inputs import OPERATOR
     from interp.controller.inputs.input_script import Script
@@ -223,7 +227,7 @@ def run(
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """What the grammar reads of a corpus; ``record`` is what `krl recover --json` writes.
+    """What the grammar can read of a corpus; ``record`` is what `krl recover --json` writes.
 
     `krl.dataframes` makes its other tables: ``dataframes.failures(survey.record)``.
     """
@@ -234,16 +238,16 @@ class Survey:
     __repr__ = _brief
 
     def to_dataframe(self) -> pd.DataFrame:
-        """A row a cluster of failures with one cause."""
+        """Return a table with a row for each cluster of failures."""
         from krl.dataframes import clusters
 
         return clusters(self.record)
 
 
 def recover(*paths: PathLike, grammar: PathLike | None = None, jobs: int | None = None) -> Survey:
-    """A survey of files, folders and archives, with the causes of what cannot be read.
+    """Return a survey of files, folders and archives, with the causes of parse failures.
 
-    ``grammar`` is a .g4 in place of the one in force. Raises `InputError`.
+    ``grammar`` is a .g4 file to use instead of the built-in grammar. Raises `InputError`.
     """
     from tempfile import TemporaryDirectory
 
@@ -261,7 +265,7 @@ def recover(*paths: PathLike, grammar: PathLike | None = None, jobs: int | None 
 
 @dataclass(frozen=True, slots=True)
 class Routine:
-    """A routine of a backup: its file, its first line, and how many lines of code it has."""
+    """A routine of a backup: its file, first line, name, and number of lines of code."""
 
     path: str
     line: int
@@ -271,7 +275,7 @@ class Routine:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A position of a data list; ``values`` by component, mm and degrees, those that it has."""
+    """A position in a data list; ``values`` are its components in mm and degrees."""
 
     path: str
     line: int
@@ -282,7 +286,7 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Backup:
-    """The KRL files of a backup, their routines and taught points, in the order of the paths."""
+    """The KRL files of a backup, its routines and taught points, sorted by path."""
 
     files: tuple[str, ...]
     routines: tuple[Routine, ...]
@@ -290,21 +294,21 @@ class Backup:
     __repr__ = _brief
 
     def to_dataframe(self) -> pd.DataFrame:
-        """A row a point: path, line, name, type, and a column a component."""
+        """Return a table with a row for each point: path, line, name, type, and its components."""
         from krl.dataframes import frame
 
         rows = ({**asdict(one), **one.values} for one in self.points)
         return frame(rows, ("path", "line", "name", "type", *_COORDINATES))
 
     def routines_dataframe(self) -> pd.DataFrame:
-        """A row a routine."""
+        """Return a table with a row for each routine."""
         return _table(self.routines, Routine)
 
 
 def load_backup(path: PathLike) -> Backup:
-    """What a folder or an archive of a controller holds. Raises `InputError`.
+    """Return the content of a controller's folder or archive. Raises `InputError`.
 
-    Files that cannot be read are left out; of a data list with a mistake, what can be read counts.
+    Files that cannot be read are left out; of a data list with an error, the readable part counts.
     """
     from grammar.comparison.content import content_of
     from grammar.comparison.points import POINT_TYPES, numbers_of
@@ -329,7 +333,7 @@ def load_backup(path: PathLike) -> Backup:
 
 
 def _table(rows: Iterable[Any], kind: type[Any]) -> pd.DataFrame:
-    """The rows with the columns of their kind, which are there without any row."""
+    """Return a table of rows with the columns of their kind, which exist even without rows."""
     from krl.dataframes import frame
 
     return frame(map(asdict, rows), [field.name for field in fields(kind)])

@@ -1,7 +1,7 @@
-"""`krl.toml`: what a team has agreed on for the programs of one project.
+"""`krl.toml`: the settings that a team has agreed on for one project.
 
-It lies at the root of the project and counts for everything below it. Every key has the meaning of
-the option of `krl check` that is named so; docs/settings.md has them all.
+The file is at the root of the project and applies to everything below. Every key has the meaning of
+the `krl check` option with the same name; docs/settings.md lists them.
 """
 
 import difflib
@@ -28,11 +28,11 @@ _Level = Literal["error", "warning", "note", "off"]
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The settings of a project; paths and patterns count from ``root``.
+    """The settings of a project; paths and patterns are relative to ``root``.
 
-    ``select`` and ``ignore`` are beginnings of codes, as are the keys of ``severity``, of which the
-    longest decides. A pattern without a slash fits any file or folder of that name; another one
-    fits a path, or that of a folder above it. Letter case makes no difference.
+    ``select`` and ``ignore`` are prefixes of codes, as are the keys of ``severity``, of which the
+    longest decides. A pattern without a slash matches any file or folder with that name; others
+    match a path or that of a folder above it. Letter case is ignored.
     """
 
     root: Path
@@ -47,11 +47,11 @@ class Settings:
     profile: str | None = None
 
     def leaves_out(self, found: "Found") -> bool:
-        """Whether a file is not to be read at all."""
+        """Return whether a file is excluded."""
         return any(_fits(self._below(found.file, found.member), one) for one in self.exclude)
 
     def adjusted(self, found: "Iterable[Diagnostic]") -> "list[Diagnostic]":
-        """Findings with the severities that were agreed on, without those that are not wanted."""
+        """Return the findings with the agreed severities, without those switched off."""
         return [one for each in found if (one := self._adjusted(each)) is not None]
 
     def _adjusted(self, found: "Diagnostic") -> "Diagnostic | None":
@@ -65,7 +65,7 @@ class Settings:
         return None if level == "off" else replace(found, severity=level)
 
     def _below(self, file: Path, member: str | None = None) -> str:
-        """The path of a file below the root; elsewhere as it is."""
+        """Return the path of a file relative to the root, or its full path if it is elsewhere."""
         path = file.absolute()
         shown = (path.relative_to(self.root) if path.is_relative_to(self.root) else path).as_posix()
         return f"{shown}/{member}" if member else shown
@@ -81,9 +81,9 @@ def _fits(path: str, pattern: str) -> bool:
 
 
 def settings_of(paths: Sequence[Path]) -> Settings | None:
-    """The settings that lie in or above all of some paths; ``None`` without any.
+    """Return the settings for some paths, in or above them; ``None`` if there are none.
 
-    Raises `InputError` where they lie below different settings.
+    Raises `InputError` if different settings apply to them.
     """
     found = {one for path in paths if (one := _nearest(path.absolute()))}
     if len(found) > 1:
@@ -99,7 +99,7 @@ def _nearest(path: Path) -> Path | None:
 
 
 def read_settings(file: Path) -> Settings:
-    """The settings in a file; raises `InputError` with the key that is wrong."""
+    """Return the settings in a file; raises `InputError` with the wrong key."""
     from support.files.untrusted import read_text, toml_of
 
     try:
@@ -129,7 +129,7 @@ def _settings(root: Path, table: Mapping[str, Any]) -> Settings:
 
 
 def read_baseline(file: Path) -> "Baseline":
-    """The findings that are known; raises `InputError` where they cannot be read."""
+    """Return the baseline in a file; raises `InputError`."""
     from grammar.diagnostics.baseline import Baseline
     from support.files.untrusted import json_of, read_text
 
@@ -143,9 +143,9 @@ def read_baseline(file: Path) -> "Baseline":
 
 
 def baseline_place(baseline: Path) -> Callable[[str], str]:
-    """Paths as they are seen from a baseline: the same from whatever folder one checks.
+    """Return a function that makes paths relative to a baseline, whatever the working folder is.
 
-    A path on another drive of Windows is whole.
+    On Windows, a path on another drive stays absolute.
     """
     home = baseline.absolute().parent
 
@@ -209,7 +209,7 @@ def _table(key: str, value: object) -> Mapping[str, object]:
     return value
 
 
-#: The field of each key, and how its value is read.
+#: For each key its field and the function that reads its value.
 _READ: Final[Mapping[str, tuple[str, Callable[[str, object], Any]]]] = {
     "profile": ("profile", _text),
     "complete": ("complete", _truth),

@@ -1,4 +1,4 @@
-"""KRL for Pygments, by which Sphinx, MkDocs and others colour code; an entry point names it."""
+"""A Pygments lexer for KRL, which Sphinx, MkDocs and others use; registered as an entry point."""
 
 import re
 from typing import Any, ClassVar

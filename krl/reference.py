@@ -36,7 +36,7 @@ terminal by a line each 10 s; `KRL_PROGRESS` in the environment gives other seco
 
 
 def reference() -> str:
-    """The page, from the commands as they are."""
+    """Return the page of commands."""
     from krl.commands.app import app
 
     command = typer.main.get_command(app())
@@ -44,7 +44,7 @@ def reference() -> str:
 
 
 def library_reference() -> str:
-    """The page of `krl.library`, from its docstrings."""
+    """Return the page of `krl.library`, from its docstrings."""
     from krl import library
 
     parts = [getattr(library, name) for name in library.__all__]
@@ -65,7 +65,7 @@ def library_reference() -> str:
 
 
 def _documented(name: str, function: Callable[..., Any], mark: str = "##") -> str:
-    """A function with its signature and what its docstring says."""
+    """Return a function's signature and docstring in Markdown."""
     signature = re.sub(r"\(self(, )?", "(", str(inspect.signature(function)))
     signature = _QUOTED_TYPE.sub(lambda found: found[1] + (found[2] or found[3]), signature)
     return f"\n{mark} {name}\n\n```\n{name}{signature}\n```\n\n{_prose(function.__doc__)}\n"
@@ -103,7 +103,10 @@ def _spelled(option: Any) -> str:
 
 
 def _choices(option: Any) -> list[str]:
-    """The words that an option takes, if no others; releases of typer differ in where they are."""
+    """Return the words between which an option chooses; none for other options.
+
+    Releases of typer store them in different places.
+    """
     known = getattr(getattr(option, "type", None), "choices", None)
     described = getattr(getattr(option, "type_descriptor", None), "annotation", None)
     if known is None and isinstance(described, type) and issubclass(described, Enum):
@@ -123,7 +126,7 @@ def _described(parameter: Any) -> str:
 
 
 def _prose(text: str | None, *, keeps_code: bool = False) -> str:
-    """Paragraphs of one line each; with ``keeps_code``, indented ones are code of Python."""
+    """Return each paragraph on one line; with ``keeps_code``, indented ones become code blocks."""
     made: list[str] = []
     for one in re.split(r"\n\s*?\n(?=\s*\S)", (text or "").strip()):
         if keeps_code and one.startswith("    "):
@@ -137,7 +140,7 @@ def _prose(text: str | None, *, keeps_code: bool = False) -> str:
 
 
 def main() -> int:
-    """Write the pages, or say whether they are up to date."""
+    """Write the pages, or print which one is stale."""
     parser = argparse.ArgumentParser(description=__doc__)
     chosen = parser.add_mutually_exclusive_group(required=True)
     chosen.add_argument("--write", action="store_true")

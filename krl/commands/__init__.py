@@ -1,1 +1,1 @@
-"""One module a command. Each imports what it needs inside the command, to start quickly."""
+"""The commands, one module each. Imports are inside the functions, so that `krl` starts fast."""

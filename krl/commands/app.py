@@ -1,4 +1,4 @@
-"""The commands of `krl`, loaded one at a time."""
+"""The commands of `krl`, imported one at a time."""
 
 from collections.abc import Iterable
 from importlib import import_module
@@ -7,7 +7,7 @@ from typing import Annotated, Any, Final
 import typer
 from typer.core import TyperGroup
 
-#: Where each command is, a function or an app with commands of its own, and its line in the help.
+#: The location of each command, which is a function or an app with subcommands, and its short help.
 _COMMANDS: Final = {
     "demo": ("krl.commands.demo:demo", "Run an example and open its page with the moving arm."),
     "check": ("krl.commands.check.command:check", "Find mistakes in programs and backups."),
@@ -34,7 +34,7 @@ _COMMANDS: Final = {
 
 
 class _Group(TyperGroup):
-    """Commands that are listed with the whole of their first sentence."""
+    """A group of commands that lists each one with its whole short help."""
 
     def format_commands(self, _ctx: Any, formatter: Any) -> None:
         whole = formatter.width**2
@@ -44,7 +44,7 @@ class _Group(TyperGroup):
 
 
 def app(*words: str) -> typer.Typer:
-    """The command line; only what its first word asks for is loaded, as that takes time."""
+    """Return the command line; only the command named by the first word is imported, for speed."""
     made = typer.Typer(
         cls=_Group,
         context_settings={"help_option_names": ["-h", "--help"]},

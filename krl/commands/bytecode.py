@@ -64,7 +64,7 @@ def compile_file(
 
 
 def _native_code(image: bytes) -> Iterator[str]:
-    """Make and keep it; gives why there is none."""
+    """Compile and store the native code; yield the reason if that fails."""
     from interp.bytecode.image.reader import read_image
     from interp.bytecode.verifier.verify import verify
     from interp.native import AVAILABLE

@@ -1,4 +1,4 @@
-"""`krl corpus`: the programs that the survey reads: our own, other people's, and made ones."""
+"""`krl corpus`: the programs that the survey reads, which are ours, public or synthetic."""
 
 import re
 import shutil
@@ -126,7 +126,7 @@ def synth(
 
 
 def _bytes(text: str) -> int:
-    """A size as people write it, in bytes; kB is 1,000."""
+    """Return the number of bytes of a size such as ``10 MB``; kB is 1,000."""
     found = re.fullmatch(r"([0-9]+(?:\.[0-9]+)?) ?([kmg]?)b?", text.strip(), re.IGNORECASE)
     size = int(float(found[1]) * _UNITS[found[2].lower()]) if found else 0
     if size < 1:

@@ -82,7 +82,7 @@ def _at_prompt(file: Path, options: RunOptions) -> int:
 
 @contextmanager
 def _pausing(debugger: "Debugger", prompt: "Prompt") -> Iterator[None]:
-    """Ctrl-C stops the program at its next statement; at the prompt, and once more, it ends all."""
+    """Let Ctrl-C pause the program; at the prompt, or when pressed again, it ends everything."""
 
     def pause(_number: int, _frame: FrameType | None) -> None:
         if not prompt.is_running:

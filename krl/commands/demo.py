@@ -11,7 +11,7 @@ from krl.errors import InputError, one_line
 from krl.running.run_options import Robot
 
 _NAME, _SUBMIT = "search_demo", "count_parts"
-#: In an installed package, and in a checkout.
+#: The folders of the example in an installed package and in a checkout.
 _PLACES = (
     Path(__file__).parents[1] / _NAME,
     Path(__file__).parents[2] / "corpus" / "programs" / _NAME,

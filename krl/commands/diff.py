@@ -1,4 +1,4 @@
-"""`krl diff`: two backups compared as a programmer wants it."""
+"""`krl diff`: compares two backups by routines, points and data."""
 
 import json
 from collections import Counter
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 Record = Mapping[str, Any]
 
 _LONGEST = 160
-_NOWHERE = "/dev/null"  # what git hands over for a file that is not there
+_NOWHERE = "/dev/null"  # git passes this path for a missing file
 
 
 class Format(StrEnum):
-    """How differences are written."""
+    """The format in which differences are written."""
 
     TEXT = "text"
     JSON = "json"
@@ -83,7 +83,7 @@ def diff(
 
 
 def _sources(root: Path) -> "list[Source]":
-    """The programs below a root, with paths that count from there."""
+    """Return the programs below a root, with paths relative to it."""
     from grammar.syntax.source import Source
     from support.files.discovery import IngestError, Skipped, discover, read_source
 
@@ -101,7 +101,7 @@ def _sources(root: Path) -> "list[Source]":
 
 
 def _plain(sources: "Iterable[Source]") -> Iterator[str]:
-    """What files say, a line each, as git is to compare them."""
+    """Yield the statements of files, one per line, as git compares them."""
     from grammar.comparison.content import content_of
 
     for source in sources:

@@ -1,4 +1,4 @@
-"""`krl explain`: what the code of a finding means, with a wrong and a right program."""
+"""`krl explain`: the meaning of a finding's code, with a wrong and a right program."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated

@@ -1,4 +1,4 @@
-"""`krl format`: programs set out in one style, and nothing else of them changed."""
+"""`krl format`: lays programs out in one style and changes nothing else."""
 
 from collections import Counter
 from enum import Enum
@@ -19,7 +19,7 @@ _LONGEST = 60  # characters of a token in a message
 
 
 class _Outcome(Enum):
-    """What became of a file, as the last line of output counts it."""
+    """The outcome for a file, as counted in the last line of output."""
 
     RIGHT = "as it should be"
     FORMATTED = "formatted"
@@ -55,7 +55,7 @@ def format_programs(
             with gc_paused():
                 counts[_format(found, check)] += 1
     except IngestError as error:
-        if counts[_Outcome.SKIPPED]:  # reported where it was met
+        if counts[_Outcome.SKIPPED]:  # reported before
             return BAD_INPUT
         raise InputError(str(error)) from error
     typer.echo(
@@ -67,7 +67,7 @@ def format_programs(
 
 
 def _format(candidate: "Found | Skipped", check: bool) -> _Outcome:
-    """Format one file, and say on one line what is not as it should be."""
+    """Format one file, and print on one line what is wrong with it."""
     from grammar.syntax.formatter import FormatterDefect, formatter
     from support.files.discovery import Skipped, read_source
 

@@ -68,7 +68,7 @@ def fuzz(
 
 
 def _chosen(wanted: list[str]) -> list[str]:
-    """Executors by name, each once; all that there are by default."""
+    """Return executors by name, each once; all available ones by default."""
     from conformance.differential.runs import EXECUTORS, available, is_available
 
     there = available()

@@ -1,4 +1,4 @@
-"""`krl growth`: what each construct of the ledger brought, over a corpus."""
+"""`krl growth`: the effect of each construct of the ledger on a corpus."""
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -105,7 +105,7 @@ def _print(record: "GrowthRecord", page: Path) -> None:
 
 
 def _table(steps: "Sequence[StepRecord]") -> Table:
-    """The first step, the last and those that restored most, in their order."""
+    """Return the first step, the last one, and those that restored most files, in order."""
     biggest = sorted(steps[1:], key=lambda step: -step["restored"])[:_BIGGEST]
     shown = {0, len(steps) - 1} | {
         number for number, step in enumerate(steps) if step["restored"] and step in biggest

@@ -28,7 +28,7 @@ def lsp(
     with expected_extras():
         from krl.language_server.server import server
     ours = server()
-    # the server closes what it writes to; nothing else may be written there
+    # the server closes its output, and nothing else may be written to it
     with (
         os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out,
         contextlib.redirect_stdout(sys.stderr),
@@ -38,20 +38,20 @@ def lsp(
 
 
 class Bounded:
-    """Standard input as the server reads it, with limits: the length of a message is a claim."""
+    """Standard input of the server with limits, as the stated length of a message may be false."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
 
     def readline(self) -> bytes:
-        """A line of the head of a message."""
+        """Return a line of the header of a message."""
         line = self._stream.readline(_LONGEST_LINE)
         if len(line) == _LONGEST_LINE:
             raise InputError(f"a line of more than {_LONGEST_LINE:,} bytes before a message")
         return line
 
     def read(self, size: int) -> bytes:
-        """A message."""
+        """Return a message."""
         if size > _LARGEST:
             raise InputError(f"a message of {size:,} bytes; the largest may have {_LARGEST:,}")
         return self._stream.read(size)

@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 _DEFAULT_OUT = Path("reports", "out", "nightly")
 _DEFAULT_HISTORY = Path("reports", "history.jsonl")
-#: Programs that the fuzzer runs where there is an hour; other lengths have their share.
+#: Programs that the fuzzer runs in a run of one hour; proportional for other durations.
 _PROGRAMS = 12_000
-#: What moves the cursor and colours text on a terminal.
+#: Escape sequences that move the cursor and colour text on a terminal.
 _CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _TAIL = 4_000
-#: More cases that fail at once are no chance.
+#: The most failed cases of a step that are run once more.
 _MOST_AGAIN = 50
 
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A command; ``share`` is the largest part of the whole time that it may take.
+    """A command; ``share`` is the largest part of the total time that it may take.
 
-    ``again`` are the options with which cases that failed in it are run once more.
+    ``again`` are the options that run its failed cases once more.
     """
 
     name: str
@@ -112,7 +112,7 @@ def nightly(
 def _reported(
     made: dict[str, Any], went: dict[str, dict[str, Any]], folder: Path, history: Path
 ) -> "list[Failure]":
-    """What failed; writes history, record, pages and summary of a run, and says what is new."""
+    """Write history, record, pages and summary of a run, and print changes; return the failures."""
     from reports.conformance.claims_page import write_claims_page
     from reports.nightly.history import (
         append_run,
@@ -153,7 +153,7 @@ def _reported(
 
 
 def _broken_off(folder: Path) -> "Iterator[Failure]":
-    """A failure for the run before this one, where that did not write its record at the end."""
+    """Yield a failure for the previous run if it did not write its record."""
     from reports.nightly.nightly_failures import OF_THE_RUN, Failure
 
     earlier = [one for one in folder.parent.iterdir() if one.is_dir() and one.name < folder.name]
@@ -162,7 +162,7 @@ def _broken_off(folder: Path) -> "Iterator[Failure]":
 
 
 def _write_breakdown(what: str, went: dict[str, dict[str, Any]], folder: Path) -> None:
-    """Write summary, record and page with the one failure that a run has broken down."""
+    """Write summary, record and page of a run that ended with an exception."""
     from reports.nightly.nightly_failures import OF_THE_RUN, Failure
     from reports.nightly.nightly_page import write_nightly_page
     from reports.nightly.nightly_summary import nightly_summary
@@ -170,7 +170,7 @@ def _write_breakdown(what: str, went: dict[str, dict[str, Any]], folder: Path) -
 
     own = Failure(what=OF_THE_RUN + what, page="", command="")
     run = {"date": folder.name, "steps": went, "failures": [own]}
-    with suppress(Exception):  # as writing may be what failed; the caller raises that
+    with suppress(Exception):  # writing may be the cause of the failure, which the caller raises
         write_atomic(folder / "summary.md", nightly_summary(run))
         write_json(run, folder / "nightly.json")
         write_nightly_page(run, folder)
@@ -181,7 +181,7 @@ def _is_in(step: _Step, only: list[str] | None) -> bool:
 
 
 def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
-    """The commands of a nightly run, the most telling ones first."""
+    """Yield the commands of a nightly run, the most important ones first."""
     given = tuple(map(str, paths))
     seed = folder.name.replace("-", "").replace(".", "")
     seed = seed if seed.isdigit() else "1"
@@ -214,10 +214,10 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
 def _performed(
     steps: list[_Step], folder: Path, minutes: float, memory: int
 ) -> Iterator[tuple[_Step, str, float]]:
-    """Each step with how it went: ok, findings, failed with its last line, or cut off.
+    """Yield each step with its status: ok, findings, failed with its last line, or cut off.
 
-    A step that is done already took no time; one that failed is tried once more, and is flaky where
-    it does not fail then. Cases that failed are a step of their own, behind theirs.
+    A step that is done already takes no time. One that failed is tried once more, and is flaky if
+    it succeeds then. Failed cases are repeated in a step of their own.
     """
     from reports.nightly.nightly_failures import AGAIN, failed_cases
 
@@ -249,7 +249,7 @@ def _performed(
 
 
 def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
-    """How a step went, in one line; it writes its record to ``target``."""
+    """Perform a step, which writes its record to ``target``; return its status in one line."""
     command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
     returned, last = _watched(command, most, memory)
     if returned is None:
@@ -264,7 +264,7 @@ def _say(seconds: float, words: str) -> None:
 
 
 def _recall(folder: Path, name: str) -> None:
-    """Give a step the results that the last run kept; they are found by digest only."""
+    """Copy results cached by the last run to a step; they are found by digest only."""
     kept = Path(name, "cache", "results.sqlite")
     runs = sorted(folder.parent.glob(f"*/{kept.as_posix()}"), key=lambda one: one.stat().st_mtime)
     if runs and not (folder / kept).exists():
@@ -273,7 +273,7 @@ def _recall(folder: Path, name: str) -> None:
 
 
 def _watched(command: list[str], seconds: float, memory: int) -> tuple[int | None, str]:
-    """Run a command under limits: its status, ``None`` if cut off, and its last line.
+    """Run a command under limits; return its status, ``None`` if cut off, and its last line.
 
     On a terminal its progress is shown.
     """
@@ -298,7 +298,7 @@ def _watched(command: list[str], seconds: float, memory: int) -> tuple[int | Non
 
 
 def _record(folder: Path, name: str) -> dict[str, Any] | None:
-    """The record of a step; ``None`` where there is none that can be read."""
+    """Return the record of a step; ``None`` if it is missing or cannot be read."""
     from support.files.untrusted import json_of, read_bytes
 
     try:

@@ -1,4 +1,4 @@
-"""`krl recover`: what the grammar is missing, over a corpus."""
+"""`krl recover`: what a grammar cannot parse in a corpus."""
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -171,7 +171,7 @@ def recover(
         chosen = read_file(grammar) if grammar else krl_grammar()
         restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
         surveyor = _Surveyor(roots, negatives_or_ours(negatives), out, jobs, scheduler)
-        # where nothing has grown yet, the start is what is in force
+        # without any construct, the restrictive start is the grammar in force
         if grammar is None and start and restrictive.sha256 != chosen.sha256:
             ledger = Ledger.read(GRAMMAR.with_name("constructs"))
             steps = replay(restrictive, ledger.accepted)
@@ -187,9 +187,9 @@ def recover(
 
 
 class _Surveyor:
-    """Surveys the same files under one grammar and another, with progress bars.
+    """Surveys of the same files under two grammars, with progress bars.
 
-    The page is written as soon as there is a survey, before causes are searched.
+    The page is written after the survey, before the causes are searched.
     """
 
     def __init__(
@@ -208,7 +208,7 @@ class _Surveyor:
         self.scheduler = scheduler
 
     def record(self, grammar: "Grammar", name: str) -> "SurveyRecord":
-        """The record of the survey under a grammar."""
+        """Return the record of the survey under a grammar."""
         from recovery.survey_record import record_without_causes
 
         found = self._survey(grammar, "surveying")
@@ -217,7 +217,7 @@ class _Surveyor:
     def start(
         self, record: "SurveyRecord", grammar: "Grammar", steps: "LedgerSteps"
     ) -> "StartRecord":
-        """The same under the restrictive start, with what the constructs answered.
+        """Return the record under the restrictive start, with the constructs that answer clusters.
 
         ``record`` is shown meanwhile.
         """
@@ -278,7 +278,7 @@ class _Surveyor:
             )
 
     def write_page(self, record: "SurveyRecord") -> Path:
-        """Write the page of a record, dated now; return where it is."""
+        """Write the page of a record, dated now, and return its path."""
         from reports.recovery.survey_page import write_survey_page
 
         record["version"] = metadata.version("krl-workbench")

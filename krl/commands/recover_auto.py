@@ -1,4 +1,4 @@
-"""`krl recover --auto`: the grammar grows by itself, round after round."""
+"""`krl recover --auto`: extends a grammar automatically, round by round."""
 
 import json
 import time
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
 
-# How many generated negatives edits are tried by, drawn evenly from more, and their seed, which is
-# none that a bench or the comparison with the target uses.
+# The number of generated negatives that edits are tested with, drawn evenly from more, and their
+# seed, which neither a bench nor the comparison with the target uses.
 _NEGATIVES = 1_500
 _SEED = 11
 
@@ -46,10 +46,9 @@ def recover_auto(
 ) -> int:
     """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
 
-    ``taken_out`` are the constructs that the start lacks, for the record; ``suffix`` is how names
-    of files of another language than KRL end.
-    Everything is written after each round, so that what was done stays when it is interrupted. At
-    the end what has grown is compared with ``target``.
+    ``taken_out`` are the constructs that the start lacks, for the record; ``suffix`` is the file
+    extension for languages other than KRL. Everything is written after each round, so that an
+    interruption loses no more than one. At the end the grown grammar is compared with ``target``.
     """
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
@@ -118,7 +117,7 @@ def recover_auto(
 def _begun(
     start: "Grammar", out: Path, strike: Sequence[str], *, resume: bool
 ) -> "tuple[Growth, list[tuple[Edit, ...]]]":
-    """Where to continue, and the edits that are not to be taken again."""
+    """Return where to continue, and the edits that must not be taken again."""
     from grammar.notation.edits import from_data
     from grammar.notation.g4 import read_file
     from recovery.induction.growth_record import Growth, without
@@ -192,7 +191,7 @@ def _write(
     struck: "Sequence[Sequence[Edit]]",
     began: float,
 ) -> Path:
-    """Write everything; returns the page."""
+    """Write everything; return the path of the page."""
     from grammar.notation.edits import to_data
     from recovery.ledger.construct_file import text_of
     from reports.recovery.auto_page import write_auto_page

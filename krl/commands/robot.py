@@ -68,7 +68,7 @@ def status_turn(
 
 @dataclass(frozen=True, slots=True)
 class _Point:
-    """A taught point as it was given; ``None`` for what it leaves to the options."""
+    """A taught point as given; a field is ``None`` if the options decide it."""
 
     name: str | int | float
     pose: "Pose"
@@ -79,7 +79,7 @@ class _Point:
 
 
 def _arm(path: Path) -> "Kinematics":
-    """The arm of a $machine.dat; imports are late because they take longer than most commands."""
+    """Return the arm of a $machine.dat. Its imports take longer than most commands."""
     with expected_extras():
         from interp.robot.kinematics.arms import kinematics_of
 
@@ -140,7 +140,7 @@ def _point(where: str, given: object) -> _Point:
 
 
 def _frame(where: str, given: object) -> "Pose | None":
-    """A frame; components left out are 0."""
+    """Return a frame; missing components are 0."""
     from interp.values.poses import Pose
 
     if given is None:
@@ -152,7 +152,7 @@ def _frame(where: str, given: object) -> "Pose | None":
 
 
 def _members(where: str, given: object) -> Mapping[str, Any]:
-    """An object of JSON with its keys in lower case."""
+    """Return the members of a JSON object with lower-case keys."""
     if not isinstance(given, dict):
         raise InputError(f"{where} is not an object with named members")
     return {key.lower(): value for key, value in given.items()}
@@ -185,7 +185,7 @@ def _bits(where: str, members: Mapping[str, Any], key: str) -> int:
 
 
 def _listed(option: str, text: str) -> "Pose":
-    """A frame from six numbers with commas between them."""
+    """Return a frame from six numbers separated by commas."""
     from interp.values.poses import Pose
 
     try:

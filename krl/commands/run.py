@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class Level(StrEnum):
-    """What the trace records."""
+    """The amount of detail in a trace."""
 
     WORLD = "world"
     FULL = "full"
@@ -118,7 +118,7 @@ def run(
 
 
 def _check_targets(path: Path | None, video: Path | None, png: Path | None, robot: Robot) -> None:
-    """Say now what would only fail after the run."""
+    """Raise `InputError` now for an output that would fail after the run."""
     if path is not None and path.suffix.lower() not in (".parquet", ".csv"):
         raise InputError(f"--path: {path} ends neither in .parquet nor in .csv")
     if path is not None and robot is Robot.NONE:
@@ -139,7 +139,7 @@ def _check_targets(path: Path | None, video: Path | None, png: Path | None, robo
 
 
 def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None) -> "RunResult":
-    """Run it with a progress bar, writing the trace as it comes."""
+    """Run a program with a progress bar and write the trace meanwhile; return the result."""
     from interp.executors import Prepared
     from interp.session import run_program
 
@@ -166,9 +166,9 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
 
 @contextmanager
 def _tracing(file: Path | None) -> Iterator[TextIO | None]:
-    """The trace, written beside its place and moved there when it is whole.
+    """Yield the file of the trace, a temporary one that is moved to its path once complete.
 
-    A process that receives SIGTERM leaves no part of one.
+    A process that receives SIGTERM leaves no part of it.
     """
     if file is None:
         yield None
@@ -202,14 +202,14 @@ def _write(
 
 
 def _write_observations(done: "RunResult", target: Path) -> None:
-    """One observation a line, in the order in which they began."""
+    """Write one observation per line, in the order of their starts."""
     lines = (json.dumps(one.record()) + "\n" for one in done.observations)
     with atomic_path(target) as part:
         part.write_text("".join(lines), encoding="utf-8", newline="\n")
 
 
 def _write_path(columns: Mapping[str, Any], target: Path) -> None:
-    """A table with a row each interpolation cycle."""
+    """Write a table with a row for each interpolation cycle."""
     import pandas as pd
 
     table = pd.DataFrame(dict(columns))
@@ -221,7 +221,7 @@ def _write_path(columns: Mapping[str, Any], target: Path) -> None:
 
 
 def _record(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> dict[str, Any]:
-    """What the page of a run is made of; see `reports.programs.run_page.write_run_page`."""
+    """Return the record for the page of a run; see `reports.programs.run_page.write_run_page`."""
     from importlib import metadata
 
     from interp.run_record import record_of

@@ -15,7 +15,7 @@ from support.files.atomic_write import write_atomic
 
 _NO_TEST = "no test of a robot program: test_*.toml or test_*.src"
 _PLUGIN = "krl.program_tests.pytest_plugin"
-#: What pytest says where all have passed, some have failed, and none was there.
+#: The exit statuses of pytest if all tests passed, some failed, and there was none.
 _PASSED, _FAILED, _NONE = 0, 1, 5
 
 
@@ -58,7 +58,7 @@ def run_tests(
     for file in files:
         if not file.exists():
             raise InputError(f"{file}: no such file or folder")
-    # there are no asserts in KRL, and pytest would rewrite those of our own modules
+    # KRL has no assert statements, and pytest would rewrite those of our own modules
     arguments = ["--assert=plain", "-o", "python_files=", "-o", "junit_suite_name=krl"]
     for option, value in (
         ("-k", select),
@@ -94,7 +94,7 @@ def _is_path(word: str) -> bool:
 
 
 def _in_order(report: bytes) -> bytes:
-    """A JUnit report with its tests by file and name: processes end theirs as it happens."""
+    """Return a JUnit report with tests sorted by file and name; processes end in any order."""
     whole = ET.fromstring(report)
     for suite in whole:
         suite[:] = sorted(suite, key=lambda test: (test.get("classname", ""), test.get("name", "")))

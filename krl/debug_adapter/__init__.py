@@ -1,1 +1,1 @@
-"""The debug adapter: a debugger for editors, by the Debug Adapter Protocol."""
+"""The debug adapter: debugging from editors with the Debug Adapter Protocol."""

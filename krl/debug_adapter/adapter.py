@@ -1,4 +1,4 @@
-"""A client's requests and what serves them: a session of the Debug Adapter Protocol."""
+"""A session of the Debug Adapter Protocol: the client's requests and their handlers."""
 
 import re
 from collections.abc import Mapping
@@ -36,7 +36,7 @@ _CAPABILITIES: Final[Json] = {
         {"filter": "faults", "label": "Faults that the program does not handle", "default": True}
     ],
 }
-#: Arguments of launch by the fields of the options: what each is called there, and its type.
+#: For each field of the options, the name and type of the argument of ``launch``.
 _OPTIONS: Final[Mapping[str, tuple[str, type[Any]]]] = {
     name: (re.sub("_(.)", lambda found: found[1].upper(), name), next(iter(get_args(kind)), kind))
     for name, kind in get_type_hints(RunOptions).items()
@@ -44,7 +44,7 @@ _OPTIONS: Final[Mapping[str, tuple[str, type[Any]]]] = {
 
 
 class Adapter:
-    """Serves one client, with what the command line says where its launch says nothing."""
+    """Serves one client; options of the command line are defaults for its launch request."""
 
     def __init__(self, connection: Connection, file: Path | None, options: RunOptions) -> None:
         self._connection = connection
@@ -76,7 +76,7 @@ class Adapter:
         }
 
     def serve(self) -> None:
-        """Answer requests until the client has gone."""
+        """Answer requests until the client disconnects."""
         try:
             for request in self._connection.requests():
                 self._answer(request)
@@ -105,12 +105,12 @@ class Adapter:
     # ------------------------------------------------------------------------------- the session
 
     def _initialize(self, arguments: Arguments) -> Json:
-        """What this adapter can do."""
+        """Return the capabilities of this adapter."""
         self._program.first_line = int(arguments.get("linesStartAt1", bool, True))
         return dict(_CAPABILITIES)
 
     def _launch(self, arguments: Arguments) -> Json:
-        """Read the program; it begins with configurationDone."""
+        """Load the program; it starts with configurationDone."""
         if self._program.has_begun:
             raise Refused("a program has been launched already")
         program = arguments.path("program") or self._file
@@ -125,13 +125,13 @@ class Adapter:
         return {"then": lambda: self._connection.event("initialized")}
 
     def _configuration_done(self, _arguments: Arguments) -> Json:
-        """Begin."""
+        """Start the program."""
         if not self._program.is_loaded or self._program.has_begun:
             raise Refused("there is no program to begin")
         return {"then": lambda: self._program.begin(self._breakpoints.install)}
 
     def _restart(self, _arguments: Arguments) -> Json:
-        """Read the files again and begin anew."""
+        """Read the files again and restart the program."""
         self._program.restart()
         return {"then": self._program.end}
 
@@ -153,7 +153,7 @@ class Adapter:
         return {}
 
     def _goto_targets(self, arguments: Arguments) -> Json:
-        """The statement of a line, which `goto` may name."""
+        """Return the statement on a line as a target for `goto`."""
         file = self._program.files.named(arguments.inner("source").text("path") or "")
         line = self._program.line_of(arguments.get("line", int, 0))
         if line not in self._program.debugger.lines(file):
@@ -163,7 +163,7 @@ class Adapter:
         return {"targets": [{"id": len(self._targets), "label": f"line {shown}", "line": shown}]}
 
     def _goto(self, arguments: Arguments) -> Json:
-        """Continue at a line of the routine, without executing what lies between."""
+        """Continue at a line of the routine without executing the lines between."""
         number = arguments.get("targetId", int, 0)
         if not 0 < number <= len(self._targets):
             raise Refused("there is no such target")

@@ -1,4 +1,4 @@
-"""The arguments of requests, which clients may leave out or get wrong."""
+"""Arguments of requests, which clients may omit or get wrong."""
 
 from collections.abc import Callable, Mapping
 from enum import Enum
@@ -9,17 +9,17 @@ _E = TypeVar("_E", bound=Enum)
 
 
 class Refused(Exception):
-    """A request that cannot be fulfilled; its text is what the person reads."""
+    """A request that cannot be fulfilled; the message is shown to the user."""
 
 
 class Arguments:
-    """The arguments of a request, of which each may be missing or of another type."""
+    """The arguments of a request; any of them may be missing or have a wrong type."""
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         self.values = values
 
     def get(self, name: str, kind: type[Any], default: Any) -> Any:
-        """An argument of a type."""
+        """Return an argument, or the default if it is missing or has another type."""
         value = self.values.get(name)
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
             return float(value)
@@ -27,20 +27,20 @@ class Arguments:
         return value if is_fitting else default
 
     def text(self, name: str) -> str | None:
-        """A text that is not empty."""
+        """Return a text argument, or ``None`` if it is missing or empty."""
         found: str = self.get(name, str, "")
         return found or None
 
     def path(self, name: str) -> Path | None:
-        """A path."""
+        """Return a path argument, or ``None``."""
         text = self.text(name)
         return None if text is None else Path(text)
 
     def of(self, kind: type[Any], name: str) -> Any:
-        """An argument of a type, also a path or an enumeration.
+        """Return an argument of a type, which may be a path or an enumeration.
 
-        ``None`` where it is missing, empty or of another type; raises `Refused` for a word that the
-        enumeration does not have.
+        Returns ``None`` if it is missing, empty or of another type. Raises `Refused` for a word
+        that the enumeration does not have.
         """
         if issubclass(kind, Path):
             return self.path(name)
@@ -49,7 +49,7 @@ class Arguments:
         return self.text(name) if kind is str else self.get(name, kind, None)
 
     def choice(self, name: str, kind: type[_E]) -> _E | None:
-        """One of some words; raises `Refused` for another one."""
+        """Return a member of an enumeration, or ``None``; raises `Refused` for another word."""
         text = self.text(name)
         if text is None:
             return None
@@ -60,14 +60,14 @@ class Arguments:
             raise Refused(f"{name}: {text} is none of {words}") from None
 
     def inner(self, name: str) -> "Arguments":
-        """An object."""
+        """Return an argument that is an object."""
         return Arguments(self.get(name, dict, {}))
 
     def all(self, name: str) -> "list[Arguments]":
-        """A list of objects."""
+        """Return an argument that is a list of objects."""
         return [Arguments(one) for one in self.get(name, list, []) if isinstance(one, dict)]
 
 
-#: What serves a request: from its arguments to the body of the answer. A function that the body has
-#: as ``then`` is called once the client has its answer.
+#: Handles a request and returns the body of the response. A function under the key ``then`` is
+#: removed from the body and called after the response was sent.
 Handler = Callable[[Arguments], dict[str, Any]]

@@ -1,4 +1,4 @@
-"""Breakpoints at lines, watched variables, and faults."""
+"""Breakpoints on lines, data breakpoints, and stops at faults."""
 
 from collections.abc import Mapping
 
@@ -13,14 +13,14 @@ from krl.debug_adapter.debuggee import TASKS, Debuggee
 
 
 class Breakpoints:
-    """What the client wants its program to stop at, from one run to the next."""
+    """The client's breakpoints; they persist from one run to the next."""
 
     def __init__(self, program: Debuggee) -> None:
         self._program = program
         self._of_files: dict[str, list[Breakpoint]] = {}
         self._watches: dict[str, Watch] = {}
         self._is_stopping_at_faults = True
-        #: What serves each request.
+        #: The handler of each request.
         self.requests: Mapping[str, Handler] = {
             "setBreakpoints": self._set_breakpoints,
             "breakpointLocations": self._breakpoint_locations,
@@ -31,7 +31,7 @@ class Breakpoints:
         }
 
     def install(self, debugger: Debugger) -> None:
-        """Give the debugger of a new run what it stops at; variables have to be watched anew."""
+        """Set the breakpoints in the debugger of a new run; data breakpoints do not persist."""
         self._watches.clear()
         debugger.set_breakpoints(self._every())
         debugger.stops_at_faults = self._is_stopping_at_faults
@@ -40,7 +40,7 @@ class Breakpoints:
         return [one for found in self._of_files.values() for one in found]
 
     def _set_breakpoints(self, arguments: Arguments) -> Json:
-        """Those of one file, in place of all it had; each at the next line with a statement."""
+        """Replace the breakpoints of one file; each moves to the next line with a statement."""
         source = arguments.inner("source")
         file = self._program.files.named(source.text("path") or source.text("name") or "")
         lines = self._program.debugger.lines(file)
@@ -69,7 +69,7 @@ class Breakpoints:
 
     @staticmethod
     def _wrong(one: Arguments) -> str:
-        """Why a breakpoint cannot be; empty where it can."""
+        """Return why a breakpoint is invalid; empty if it is valid."""
         try:
             condition, hits = one.text("condition"), one.text("hitCondition")
             if condition:
@@ -80,7 +80,7 @@ class Breakpoints:
         return ""
 
     def _breakpoint_locations(self, arguments: Arguments) -> Json:
-        """The lines of a range at which a program can stop."""
+        """Return the lines of a range at which a program can stop."""
         file = self._program.files.named(arguments.inner("source").text("path") or "")
         first = self._program.line_of(arguments.get("line", int, 0))
         last = self._program.line_of(arguments.get("endLine", int, arguments.get("line", int, 0)))
@@ -89,7 +89,7 @@ class Breakpoints:
         return {"breakpoints": [{"line": line} for line in there]}
 
     def _set_exception_breakpoints(self, arguments: Arguments) -> Json:
-        """Whether to stop at faults."""
+        """Set whether to stop at faults."""
         filters = arguments.values.get("filters")
         self._is_stopping_at_faults = isinstance(filters, list) and "faults" in filters
         if self._program.is_loaded:
@@ -97,7 +97,7 @@ class Breakpoints:
         return {}
 
     def _exception_info(self, _arguments: Arguments) -> Json:
-        """The fault that the program has stopped at."""
+        """Return the fault at which the program has stopped."""
         self._program.wait_for_stop()
         return {
             "exceptionId": "fault",
@@ -106,7 +106,7 @@ class Breakpoints:
         }
 
     def _data_breakpoint_info(self, arguments: Arguments) -> Json:
-        """How a variable can be watched."""
+        """Return how a variable can be watched."""
         self._program.wait_for_stop()
         reference = arguments.get("variablesReference", int, 0)
         text = arguments.text("name") or ""
@@ -122,7 +122,7 @@ class Breakpoints:
         }
 
     def _set_data_breakpoints(self, arguments: Arguments) -> Json:
-        """All there are; those that are set already stay as they are."""
+        """Replace the data breakpoints; those that are already set are kept."""
         wanted = [one.text("dataId") or "" for one in arguments.all("breakpoints")]
         if wanted or self._watches:  # VS Code says at the start that there are none
             self._program.wait_for_stop()

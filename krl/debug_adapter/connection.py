@@ -1,4 +1,4 @@
-"""Messages of the Debug Adapter Protocol: JSON behind a header that says how long it is."""
+"""Messages of the Debug Adapter Protocol: JSON after a header with its length."""
 
 import json
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ _LONGEST_LINE: Final = 1_000
 
 
 class Connection:
-    """A client at the other end of two streams. Messages may be sent from several threads."""
+    """The connection to a client over two streams; several threads may send messages."""
 
     def __init__(self, source: BinaryIO, target: BinaryIO) -> None:
         self._source = source
@@ -23,7 +23,7 @@ class Connection:
         self._sent = 0
 
     def requests(self) -> Iterator[Json]:
-        """The requests of the client until it goes; raises `InputError` for what is no message."""
+        """Yield the client's requests until it disconnects; raises `InputError` for bad ones."""
         while True:
             length = self._length()
             if length is None:
@@ -40,7 +40,7 @@ class Connection:
             yield message
 
     def respond(self, request: Json, body: Json | None, refusal: str = "") -> None:
-        """Answer a request: with what was asked for, or why not."""
+        """Respond to a request with a body, or with the reason of a refusal."""
         message: Json = {"type": "response", "request_seq": request.get("seq", 0)}
         message |= {"command": request["command"], "success": not refusal}
         if body is not None:
@@ -51,11 +51,11 @@ class Connection:
         self._send(message)
 
     def event(self, name: str, **body: Any) -> None:
-        """Report that something has happened."""
+        """Send an event."""
         self._send({"type": "event", "event": name, "body": body})
 
     def _length(self) -> int | None:
-        """The length of the next message, from its header; ``None`` where the client has gone."""
+        """Return the length of the next message; ``None`` if the client has disconnected."""
         length: int | None = None
         while True:
             line = self._source.readline(_LONGEST_LINE)

@@ -1,7 +1,7 @@
 """The program being debugged: its thread, where it has stopped, and how it continues.
 
-Requests are read on one thread. The program runs on another one, which waits where it has stopped
-until a request lets it continue; only meanwhile is it looked into.
+Requests are read on one thread. The program runs on another one. Where it stops, that thread waits
+until a request lets it continue; the program is only inspected meanwhile.
 """
 
 import contextlib
@@ -36,17 +36,17 @@ _REASONS: Final = {
     "ended": "pause",
 }
 TASKS: Final[tuple[TaskName, ...]] = ("robot", "submit")
-#: The thread that shows where the arm is, which is the main run.
+#: The number of the thread that stands for the arm (the main run).
 ARM: Final = 3
-#: Frames are numbered by thread and place.
+#: A frame's number is that of its thread times this, plus its index.
 FRAMES: Final = 10_000
 
 
 class Debuggee:
     """The program of one session.
 
-    ``debugger``, ``stop`` and ``variables`` are those of the run that is under way; the latter two
-    hold while it has stopped. ``first_line`` is what the client calls the first line of a file.
+    ``debugger``, ``stop`` and ``variables`` belong to the current run; the latter two are valid
+    while it is stopped. ``first_line`` is the client's number of the first line of a file.
     """
 
     debugger: Debugger
@@ -71,28 +71,28 @@ class Debuggee:
 
     @property
     def is_loaded(self) -> bool:
-        """Whether there is a program."""
+        """Whether a program is loaded."""
         return self._files is not None
 
     @property
     def has_begun(self) -> bool:
-        """Whether it runs, or has run."""
+        """Whether the program has been started."""
         return self._thread is not None
 
     @property
     def files(self) -> ProgramFiles:
-        """Its files; raises `Refused` before it is loaded."""
+        """The files of the program; raises `Refused` before it is loaded."""
         if self._files is None:
             raise Refused("no program has been launched")
         return self._files
 
     @property
     def tasks(self) -> tuple[TaskName, ...]:
-        """The tasks that run; none before it is loaded."""
+        """The tasks of the program; none before it is loaded."""
         return () if self._files is None else self.debugger.tasks
 
     def load(self, file: Path, options: RunOptions) -> None:
-        """Read the program; what has to be said of it is an output. Raises `InputError`."""
+        """Load the program; remarks are sent as output. Raises `InputError`."""
         said = io.StringIO()
         try:
             with contextlib.redirect_stderr(said), expected_errors(options.robot):
@@ -105,29 +105,29 @@ class Debuggee:
         self.debugger = Debugger(self._program, self._client, self._log)
 
     def begin(self, prepare: Callable[[Debugger], None]) -> None:
-        """Run it; ``prepare`` is given the debugger of each run before its first statement."""
+        """Start the program; ``prepare`` gets the debugger of each run beforehand."""
         self._thread = Thread(target=self._run, args=(prepare,), daemon=True)
         self._thread.start()
 
     def restart(self) -> None:
-        """Begin anew once the run has ended; raises `Refused` where nothing runs."""
+        """Restart once the run has ended; raises `Refused` if nothing runs."""
         if self._thread is None or not self._thread.is_alive():
             raise Refused("no program runs")
         self._is_restarting = True
 
     def pause(self) -> None:
-        """Stop it at the next statement; raises `Refused` before it is loaded."""
+        """Stop at the next statement; raises `Refused` before the program is loaded."""
         if not self.is_loaded:
             raise Refused("no program has been launched")
         self.debugger.pause()
 
     def terminate(self) -> None:
-        """Leave the run, and begin no other."""
+        """End the run without a restart."""
         self._is_leaving = True
         self.end()
 
     def end(self) -> None:
-        """Leave the run, wherever it is."""
+        """End the current run."""
         if self._stopped.is_set():
             self._stopped.clear()
             self._commands.put(Quit())
@@ -135,13 +135,13 @@ class Debuggee:
             self.debugger.pause()
 
     def leave(self) -> None:
-        """End all, as the client has gone."""
+        """End everything, because the client has disconnected."""
         self.terminate()
         if self._thread is not None:
             self._thread.join(1.0)
 
     def go(self, command: Command) -> Json:
-        """Let the program continue, once the client has its answer; `Refused` where it runs."""
+        """Return a response after which the program continues; raises `Refused` while it runs."""
         self.wait_for_stop()
 
         def then() -> None:
@@ -151,19 +151,19 @@ class Debuggee:
         return {"allThreadsContinued": True, "then": then}
 
     def wait_for_stop(self) -> None:
-        """Raise `Refused` where the program runs, so that it is not inspected meanwhile."""
+        """Raise `Refused` while the program runs, so that it is not inspected then."""
         if not self._stopped.is_set():
             raise Refused("the program runs")
 
     def output(self, text: str, category: str) -> None:
-        """Show the client a text, if there is any."""
+        """Send a text as output, unless it is empty."""
         if text:
             self._connection.event("output", category=category, output=text)
 
     # ------------------------------------------------------------------------------- its thread
 
     def _run(self, prepare: Callable[[Debugger], None]) -> None:
-        """Run the program, as often as it is restarted, and report its end."""
+        """Run the program, with its restarts, and report its end."""
         status = 2
         try:
             done = self._ran(prepare)
@@ -198,7 +198,7 @@ class Debuggee:
             )
 
     def _client(self, debugger: Debugger, stop: Stop) -> Command:
-        """Wait for what the client wants, on the thread of the program."""
+        """Wait for the client's next command, on the thread of the program."""
         if self._is_leaving or self._is_restarting:
             return Quit()
         if (stop.reason == "entry" and not self.stops_on_entry) or (
@@ -225,14 +225,14 @@ class Debuggee:
     # ------------------------------------------------------------------------------- its places
 
     def task(self, arguments: Arguments) -> TaskName:
-        """The task of the thread that is meant, by default that of the robot."""
+        """Return the task of the thread in a request; the default is the robot's."""
         number = arguments.get("threadId", int, 1)
         return (
             TASKS[number - 1] if number in (1, 2) and TASKS[number - 1] in self.tasks else "robot"
         )
 
     def frame(self, arguments: Arguments) -> tuple[TaskName, int]:
-        """The frame that is meant, by default the one on top of what has stopped."""
+        """Return the frame in a request; the default is the top one of the stopped task."""
         number = arguments.get("frameId", int, 0)
         if not number:
             return self.stop.task, 0
@@ -245,9 +245,9 @@ class Debuggee:
         return task, frame
 
     def line_of(self, line: int) -> int:
-        """A line by what the client calls it; the first is 1."""
+        """Return the line number, from 1, for the client's number."""
         return line + 1 - self.first_line
 
     def line_for(self, line: int) -> int:
-        """What the client calls a line."""
+        """Return the client's number for a line number."""
         return line - 1 + self.first_line

@@ -1,4 +1,4 @@
-"""The files of a program as clients name them, and as they can be shown to clients."""
+"""Paths of program files: those of the client and those within the project."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from krl.running.program_loading import project_root
 
 
 class ProgramFiles:
-    """Those of a program that began with ``file``, which lie in its project or in an archive."""
+    """The files of a program that started with ``file``, in its project or in an archive."""
 
     def __init__(self, file: Path, program: CheckedProgram) -> None:
         root = project_root(file)
@@ -16,7 +16,7 @@ class ProgramFiles:
         self._units: list[Unit] = list(program.units.values())
 
     def named(self, path: str) -> str:
-        """The path of a file within the project, from the client's."""
+        """Return the path of a file within the project, from the client's."""
         wanted = path.replace("\\", "/").upper()
         owns = [unit.module.path for unit in self._units]
         for own in owns:
@@ -27,7 +27,7 @@ class ProgramFiles:
         return next(same, path)
 
     def source(self, path: str) -> Json:
-        """A file of the project as a source of the protocol; by a number where it is no file."""
+        """Return a file as a source of the protocol; by a number if it is not on disk."""
         place = self._root / path
         name = path.rpartition("/")[2]
         if place.is_file():
@@ -36,6 +36,6 @@ class ProgramFiles:
         return {"name": name, "path": path, "sourceReference": found[0] if found else 0}
 
     def text(self, reference: int) -> str | None:
-        """The text of a file by its number."""
+        """Return the text of a file by its number, or ``None``."""
         is_known = 1 <= reference <= len(self._units)
         return self._units[reference - 1].source.text if is_known else None

@@ -1,4 +1,4 @@
-"""Looking into a program that has stopped: threads, frames, variables, expressions, sources."""
+"""Inspecting a stopped program: threads, frames, variables, expressions, sources."""
 
 from collections.abc import Mapping
 
@@ -8,11 +8,11 @@ from krl.debug_adapter.debuggee import ARM, FRAMES, TASKS, Debuggee
 
 
 class Inspection:
-    """Answers what a client asks about a program; all but threads and sources need a stop."""
+    """Handles requests about a program; all except threads and sources need a stop."""
 
     def __init__(self, program: Debuggee) -> None:
         self._program = program
-        #: What serves each request.
+        #: The handler of each request.
         self.requests: Mapping[str, Handler] = {
             "threads": self._threads,
             "stackTrace": self._stack_trace,
@@ -25,13 +25,13 @@ class Inspection:
         }
 
     def _threads(self, _arguments: Arguments) -> Json:
-        """The programs, and the main run."""
+        """Return the tasks, and the main run, as threads."""
         tasks = self._program.tasks or ("robot",)
         found = [{"id": TASKS.index(one) + 1, "name": one} for one in tasks]
         return {"threads": [*found, {"id": ARM, "name": "arm (main run)"}]}
 
     def _stack_trace(self, arguments: Arguments) -> Json:
-        """What is open, the innermost first; of the arm, the motion it is in."""
+        """Return the call stack, the innermost frame first; for the arm, the current motion."""
         self._program.wait_for_stop()
         files = self._program.files
         thread = arguments.get("threadId", int, 1)
@@ -59,12 +59,12 @@ class Inspection:
         }
 
     def _scopes(self, arguments: Arguments) -> Json:
-        """Groups of variables of a frame."""
+        """Return the groups of variables of a frame."""
         self._program.wait_for_stop()
         return {"scopes": self._program.variables.scopes(*self._program.frame(arguments))}
 
     def _variables(self, arguments: Arguments) -> Json:
-        """The variables of a group, or the parts of one."""
+        """Return the variables of a group, or the parts of a variable."""
         self._program.wait_for_stop()
         reference = arguments.get("variablesReference", int, 0)
         start, count = arguments.get("start", int, 0), arguments.get("count", int, 0)
@@ -73,7 +73,7 @@ class Inspection:
         }
 
     def _set_variable(self, arguments: Arguments) -> Json:
-        """Give a variable a value."""
+        """Assign a value to a variable."""
         self._program.wait_for_stop()
         found = self._program.variables.assign(
             arguments.get("variablesReference", int, 0),
@@ -83,7 +83,7 @@ class Inspection:
         return {"value": found.pop("result"), **found}
 
     def _set_expression(self, arguments: Arguments) -> Json:
-        """Give what an expression names a value."""
+        """Assign a value to the variable that an expression names."""
         self._program.wait_for_stop()
         text, (task, frame) = arguments.text("expression") or "", self._program.frame(arguments)
         self._program.debugger.assign(text, arguments.text("value") or "", task, frame)
@@ -91,7 +91,7 @@ class Inspection:
         return {"value": found.pop("result"), **found}
 
     def _evaluate(self, arguments: Arguments) -> Json:
-        """The value of an expression; in the console ``NAME = VALUE`` assigns."""
+        """Return the value of an expression; in the console ``NAME = VALUE`` assigns."""
         self._program.wait_for_stop()
         text, (task, frame) = arguments.text("expression") or "", self._program.frame(arguments)
         name, sign, value = text.partition("=")
@@ -104,7 +104,7 @@ class Inspection:
         return self._program.variables.shown(text, task, frame)
 
     def _source(self, arguments: Arguments) -> Json:
-        """The text of a file that lies in an archive, or stands in for one that is missing."""
+        """Return the text of a file in an archive, or of a stand-in."""
         number = arguments.get("sourceReference", int, 0)
         number = arguments.inner("source").get("sourceReference", int, number)
         text = self._program.files.text(number)

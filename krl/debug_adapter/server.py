@@ -15,9 +15,9 @@ from krl.running.run_options import RunOptions
 
 
 def serve(file: Path | None, options: RunOptions, port: int | None) -> None:
-    """Serve the client at the other end of standard input and output, or those of a port in turn.
+    """Serve the client on standard input and output, or those on a port one after another.
 
-    Only this machine reaches the port.
+    Only this machine can reach the port.
     """
     if port is None:
         _serve_standard(file, options)
@@ -31,7 +31,7 @@ def serve(file: Path | None, options: RunOptions, port: int | None) -> None:
 
 
 def _serve_standard(file: Path | None, options: RunOptions) -> None:
-    # Nothing but messages may be written there.
+    # Only messages may be written to standard output.
     with (
         os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out,
         contextlib.redirect_stdout(sys.stderr),

@@ -1,4 +1,4 @@
-"""Variables as the protocol shows them: trees whose nodes are asked for by a number."""
+"""Variables as trees whose nodes the protocol refers to by numbers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from interp.values.faults import RuntimeFailure
 from interp.values.values import ArrayValue, StructureValue, Value
 from krl.debug_adapter.connection import Json
 
-#: What the scope of the system shows.
+#: The variables in the scope ``System``.
 _SYSTEM: Final = (
     *("$POS_ACT", "$AXIS_ACT", "$VEL_ACT", "$TOOL", "$BASE", "$IPO_MODE", "$OV_PRO", "$ADVANCE"),
     *("$MODE_OP", "$PRO_STATE1", "$STOPMESS", "$ROB_TIMER", "$ERR"),
@@ -30,7 +30,7 @@ _LARGE: Final = 100
 
 @dataclass(frozen=True, slots=True)
 class _Node:
-    """What can be opened: names of a frame, or the parts of a variable that is called ``text``."""
+    """An expandable node: names of a frame, or the parts of the variable ``text``."""
 
     task: TaskName
     frame: int
@@ -40,14 +40,14 @@ class _Node:
 
 
 class Variables:
-    """Those of a stop: numbers hold until the program continues."""
+    """The variables at a stop; their numbers are valid until the program continues."""
 
     def __init__(self, debugger: Debugger) -> None:
         self._debugger = debugger
         self._nodes: list[_Node] = []
 
     def scopes(self, task: TaskName, frame: int) -> list[Json]:
-        """Groups of variables that can be seen in a frame; empty ones are left out."""
+        """Return the groups of variables that are visible in a frame, without empty ones."""
         names = self._debugger.names(task, frame)
         groups = [(title, tuple(getattr(names, group))) for group, title in _SCOPES.items()]
         groups.append(("System", _SYSTEM))
@@ -64,7 +64,7 @@ class Variables:
         ]
 
     def children(self, reference: int, start: int = 0, count: int = 0) -> list[Json]:
-        """The variables of a scope, or the parts of a variable, so many from one on; 0 is all."""
+        """Return ``count`` variables or parts of a node from ``start`` on; 0 means all."""
         node = self._node(reference)
         end = start + count if count else None
         if isinstance(node.value, ArrayValue):
@@ -82,19 +82,19 @@ class Variables:
         return [self._named(node, name) for name in node.names[start:end]]
 
     def assign(self, reference: int, name: str, value: str) -> Json:
-        """Give a variable of a node a value; raises `RuntimeFailure`."""
+        """Assign a value to a variable of a node; raises `RuntimeFailure`."""
         node = self._node(reference)
         text = _path(node, name)
         self._debugger.assign(text, value, node.task, node.frame)
         return self.shown(text, node.task, node.frame)
 
     def path(self, reference: int, name: str) -> tuple[str, TaskName, int]:
-        """What a variable of a node is called in its frame."""
+        """Return the expression for a variable of a node, with its task and frame."""
         node = self._node(reference)
         return _path(node, name), node.task, node.frame
 
     def shown(self, text: str, task: TaskName, frame: int) -> Json:
-        """The value of an expression, which can be opened; raises `RuntimeFailure`."""
+        """Return the value of an expression, expandable if it has parts."""
         return self._value(_Node(task, frame), text, self._debugger.look(text, task, frame))
 
     def _named(self, node: _Node, name: str) -> Json:
@@ -131,7 +131,7 @@ class Variables:
 
 
 def _path(node: _Node, name: str) -> str:
-    """What a part of a node is called in the frame of the node."""
+    """Return the expression for a part of a node."""
     if not node.text:
         return name
     return f"{node.text}{name}" if name.startswith("[") else f"{node.text}.{name}"

@@ -1,5 +1,5 @@
-"""Unit tests of robot programs: their files, their runs, and the plug-in that gives them to pytest.
+"""Unit tests of robot programs: test files, their execution, the pytest plug-in.
 
-They lie in `krl` because they join what the packages below have: sources as commands load them,
-runs of `interp`, expectations of `conformance`, pages of `reports`.
+They are part of `krl` because they combine the packages below: sources as commands load them, runs
+of `interp`, expectations of `conformance`, pages of `reports`.
 """

@@ -1,4 +1,4 @@
-"""Joins what tests have executed with the texts of the programs, for the page and for lcov."""
+"""Coverage of tests joined with the texts of the programs, for the page and for lcov."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from support.files.untrusted import read_bytes
 
 
 def covered_files(records: Sequence[CoverageRecord]) -> list[CoveredFile]:
-    """The files with statements, by paths from the working folder where they lie below it."""
+    """Return the files with statements; paths below the working folder are relative."""
     files = []
     for path, one in coverage_of(records).items():
         if one["lines"]:
@@ -27,7 +27,7 @@ def _shown(path: str) -> str:
 
 
 def _text(path: Path) -> str:
-    """The text of a file; empty where it has gone or cannot be read any more."""
+    """Return the text of a file; empty if it cannot be read any more."""
     try:
         found = decode(read_bytes(path))
     except OSError:

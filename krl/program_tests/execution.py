@@ -1,4 +1,4 @@
-"""Runs tests of robot programs: prepares the program of a test file, runs a test, judges it."""
+"""Execution of tests of robot programs: prepare the program, run a test, evaluate it."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ _ROOT: Final = re.compile(r"value ([A-Za-z_]\w*)", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a test: what was not as expected, and which lines it has executed.
+    """The result of a test: failures, and the lines it executed.
 
-    ``failures`` are lines to be printed, none where it has passed, and so is what was ``recorded``
-    anew. ``files`` gives the file behind each path that ``coverage`` names.
+    ``failures`` are lines to print, empty if it passed; ``recorded`` are lines about what was
+    recorded. ``files`` is the file for each path in ``coverage``.
     """
 
     failures: tuple[str, ...]
@@ -53,7 +53,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class _Project:
-    """The program of a file without tests, and the files it comes from by path."""
+    """The program of a test file, without tests, and its files by path."""
 
     program: CheckedProgram
     files: Mapping[str, str]
@@ -63,10 +63,10 @@ class _Project:
 def run_test(
     test: ProgramTest, others: Sequence[ProgramTest], *, executor: str | None, update: bool
 ) -> Outcome:
-    """Run a test; ``others`` are those of its file, whose program is prepared at once.
+    """Run a test and return its result; ``others`` are all tests of its file.
 
-    With ``update`` what happens is recorded instead of being compared. Raises `TestFileError` for
-    a test that cannot be run.
+    The program of these is prepared together. With ``update`` the run is recorded instead of being
+    compared. Raises `TestFileError` if the test cannot be run.
     """
     try:
         project = _project(test.program, test.path)
@@ -96,7 +96,7 @@ def run_test(
 
 
 def _seen(done: RunResult, setup: RunSetup, lengths: Mapping[str, int]) -> Observation:
-    """What was seen of a run; what drivers did has no line."""
+    """Return the observation of a run; lines of drivers are left out."""
     seen = observed(done, setup)
     events = (
         one if one.line <= lengths.get(one.file, 0) else replace(one, file="", line=0)
@@ -124,7 +124,7 @@ def _setup(test: ProgramTest, executor: str) -> RunSetup:
 
 @lru_cache(maxsize=4)
 def _project(path: Path, tests: Path) -> _Project:
-    """The project of a program and of the tests in KRL that lie elsewhere."""
+    """Return the project of a program, with a test file in KRL added if it lies elsewhere."""
     sources, main, left = read_sources(path)
     root = project_root(path)
     files = {source.path: str(root / source.path) for source in sources}
@@ -143,7 +143,7 @@ def _driver_name(place: int) -> str:
 
 @lru_cache(maxsize=8)
 def _with_drivers(tests: tuple[ProgramTest, ...]) -> tuple[Prepared, Mapping[int, str]]:
-    """The program with a driver for each of some tests, and why tests can have none, by place."""
+    """Return the program with drivers for some tests, and errors of tests without, by index."""
     program = _project(tests[0].program, tests[0].path).program
     stand_ins = dict(tests[0].stand_ins)
     errors: dict[int, str] = {}
@@ -171,7 +171,7 @@ def _with_drivers(tests: tuple[ProgramTest, ...]) -> tuple[Prepared, Mapping[int
 
 
 def _line_of(test: ProgramTest, error: str) -> int:
-    """The line of a test file that has what an error quotes, else that of the test."""
+    """Return the line of a test file with the word that an error quotes, else the test's line."""
     quoted = re.search(r"'([\w$.]+)", error)
     lines = read_text(test.path, "utf-8-sig").splitlines()
     for number in (*range(test.line, len(lines) + 1), *range(1, test.line)) if quoted else ():
@@ -181,14 +181,14 @@ def _line_of(test: ProgramTest, error: str) -> int:
 
 
 def _beginning(prepared: Prepared, routine: str) -> Prepared:
-    """The same program, compiled once, that begins with another routine."""
+    """Return the same compiled program with another start routine."""
     made = copy(prepared)
     made.routine = routine
     return made
 
 
 def _replaced(test: ProgramTest, project: _Project) -> Mapping[str, range]:
-    """The lines of routines that something stood in for."""
+    """Return the line ranges of routines that stand-ins replace."""
     found = {}
     for routine in project.program.routines.values():
         if routine.node.name.key in {name.upper() for name, _ in test.stand_ins}:
@@ -233,7 +233,7 @@ def _failures(
 
 
 def _check_called(expected: str, program: CheckedProgram) -> None:
-    """Raise `LookupError` where an expectation is about calls of a name that no file mentions."""
+    """Raise `LookupError` if an expectation is about calls of a name that no file mentions."""
     if about := _CALLED.match(expected):
         name = re.compile(rf"\b{re.escape(about[1])}\b", re.IGNORECASE)
         if not any(name.search(unit.source.text) for unit in program.units.values()):
@@ -241,7 +241,7 @@ def _check_called(expected: str, program: CheckedProgram) -> None:
 
 
 def _stood_in(program: CheckedProgram, done: RunResult) -> Iterator[str]:
-    """A line with the routines that were called and are in no file, where there are any."""
+    """Yield a note with the called routines that are in no file, if there are any."""
     lacking = {one.name.upper() for one in program.stand_ins}
     called = (event.fields["name"] for event in done.events if event.kind == "call")
     if names := [name for name in dict.fromkeys(called) if str(name).upper() in lacking]:
@@ -264,7 +264,7 @@ def _failure(
 
 
 def _code(program: CheckedProgram, file: str, line: int) -> str:
-    """A line of a program without what stands behind it; empty where there is none."""
+    """Return a line of a program without its expectations; empty if there is none."""
     for unit in program.units.values():
         if unit.module.path == file:
             lines = unit.source.text.splitlines()
@@ -273,7 +273,7 @@ def _code(program: CheckedProgram, file: str, line: int) -> str:
 
 
 def _path(stated: Expected, program: CheckedProgram) -> str:
-    """The path of the file that an expectation is about; raises `LookupError`."""
+    """Return the path of the file that an expectation is about; raises `LookupError`."""
     wanted = stated.about[0].upper()
     paths = [unit.module.path for unit in program.units.values()]
     found = (
@@ -285,7 +285,7 @@ def _path(stated: Expected, program: CheckedProgram) -> str:
 
 
 def _values(names: Iterable[str], done: RunResult) -> dict[str, Any]:
-    """The values of variables once the run is over, as the first file sees them."""
+    """Return the final values of variables, as the first file sees them."""
     values: dict[str, Any] = {}
     if not names:
         return values

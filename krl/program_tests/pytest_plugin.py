@@ -1,7 +1,7 @@
-"""pytest plug-in: ``test_*.toml`` and ``test_*.src`` are tests of robot programs.
+"""The pytest plug-in: ``test_*.toml`` and ``test_*.src`` are tests of robot programs.
 
-It comes with the installed package, so ``pytest tests/cell`` collects them. Nothing of the packages
-that run programs is imported before there is such a file.
+It comes with the installed package, so ``pytest tests/cell`` collects them. The packages that run
+programs are only imported if there is such a file.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The options of `krl test`, for pytest."""
+    """Add the options of `krl test` to pytest."""
     group = parser.getgroup("krl", "tests of robot programs in KRL")
     group.addoption("--krl-executor", choices=("tree", "vm", "native"), help="who executes them")
     group.addoption("--krl-update", action="store_true", help="record what tests do anew")
@@ -30,12 +30,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Sum up, in the process that reports, what tests have executed and recorded."""
+    """Register the summary of coverage and recordings in the reporting process."""
     config.pluginmanager.register(_Summary(config), "krl_summary")
 
 
 def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> ProgramTestFile | None:
-    """A file that `krl.program_tests.test_files` takes for one of tests."""
+    """Return a collector if the file has tests of robot programs."""
     if not file_path.name.lower().startswith("test_") or file_path.suffix.lower() not in (
         ".toml",
         ".src",
@@ -57,17 +57,17 @@ def pytest_collect_file(parent: pytest.Collector, file_path: Path) -> ProgramTes
 
 
 class ProgramTestFile(pytest.File):
-    """A test file, with an item a test."""
+    """A test file with an item for each test."""
 
     @cached_property
     def tests(self) -> tuple[ProgramTest, ...]:
-        """What it holds; raises `krl.program_tests.test_files.TestFileError`."""
+        """The tests of the file; raises `krl.program_tests.test_files.TestFileError`."""
         from krl.program_tests.test_files import read_tests
 
         return read_tests(self.path)
 
     def collect(self) -> Iterator[ProgramTestItem]:
-        """The items; `pytest.Collector.CollectError` for a file that cannot be used."""
+        """Yield the items; raises `pytest.Collector.CollectError` if the file is invalid."""
         from krl.errors import one_line
         from krl.program_tests.test_files import TestFileError
 
@@ -80,7 +80,7 @@ class ProgramTestFile(pytest.File):
 
 
 class _Failed(Exception):
-    """A test has failed; its text is what is printed."""
+    """A test has failed; the message is the text to print."""
 
 
 class ProgramTestItem(pytest.Item):
@@ -93,7 +93,7 @@ class ProgramTestItem(pytest.Item):
         self.recorded: tuple[str, ...] = ()
 
     def runtest(self) -> None:
-        """Run it; what was not as expected is raised as one text."""
+        """Run the test; raises `_Failed` with what was not as expected."""
         from krl.program_tests.execution import run_test
         from krl.program_tests.test_files import TestFileError
 
@@ -113,7 +113,7 @@ class ProgramTestItem(pytest.Item):
             raise _Failed("\n".join(outcome.failures))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *_: Any) -> Any:
-        """What was expected and seen, without a traceback through our own code."""
+        """Return what was expected and observed, without a traceback."""
         from krl.errors import shown
 
         if isinstance(excinfo.value, _Failed):
@@ -121,19 +121,19 @@ class ProgramTestItem(pytest.Item):
         return super().repr_failure(excinfo)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where it stands, and its name."""
+        """Return the location and the name of the test."""
         from krl.errors import one_line
 
         return Path(one_line(str(self.path))), self.test.line - 1, self.name
 
 
 def _from_here(config: pytest.Config, text: str) -> str:
-    """A text with paths as they are seen from where pytest was called."""
+    """Return a text with paths relative to where pytest was called."""
     return text.replace(f"{config.invocation_params.dir}{os.sep}", "")
 
 
 class _Summary:
-    """Takes what each test has executed and recorded along with its report, for all to sum up."""
+    """Collects coverage and recordings with the reports of tests, and sums them up."""
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
@@ -142,20 +142,20 @@ class _Summary:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """A report goes from the process of a test to the one that reports."""
+        """Attach coverage and recordings to the report, which is sent to the main process."""
         report = yield
         if isinstance(item, ProgramTestItem) and report.when == "call":
             report.krl_coverage, report.krl_recorded = item.coverage, item.recorded
         return report
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        """A test has run, here or in another process."""
+        """Collect them from the report of a test, from this process or another."""
         if getattr(report, "krl_coverage", None):
             self._records.append(report.krl_coverage)
         self._recorded += getattr(report, "krl_recorded", ())
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Write what is asked for and name it; say what was recorded anew."""
+        """Write the requested files and name them; print what was recorded."""
         if self._recorded:
             from krl.errors import shown
 

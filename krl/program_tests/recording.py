@@ -1,8 +1,8 @@
-"""Recorded runs: what a test has done once, in few lines, and how a later run differs.
+"""Recorded runs: the essential events of a test in few lines, and how a later run differs.
 
 A recording has outputs, the points where motions end, calls, messages and how the program ended, in
-their order. It has no times: they would change with every refinement of the planner. The line of
-KRL behind each of them is shown but not compared: a comment above would change it.
+their order. It has no times, because these would change with every refinement of the planner. The
+KRL line of each event is shown but not compared, because a comment above it would change it.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from krl.program_tests.test_files import ProgramTest
 from support.files.atomic_write import write_atomic
 from support.files.untrusted import read_text
 
-#: What stands between an event and its line of KRL.
+#: Separator between an event and its line of KRL.
 _PLACE: Final = " ; "
 _AROUND: Final = 3
 
 
 def recording_of(done: RunResult, lengths: Mapping[str, int]) -> list[str]:
-    """The lines of a run; ``lengths`` are how many lines the files of the program have.
+    """Return the lines of a recording; ``lengths`` are the numbers of lines of the program's files.
 
-    What lies behind these lines, and in other files, is of the test.
+    Events on later lines, or in other files, come from the test.
     """
     points = {
         point.number: " ".join(
@@ -63,7 +63,7 @@ def _words(event: TraceEvent, points: Mapping[int, str]) -> str:
 
 
 def compared(test: ProgramTest, lines: Sequence[str]) -> Iterator[str]:
-    """How a run differs from its recording, as lines to be printed; none where it does not."""
+    """Yield how a run differs from its recording, as lines to print; none if it does not."""
     path = _file_of(test)
     where = f"{test.path}:{test.line}: {test.name}"
     if not path.is_file():
@@ -74,7 +74,7 @@ def compared(test: ProgramTest, lines: Sequence[str]) -> Iterator[str]:
 
 
 def record(test: ProgramTest, lines: Sequence[str]) -> Iterator[str]:
-    """Record a run; how it differs from what was recorded before, as lines to be printed."""
+    """Write the recording of a run; yield the differences to the earlier one as lines to print."""
     path = _file_of(test)
     before = read_text(path, "utf-8").splitlines() if path.is_file() else []
     path.parent.mkdir(exist_ok=True)
@@ -92,7 +92,7 @@ def _file_of(test: ProgramTest) -> Path:
 
 
 def _diff(before: Sequence[str], now: Sequence[str]) -> list[str]:
-    """What was, marked with -, and what is, with +, with some lines around."""
+    """Return removed lines marked with -, added ones with +, and some lines around."""
     old, new = ([line.partition(_PLACE)[0].rstrip() for line in lines] for lines in (before, now))
     diff: list[str] = []
     for group in SequenceMatcher(None, old, new, autojunk=False).get_grouped_opcodes(_AROUND):

@@ -1,7 +1,7 @@
-"""Reads tests of robot programs: ``test_*.toml`` beside programs, and ``test_*.src`` in KRL.
+"""Reading tests of robot programs: ``test_*.toml`` beside programs, and ``test_*.src`` in KRL.
 
-docs/tutorial-test.md is the format in full. What both say is the same: what a test needs, what it
-calls, and what it expects, in the language of expectations that conformance cases have.
+docs/tutorial-test.md describes the format. Both forms have the same content: the set-up of a test,
+the call, and the expectations, in the language of conformance cases.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from interp.controller.inputs.input_script import Script, ScriptError
 from interp.testing.drivers import RESULT
 from support.files.untrusted import DocumentError, read_text, toml_of
 
-#: Words of expectations that name what they are about; all others are about a line.
+#: First words of expectations that name their subject; all others are about a line.
 _NAMED: Final = frozenset(
     "value out anout message interrupt fault passes avoids speed pose axes limits smooth halt ends"
     " calls brake resume tracks".split()
@@ -32,17 +32,17 @@ _ZONE_WORDS: Final = ("box", "sphere")
 
 
 class TestFileError(ValueError):
-    """A test file that cannot be used; the text is one line with file and line."""
+    """A test file is invalid; the message is one line with file and line."""
 
     __test__ = False  # no class of tests, whatever its name says
 
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """An expectation as it is written, with the line of the test file that says it.
+    """An expectation as written, with its line in the test file.
 
-    ``about`` is file and line of the program that it is about, empty for all of them. ``names`` are
-    variables that stand in it for a point.
+    ``about`` is the file and line of the program that it is about, empty for the whole program.
+    ``names`` are variables in it that stand for points.
     """
 
     text: str
@@ -51,9 +51,9 @@ class Expected:
     names: tuple[str, ...]
 
     def read(self, values: Mapping[str, Any]) -> Expectation:
-        """The expectation with the values of points in place of their names.
+        """Return the expectation with the values of points in place of their names.
 
-        Raises `ExpectationError`, for a point without the values that it needs too.
+        Raises `ExpectationError`, also for a point that lacks the needed values.
         """
 
         def numbers(found: re.Match[str]) -> str:
@@ -65,11 +65,11 @@ class Expected:
 
 @dataclass(frozen=True, slots=True)
 class ProgramTest:
-    """A test: what the controller and the cell are like, what is called, and what is expected.
+    """A test: the set-up of controller and cell, the call, and the expectations.
 
-    ``program`` is the file whose routines it sees, and ``call`` what it begins with, empty for the
-    first routine of the file. ``before`` are KRL statements ahead of the call, ``stand_ins``
-    statements by routine and call; ``line`` is the place of the test in its file.
+    ``program`` is the file whose routines it sees. ``call`` is the call with which it begins, empty
+    for the first routine of the file. ``before`` are KRL statements before the call, ``stand_ins``
+    statements by routine and call. ``line`` is the line of the test in its file.
     """
 
     name: str
@@ -89,12 +89,12 @@ class ProgramTest:
 
     @property
     def script(self) -> Script:
-        """What inputs do; raises `ScriptError`."""
+        """The script of inputs; raises `ScriptError`."""
         return Script.read("\n".join(self.io), f"io of {self.name}")
 
 
 def is_test_file(path: Path) -> bool:
-    """Whether a file holds tests of robot programs, by its name and how it begins."""
+    """Return whether a file has tests of robot programs, by its name and first lines."""
     if not path.name.lower().startswith("test_") or not path.is_file():
         return False
     match path.suffix.lower():
@@ -108,7 +108,7 @@ def is_test_file(path: Path) -> bool:
 
 
 def read_tests(path: Path) -> tuple[ProgramTest, ...]:
-    """The tests of a file. Raises `TestFileError`."""
+    """Return the tests of a file. Raises `TestFileError`."""
     try:
         text = read_text(path, "utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -123,13 +123,13 @@ def read_tests(path: Path) -> tuple[ProgramTest, ...]:
 
 
 def _resolved(text: str, numbers: Callable[[re.Match[str]], str]) -> str:
-    """The text with numbers in place of names of points; in texts between quotes nothing."""
+    """Return the text with names of points replaced by numbers, except in quoted texts."""
     parts = re.split(r'("[^"]*")', text)
     return "".join(part if part.startswith('"') else _NAME.sub(numbers, part) for part in parts)
 
 
 def _numbers(name: str, word: str, values: Mapping[str, Any]) -> str:
-    """X, Y and Z of a point, also its angles for ``pose``, or its axes for ``axes``."""
+    """Return X, Y and Z of a point, its angles too for ``pose``; or its axes for ``axes``."""
     point = values.get(name.upper())
     if not isinstance(point, Mapping):
         raise ExpectationError(f"{name} is not a point with a value")
@@ -145,7 +145,10 @@ def _numbers(name: str, word: str, values: Mapping[str, Any]) -> str:
 def _expected(
     text: str, line: int, about: tuple[str, int] | None, zones: Mapping[str, str]
 ) -> Expected:
-    """An expectation; ``about`` is the line it stands on. Raises `ExpectationError`."""
+    """Return an expectation; ``about`` is the line beside which it stands.
+
+    Raises `ExpectationError`.
+    """
     place = _PLACE.fullmatch(text)
     if place is not None:
         text, about = place[3], (place[1], int(place[2]))
@@ -192,7 +195,7 @@ _KEYS: Final[Mapping[str, tuple[type, ...]]] = {
     "seconds": (int, float),
     "recorded": (bool,),
 }
-#: Keys of a test alone; what else is said before the first test holds for all.
+#: Keys that only a test can have; all others can also be shared, before the first test.
 _OWN: Final = ("name", "call", "expect")
 _SAID: Final[Mapping[type, str]] = {
     str: "a text",
@@ -209,7 +212,7 @@ _END: Final = re.compile(r"END\s*(?:;.*)?", re.IGNORECASE)
 
 
 class _Reader:
-    """Reads a test file; of a program in KRL the lines that begin with ``;@`` are its TOML."""
+    """Reads a test file; in a KRL file the first lines with ``;@`` are its TOML."""
 
     def __init__(self, path: Path, text: str) -> None:
         self._path = path
@@ -243,7 +246,7 @@ class _Reader:
             yield self._test(span, _merged(shared, entry), expected)
 
     def _tables(self, entries: Sequence[dict[str, Any]], heads: Sequence[int]) -> Iterator[_Entry]:
-        """Each table with its lines, and what it expects."""
+        """Yield each table with its lines and its expectations."""
         for place, entry in enumerate(entries):
             start = heads[place] if place < len(heads) else 1
             behind = place + 1 < len(heads)
@@ -255,9 +258,9 @@ class _Reader:
             yield span, entry, [(str(text), self._line(str(text), span), None) for text in texts]
 
     def _routines(self) -> Iterator[_Entry]:
-        """Each routine TEST… with its lines, and what stands beside them.
+        """Yield each routine TEST… with its lines and the expectations beside them.
 
-        The first routine carries the name of the file, and is no test where it expects nothing.
+        The first routine has the name of the file; without an expectation it is no test.
         """
         name, start, about, is_first = "", 0, 0, True
         expected: list[tuple[str, int, tuple[str, int] | None]] = []
@@ -326,7 +329,7 @@ class _Reader:
             raise self.error(self._line(key, span), str(error)) from None
 
     def _program(self, entry: Mapping[str, Any], span: _Span) -> Path:
-        """The file that is tested; only where one file alone can be meant it may go unsaid."""
+        """Return the tested file; it may be omitted if only one file is possible."""
         if "program" in entry or self._is_krl:
             return self._file("program", entry, span) if "program" in entry else self._path
         stem = self._path.stem.lower().removeprefix("test_")
@@ -347,7 +350,7 @@ class _Reader:
         return path
 
     def _check(self, span: _Span, table: Mapping[str, Any], *, is_shared: bool) -> None:
-        """Keys and the types of their values."""
+        """Check the keys and the types of their values."""
         known = [key for key in _KEYS if not (is_shared and key in _OWN)]
         for key, value in table.items():
             line = self._line(key, span)
@@ -371,7 +374,7 @@ class _Reader:
             self._made(span, zone, lambda _, it: read_expectation(f"avoids {it}", "", 0), text)
 
     def _line(self, words: str, span: _Span) -> int:
-        """The line that a key or a text stands on, of a table or of what all share."""
+        """Return the line of a key or text, in a table or among the shared keys."""
         pattern = re.compile(rf"(?<![\w-]){re.escape(words)}(?![\w-])")
         for number in (*range(span.start, span.end), *range(1, span.start)):
             if pattern.search(self._lines[number - 1].replace('\\"', '"')):
@@ -384,7 +387,7 @@ class _Reader:
 
 @dataclass(frozen=True, slots=True)
 class _Span:
-    """The lines of a test; ``end`` is the one behind its last."""
+    """The lines of a test; ``end`` is the line after the last one."""
 
     start: int
     end: int
@@ -397,7 +400,7 @@ _Entry = tuple[_Span, Mapping[str, Any], Sequence[_Stated]]
 
 
 def _statement(name: str, value: object) -> str:
-    """``NAME = VALUE`` in KRL; a text is KRL as it is written. Raises `ValueError`."""
+    """Return ``NAME = VALUE`` as KRL; a text is taken as KRL. Raises `ValueError`."""
     match value:
         case bool():
             return f"{name} = {str(value).upper()}"
@@ -409,7 +412,7 @@ def _statement(name: str, value: object) -> str:
 
 
 def _bodies(name: str, value: object) -> tuple[tuple[str, ...], ...]:
-    """The statements of a stand-in: one, several, or lists of them for one call after the other."""
+    """Return the statements of a stand-in, for one call after another."""
     is_by_call = isinstance(value, list) and bool(value) and isinstance(value[0], list)
     calls: Any = value if is_by_call else [value]
     bodies = [[body] if isinstance(body, str) else body for body in calls]
@@ -419,7 +422,7 @@ def _bodies(name: str, value: object) -> tuple[tuple[str, ...], ...]:
 
 
 def _merged(shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
-    """What all tests share and what one adds: inputs and tables grow, the rest is replaced."""
+    """Return shared and own values of a test; inputs and tables are combined, others replaced."""
     made = {**shared, **own}
     for key in shared.keys() & own.keys():
         if isinstance(shared[key], dict):
@@ -430,5 +433,5 @@ def _merged(shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]
 
 
 def _texts(value: str | Sequence[str]) -> tuple[str, ...]:
-    """One text or several."""
+    """Return one text or several as a tuple."""
     return (value,) if isinstance(value, str) else tuple(value)

@@ -1,1 +1,1 @@
-"""Running programs: the program a file means, options of a run, what is said of a finished one."""
+"""Running programs: loading, options, notes and pictures of a finished run."""

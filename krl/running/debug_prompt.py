@@ -1,4 +1,4 @@
-"""The prompt of `krl debug`: commands in lines, from a terminal or a file."""
+"""The prompt of `krl debug`: commands from a terminal or a file."""
 
 import cmd
 import re
@@ -61,15 +61,15 @@ _MOST_SHOWN: Final = 40
 
 
 class _WrongCommand(Exception):
-    """A command that means nothing, or not here; its text is the line that the person reads."""
+    """A command is unknown or impossible here; the message is shown."""
 
 
 class Prompt(cmd.Cmd):
-    """Asks for commands where a program has stopped: the client of a debugger.
+    """Reads commands where a program has stopped; a client of the debugger.
 
-    Each ``do_`` method is a command and its docstring the help; one that lets the program continue
-    gives the command for the debugger. ``has_failed``: a command was wrong that came from a file.
-    ``is_running`` while the program runs.
+    Each ``do_`` method is a command with its docstring as help. A command that lets the program
+    continue returns a command for the debugger. ``has_failed`` says that a command from a file was
+    wrong. ``is_running`` is true while the program runs.
     """
 
     def __init__(self, program: CheckedProgram, *, is_terminal: bool) -> None:
@@ -88,7 +88,7 @@ class Prompt(cmd.Cmd):
         self._stop: Stop
 
     def stopped(self, debugger: Debugger, stop: Stop) -> Command:
-        """The command of the person, once there is one that lets the program continue."""
+        """Return the first command that lets the program continue."""
         self._debugger, self._stop, self.is_running = debugger, stop, False
         self._task, self._frame = stop.task, 0
         self._tell_stop()
@@ -100,7 +100,10 @@ class Prompt(cmd.Cmd):
     # ----------------------------------------------------------------------- lines
 
     def onecmd(self, line: str) -> bool:
-        """Carry out a line, an empty one in a terminal like the last; whether to continue."""
+        """Execute a line; return whether the program continues.
+
+        In a terminal an empty line repeats the last one.
+        """
         line = line.strip() or self._last
         self._last = line if self._is_terminal else ""
         words = line.split()
@@ -147,7 +150,7 @@ class Prompt(cmd.Cmd):
         return f"{whose}{at.file}:{at.line}  {self._line(at.file, at.line).strip()}"
 
     def _moment(self) -> str:
-        """The time, and where the arm is, whose main run is behind the advance run."""
+        """Return the time and the position of the arm, which is behind the advance run."""
         arm = self._debugger.arm
         text = f"{arm.time / 1e6:g} s; "
         if arm.running is None:

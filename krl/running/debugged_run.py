@@ -9,17 +9,17 @@ from interp.executors import Prepared
 from interp.program.load import CheckedProgram
 from interp.session import RunResult, RunSetup, run_program
 
-# So often a message of one line is shown each time; a loop may repeat it ten thousand times.
+# How often a repeated message is always shown; a loop may repeat it ten thousand times.
 _EACH = 10
 
 
 def debugged_run(
     program: CheckedProgram, setup: RunSetup, debugger: Debugger, on_message: Callable[[str], None]
 ) -> RunResult | None:
-    """What came of the run; ``None`` where the client of the debugger left it.
+    """Return the result of the run; ``None`` if the debugger's client ended it.
 
-    ``on_message`` takes each message of the program with its line once, though going back runs it
-    again. A repeated one is reported the first times, the 100th, the 1,000th.
+    ``on_message`` gets each message of the program with its line, and only once if stepping back
+    runs it again. Of a repeated message it gets the first ten, the 100th, the 1,000th and so on.
     """
     prepared = Prepared(program, setup.routine, [setup.submit], is_kept=True)
     counts: Counter[str] = Counter()

@@ -1,4 +1,4 @@
-"""The program that a file on the command line means: with all files of its project."""
+"""Loading the program of a file on the command line, with all files of its project."""
 
 import os
 import re
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
     from support.files.discovery import Found
 
-#: Folders that lie directly below the root of a controller's files.
+#: Folders directly below the root of a controller's files.
 _PARTS = frozenset({"R1", "STEU"})
 _OF_CONTROLLERS = frozenset({*_PARTS, "SYSTEM", "MADA"})
 _ENDINGS = frozenset({".src", ".dat", ".sub"})
-#: Of a project that is larger, only what is named is read: 16 MB take some 20 s.
+#: Of a larger project only the files that the program refers to are read: 16 MB take some 20 s.
 _MOST_FILES, _MOST_BYTES = 20_000, 1 << 24
 _MOST_SHOWN = 5
 #: So many files at most are looked at to find out whether a folder holds mostly KRL.
@@ -34,14 +34,14 @@ _Folder_contra = TypeVar("_Folder_contra", bound=PurePath, contravariant=True)
 def load_program(
     file: Path, *, strict: bool = False, stands_in: bool = False, routine: str | None = None
 ) -> "tuple[CheckedProgram, list[str]]":
-    """The program that begins with a file, and why files of its project were left out.
+    """Return the program that starts with a file, and why files of its project were left out.
 
-    ``archive.zip/folder/name.src`` names a file in an archive. Without ``strict`` an error that the
-    checker finds is no obstacle: what it is about fails when it is reached. With ``stands_in`` the
-    project gets stand-ins for what it lacks, also for arguments of ``routine``, its first by
-    default, where it begins with that. A program that was loaded before is not checked anew
-    (`support.files.kept_values`). Raises `InputError` for what cannot be read, and
-    `interp.values.faults.LinkError` for what cannot be run.
+    ``archive.zip/folder/name.src`` is a file in an archive. Without ``strict`` an error found by
+    the checker does not prevent a run: the statement fails when it is reached. With ``stands_in``
+    the project gets stand-ins for missing parts, also for the arguments of ``routine`` (default:
+    the first one) if the run starts there. A program that was loaded before comes from the cache
+    (`support.files.kept_values`). Raises `InputError` if it cannot be read, and
+    `interp.values.faults.LinkError` if it cannot be run.
     """
     from interp.program.load import load
     from interp.program.routine_callers import with_caller
@@ -54,7 +54,10 @@ def load_program(
 
 
 class Image(NamedTuple):
-    """A program compiled from so many files; ``refusals`` are what ends it when it is reached."""
+    """A program compiled from ``files`` files.
+
+    ``refusals`` are statements that end it when reached.
+    """
 
     data: bytes
     files: int
@@ -64,7 +67,7 @@ class Image(NamedTuple):
 
 
 def compile_project(file: Path, *, strict: bool = False) -> tuple[Image, list[str]]:
-    """As `load_program`, but the image of the program; what was compiled before is not again."""
+    """Return the image of the program, and why files were left out; like `load_program`, cached."""
 
     def compiled(sources: "list[Source]", main: str, unread: list[str]) -> Image:
         from interp.bytecode.compiler import compile_program
@@ -89,7 +92,7 @@ def compile_project(file: Path, *, strict: bool = False) -> tuple[Image, list[st
 def _made_once(
     file: Path, how: str, make: "Callable[[list[Source], str, list[str]], _T]"
 ) -> "tuple[_T, list[str]]":
-    """What is made of the project of a file, its main file and the list of what is left out."""
+    """Return what ``make`` returns for the project of a file, cached, and the files left out."""
     from interp.executors import CODE
     from support.files.kept_values import kept
 
@@ -104,9 +107,9 @@ def _made_once(
 
 
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
-    """The files below folders and in archives that can be read, each with where it comes from.
+    """Yield the readable files below folders and in archives, each with its origin.
 
-    Raises `InputError` where there is no root, or one that cannot be looked into.
+    Raises `InputError` if there is no root, or one cannot be read.
     """
     from grammar.syntax.source import Source
     from support.files.discovery import IngestError, source_files
@@ -119,10 +122,10 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
 
 
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
-    """The files of the project of a file, the path of that file among them, and what was left out.
+    """Return the files of a file's project, its own path among them, and what was left out.
 
-    What lies below `project_root`, of which `grammar.semantics.link` takes the file's own project.
-    Files that cannot be read are left out, but not the one that was asked for.
+    The files are those below `project_root` that `grammar.semantics.link` puts into the file's
+    project. Files that cannot be read are left out, except the requested one.
     """
     from grammar.syntax.source import Source
     from support.files.discovery import (
@@ -178,7 +181,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
 
 
 def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
-    """The files whose names a file has, or one of these, and data and submit of the controller."""
+    """Return the files to which a file refers, directly or not, with system data and submit."""
     from grammar.semantics.link import words_of
     from support.files.discovery import SourceFile, read_source
 
@@ -203,7 +206,7 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
 
 
 def _programs_in(place: Path) -> str:
-    """What can be run in a folder or an archive, those that robot programmers write first."""
+    """Return the programs in a folder or archive as text, those in Program folders first."""
     from support.files.discovery import Found, IngestError, discover
 
     with as_input_errors(IngestError):
@@ -219,7 +222,7 @@ def _programs_in(place: Path) -> str:
 
 
 def _of_one_project(found: "Sequence[Found]", root: Path, main: str) -> "list[Found]":
-    """The files of the project of one of them, by where they lie."""
+    """Return the files in the same project as ``main``, judged by their paths."""
     from grammar.semantics.link import File, link
 
     by_path = {_shown(one, root): one for one in found}
@@ -234,14 +237,14 @@ def _of_one_project(found: "Sequence[Found]", root: Path, main: str) -> "list[Fo
 
 
 def _is_in_drive(path: str) -> bool:
-    """Whether a file lies in R1 or STEU; what lies beside them is another project."""
+    """Return whether a file lies in R1 or STEU; files beside these are another project."""
     return not _PARTS.isdisjoint(path.upper().split("/")[:-1])
 
 
 def _shown(found: "Found", root: Path) -> str:
-    """The path of a file below the root of its project: the same wherever the project lies.
+    """Return the path of a file below the root of its project, without control characters.
 
-    As people are shown it: a name may hold what no terminal, image or trace can.
+    It does not depend on where the project lies.
     """
     from support.files.discovery import printable
 
@@ -251,7 +254,7 @@ def _shown(found: "Found", root: Path) -> str:
 
 
 def _in_archive(file: Path) -> tuple[Path | None, str]:
-    """The archive that a path leads into, and the rest of the path; none for a plain file."""
+    """Return the archive in a path and the rest of the path; ``None`` for a plain file."""
     for parent in file.parents:
         if parent.suffix.lower() == ".zip" and parent.is_file():
             return parent, file.relative_to(parent).as_posix()
@@ -259,20 +262,19 @@ def _in_archive(file: Path) -> tuple[Path | None, str]:
 
 
 def project_root(path: Path) -> Path:
-    """The folder that holds the project of a file or folder, from wherever one enters it.
+    """Return the folder of the project to which a file or folder belongs.
 
-    That is what lies around R1 or STEU, or around a drive of another name (`is_drive`). A folder
-    without such a layout around it is a project itself; the files of one that lies in a folder of
-    KRL, Program for instance, belong to that, and so do those of folders beside it that have what
-    its programs call (`_calling`). A folder with a few programs among much else is not
-    taken for one: of that a program has what it names (`read_sources`).
+    It is the folder around R1 or STEU, or around a drive with another name (`is_drive`). Without
+    such a layout the folder itself is the project; but if it lies in a folder of KRL, such as
+    Program, that is. A folder with a few programs among many other files is no project: a program
+    then has the files to which it refers (`read_sources`).
     """
     path = path.resolve()
     return _root_around(path if path.is_dir() else path.parent, _Disk())
 
 
 class _Folders(Protocol[_Folder_contra]):
-    """What lies in folders, on disk or in an archive."""
+    """The content of folders, on disk or in an archive."""
 
     def folders_in(self, folder: _Folder_contra) -> list[str]: ...
 
@@ -301,7 +303,7 @@ def _root_around(folder: _P, folders: _Folders[_P]) -> _P:
 
 
 def _calling(folder: _P, folders: _Folders[_P]) -> _P:
-    """The folder around it that also holds what its programs call and do not have.
+    """Return the folder around it that also holds what its programs call and do not have.
 
     One that holds mostly files of the same names is a copy, or another controller.
     """
@@ -322,7 +324,7 @@ def _calling(folder: _P, folders: _Folders[_P]) -> _P:
 
 
 def _is_of_controller(path: PurePath) -> bool:
-    """Whether a file lies in a folder that every controller has."""
+    """Return whether a file lies in a folder that every controller has."""
     return not _OF_CONTROLLERS.isdisjoint(part.upper() for part in path.parts[:-1])
 
 
@@ -334,23 +336,24 @@ def _is_controller(root: Path) -> bool:
 
 
 def _is_project(root: Path) -> bool:
-    """Whether all KRL below the root of a project belongs to it."""
+    """Return whether all KRL files below a root belong to one project."""
     disk = _Disk()
     is_whole = disk.is_of_krl(root) or (not any(map(os.DirEntry.is_file, _entries(root))))
     return _is_controller(root) or (is_whole and bool(disk.below(root)))
 
 
 def _near(folder: Path, disk: "_Disk") -> list[Path]:
-    """The KRL files of a folder, and those of folders in it that hold some, and so on."""
+    """Return the KRL files in a folder and, recursively, in its folders that have some."""
     inner = (folder / name for name in disk.folders_in(folder))
     below = (_near(one, disk) for one in inner if not one.is_symlink() and disk.programs(one))
     return [*disk.programs(folder), *chain.from_iterable(below)]
 
 
 def project_paths(path: Path) -> list[Path]:
-    """What to read for all that a file or folder sees: its project, or the files beside it.
+    """Return the paths to read for everything a file or folder sees.
 
-    A folder or an archive without a controller around it is all there is.
+    This is its project, or the files beside it. For a folder or an archive without a controller
+    around it, it is the path itself.
     """
     archive, _ = _in_archive(path)
     if archive is not None or not path.exists():
@@ -362,7 +365,7 @@ def project_paths(path: Path) -> list[Path]:
 
 
 def _as_given(root: Path, path: Path) -> Path:
-    """A folder around a path, relative where that is."""
+    """Return a folder around a path; relative if the path is."""
     if root == path.resolve():
         return path
     is_near = not path.is_absolute() and root.drive == Path.cwd().drive
@@ -370,22 +373,25 @@ def _as_given(root: Path, path: Path) -> Path:
 
 
 class _Disk:
-    """Folders on disk; one that cannot be looked into holds nothing."""
+    """Folders on disk; an unreadable one counts as empty."""
 
     def folders_in(self, folder: Path) -> list[str]:
         return [one.name for one in _entries(folder) if one.is_dir()]
 
     def programs(self, folder: Path) -> list[Path]:
-        """The KRL files directly in it."""
+        """Return the KRL files directly in a folder."""
         return [path for one in _entries(folder) if _is_krl(path := Path(one))]
 
     def is_of_krl(self, folder: Path) -> bool:
-        """Whether at least half of the files in it are KRL."""
+        """Return whether at least half of the files in a folder are KRL."""
         files = [_is_krl(Path(one)) for one in _entries(folder) if one.is_file()]
         return 0 < len(files) <= 2 * sum(files)
 
     def below(self, folder: Path) -> list[Path]:
-        """The KRL files in it and in its folders; none where there is much else, or a link."""
+        """Return the KRL files below a folder.
+
+        Empty if most of its files are others, if there are too many, or if one is a link.
+        """
         todo, seen = [folder], list[Path]()
         while todo:
             for one in _entries(todo.pop()):
@@ -396,7 +402,7 @@ class _Disk:
         return files if len(seen) <= 2 * len(files) else []
 
     def calls(self, file: PurePath) -> Set[str]:
-        """The routines that a file calls, in upper case."""
+        """Return the routines that a file calls, in upper case."""
         from support.files.decode import Decoded, decode
 
         try:
@@ -423,7 +429,7 @@ def _is_krl(path: Path) -> bool:
 
 
 class _Listing:
-    """Folders as the paths of the KRL files in an archive have them, with these files."""
+    """Folders of an archive, from the paths of its KRL files."""
 
     def __init__(self, files: "Mapping[PurePosixPath, Found]") -> None:
         self._files = files

@@ -1,4 +1,4 @@
-"""Options for the arm and the objects around it, for commands that run programs."""
+"""Options for the arm and its surroundings, for commands that run programs."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OwnRobot:
-    """What the options brought; ``None`` where they say nothing."""
+    """The arm and scene from the options; ``None`` for those not given."""
 
     machine: "MachineData | None" = None
     file: "RobotFile | None" = None
@@ -29,7 +29,7 @@ def robot_options(
     *,
     has_robot: bool,
 ) -> OwnRobot:
-    """What --machine, --urdf, --mjcf and --scene name. Raises `InputError`."""
+    """Return the arm and scene of --machine, --urdf, --mjcf, --scene. Raises `InputError`."""
     for file in (machine, urdf, mjcf, scene):
         if file is not None and file.is_dir():
             raise InputError(f"{file}: a folder, not a file")
@@ -55,7 +55,7 @@ def robot_options(
 
 
 def _with_torques_beside(machine: "MachineData", path: Path) -> "MachineData":
-    """The machine with the torques of a $robcor.dat in the same folder, if it is of that arm."""
+    """Return the machine with the torques of $robcor.dat in its folder, if for the same arm."""
     from interp.robot.kinematics.data_list import DataListError
     from interp.robot.kinematics.dynamics_data import with_torques
     from interp.robot.kinematics.machine_data import MachineDataError
@@ -75,7 +75,7 @@ def _with_torques_beside(machine: "MachineData", path: Path) -> "MachineData":
 
 
 def read_machine_file(path: Path) -> "MachineData":
-    """The arm of a $machine.dat whose kinematics can be solved. Raises `InputError`."""
+    """Return the arm in a $machine.dat, if its kinematics can be solved. Raises `InputError`."""
     from interp.robot.kinematics.arms import kinematics_of
     from interp.robot.kinematics.data_list import DataListError
     from interp.robot.kinematics.machine_data import MachineDataError, read_machine

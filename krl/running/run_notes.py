@@ -14,7 +14,7 @@ _START_REFUSED = 1443
 
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
-    """Stand-ins, skipped lines, and what a program that never ends waited for."""
+    """Yield notes: stand-ins, skipped lines, and what an endless program waited for."""
     from interp.robot.models import default_machine
     from interp.standins.completion import summary
 
@@ -42,9 +42,9 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
 
 
 def refused(done: "RunResult") -> Iterator["TraceEvent"]:
-    """What did not end the run though a controller refuses it.
+    """Yield events that a real controller refuses, although they did not end the run.
 
-    That is a fault of the submit program, and a first motion that is none (1443).
+    These are faults of the submit program, and a first motion that is not allowed (1443).
     """
     for event in done.events:
         is_fault = event.kind == "fault" and event.task == "submit"
@@ -54,9 +54,9 @@ def refused(done: "RunResult") -> Iterator["TraceEvent"]:
 
 
 def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
-    """Routines of the file that move the arm, if the one that the run began with does not.
+    """Yield a hint where the motions are, if the run had none.
 
-    If it contains motions itself, the block around the first one.
+    They may be in other routines of the file, or in a block that was not entered.
     """
     from grammar.check.analysis.context import placed
     from grammar.syntax import ast
@@ -87,7 +87,7 @@ def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
 
 
 def _seen(done: "RunResult") -> Iterator[str]:
-    """Contacts and excessive torques; estimates in one line."""
+    """Yield contacts and excessive torques; estimates share one line."""
     certain = [seen for seen in done.observations if not seen.is_estimate]
     for seen in certain[:_MOST_LISTED]:
         yield f"{seen.kind}: {seen}"

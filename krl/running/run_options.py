@@ -1,4 +1,4 @@
-"""Options of commands that run programs, and the set-up that they result in."""
+"""Options of commands that run programs, and the set-up made from them."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 _AUTO = "auto"
 _MOST_LISTED = 3
-#: Virtual seconds that a run lasts at most, without and with automatic inputs.
+#: Default limit of virtual seconds, without and with automatic inputs.
 _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
-#: With automatic inputs a program only serves whose arm has stood for so many seconds.
+#: With automatic inputs, seconds without motion after which the program is taken to wait for ever.
 _AUTO_PATIENCE = 20.0
 
 
 class Executor(StrEnum):
-    """Who executes the program."""
+    """The executor of the program."""
 
     TREE = "tree"
     VM = "vm"
@@ -48,7 +48,7 @@ class Robot(StrEnum):
 
 
 class Motion(StrEnum):
-    """How motions are planned."""
+    """The planning strategy."""
 
     LOOKAHEAD = "lookahead"
     BATCH = "batch"
@@ -65,9 +65,9 @@ ExecutorOption = Annotated[
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What a program is run with, as the command line or a client has given it.
+    """The options of a run, from the command line or a client.
 
-    `with_run_options` makes an option of each field.
+    `with_run_options` makes an option from each field.
     """
 
     routine: Annotated[
@@ -141,7 +141,7 @@ class RunOptions:
 
 
 def with_run_options(command: Callable[..., int]) -> Callable[..., int]:
-    """``command`` with an option for each field of `RunOptions` in place of its ``options``."""
+    """Return ``command`` with an option for each field of `RunOptions` instead of ``options``."""
     hints = get_type_hints(RunOptions, include_extras=True)
     parameters = [
         Parameter(one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=hints[one.name])
@@ -167,10 +167,10 @@ def prepared_run(
     is_full: bool = False,
     is_traced: bool = False,
 ) -> "tuple[CheckedProgram, RunSetup]":
-    """The program and its setup; says on stderr what was left out and what was assumed.
+    """Return the program and its set-up; print on stderr what was left out or assumed.
 
     In a terminal inputs are automatic by default. ``is_full`` and ``is_traced`` are those of the
-    setup. Raises `InputError`, and within `expected_errors` what it turns into that.
+    set-up. Raises `InputError`, and exceptions that `expected_errors` turns into it.
     """
     from interp.controller.inputs.automatic_inputs import OPERATOR
     from interp.controller.inputs.input_script import Script
@@ -228,10 +228,10 @@ def prepared_run(
 
 @contextmanager
 def expected_errors(robot: Robot, *needed: str) -> Iterator[None]:
-    """Raise what packages say about input as `InputError`.
+    """Raise exceptions of the packages below about input as `InputError`.
 
-    An arm needs its packages, which are imported late; so are ``needed``. Their absence is found
-    at once.
+    Also if a package is missing that the arm needs, or one of ``needed``: these are imported late
+    but checked at once.
     """
     from interp.robot.simulation.scene import SceneError
     from interp.values.faults import RuntimeFailure
@@ -253,6 +253,6 @@ def _text(file: Path) -> str:
 
 
 def _agreed_profile(file: Path) -> str:
-    """The profile that the settings of a project name, or the one of today's controllers."""
+    """Return the profile in the project's settings, or that of current controllers."""
     agreed = settings_of([file])
     return (agreed and agreed.profile) or "kss8"

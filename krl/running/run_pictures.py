@@ -1,4 +1,4 @@
-"""Pictures of a run for a report: the film of the arm, and where it went."""
+"""Pictures of a run for a report: a film of the arm, and its path."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -19,7 +19,7 @@ _LONGEST = 60
 
 
 def write_run_film(target: Path, done: RunResult, program: CheckedProgram, setup: RunSetup) -> None:
-    """Film the arm, with clock, line and the signals that are on in each frame."""
+    """Write a film of the arm; each frame shows the clock, the line and active signals."""
     arm = _recorded_arm(done, setup)
     if arm is None:
         return
@@ -34,7 +34,7 @@ def write_run_film(target: Path, done: RunResult, program: CheckedProgram, setup
 
 
 def write_run_picture(target: Path, done: RunResult, setup: RunSetup) -> None:
-    """A picture of the arm at its last place, with its path."""
+    """Write a picture of the arm at its final position, with its path."""
     arm = _recorded_arm(done, setup)
     if arm is None:
         return
@@ -43,9 +43,9 @@ def write_run_picture(target: Path, done: RunResult, setup: RunSetup) -> None:
 
 
 def _recorded_arm(done: RunResult, setup: RunSetup) -> tuple[Cell, Any, Any] | None:
-    """The cell, the times (µs), and the axes at each of them, as measured where a robot does so.
+    """Return cell, times (µs) and axes, as measured if the robot measures them.
 
-    ``None`` where no set-points were recorded.
+    Returns ``None`` if no set-points were recorded.
     """
     if done.path is None or not len(done.path.times):
         return None
@@ -55,7 +55,7 @@ def _recorded_arm(done: RunResult, setup: RunSetup) -> tuple[Cell, Any, Any] | N
 
 
 def _captions(events: Sequence[TraceEvent], program: CheckedProgram, moments: Any) -> Iterator[str]:
-    """What stands in the frame of each moment (µs)."""
+    """Yield the caption of each frame, whose times are ``moments`` (µs)."""
     sources = {unit.module.path: unit.source.text.splitlines() for unit in program.units.values()}
     signals: dict[str, bool] = {}
     line, rest = "", iter(events)

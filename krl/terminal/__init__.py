@@ -1,1 +1,1 @@
-"""The terminal: options, progress, tables, output files, the summary of a survey."""
+"""Terminal output and shared options: progress, tables, output files, survey summary."""

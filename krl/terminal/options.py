@@ -1,4 +1,4 @@
-"""Options and arguments that several commands have, said once."""
+"""Options and arguments that several commands share."""
 
 import os
 from collections.abc import Iterable
@@ -12,25 +12,25 @@ from krl.errors import InputError
 if TYPE_CHECKING:
     from recovery.negatives.negatives import Negative
 
-#: Where a command's record goes; `output_files.check_files` checks it before the work.
+#: The file for a command's record; `output_files.check_files` checks it in advance.
 JsonOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the record to FILE.")
 ]
-#: The same for commands that have written it into a folder anyway.
+#: The same for commands that write the record into a folder anyway.
 JsonTooOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Also write the record to FILE.")
 ]
 JobsOption = Annotated[
     int | None, typer.Option(min=1, metavar="N", help="Processes; default: one per core.")
 ]
-#: The same where little work is done in this process.
+#: The same for commands that do little work in this process.
 JobsOrOneOption = Annotated[
     int | None,
     typer.Option(
         min=1, metavar="N", help="Processes; default: one per core, or one for little input."
     ),
 ]
-#: What a bench measures on; see `programs_or_ours`.
+#: The programs that a bench measures; see `programs_or_ours`.
 ProgramsArgument = Annotated[
     list[Path] | None,
     typer.Argument(
@@ -38,7 +38,7 @@ ProgramsArgument = Annotated[
     ),
 ]
 
-#: What is surveyed; see `corpus_or_ours`.
+#: The files that are surveyed; see `corpus_or_ours`.
 CorpusArgument = Annotated[
     list[Path] | None,
     typer.Argument(
@@ -52,20 +52,23 @@ _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
 
 
 def all_cores(jobs: int | None) -> int:
-    """How many processes were asked for, or one a core."""
+    """Return the requested number of processes; the default is one for each core."""
     return jobs or os.cpu_count() or 1
 
 
 def programs_or_ours(paths: list[Path] | None) -> list[Path]:
-    """What was named, or the programs of the corpus in the working folder.
+    """Return the named paths, or the programs of the corpus in the working folder.
 
-    Raises `InputError` where nothing was named and there is no corpus.
+    Raises `InputError` if nothing is named and there is no corpus.
     """
     return paths or _there(_OURS)
 
 
 def corpus_or_ours(paths: list[Path] | None) -> list[Path]:
-    """What was named, or all of the corpus in the working folder; raises as the above."""
+    """Return the named paths, or the whole corpus in the working folder.
+
+    Raises `InputError` if nothing is named and there is no corpus.
+    """
     return paths or _there([_CORPUS])
 
 
@@ -77,7 +80,7 @@ def _there(folders: Iterable[Path]) -> list[Path]:
 
 
 def negatives_or_ours(folder: Path | None = None) -> "tuple[Negative, ...]":
-    """The programs that a grammar has to reject: those below a folder, or of a checkout, if any.
+    """Return the negatives below a folder; by default those of a checkout, if there is one.
 
     Raises `recovery.negatives.negatives.NegativeError`.
     """

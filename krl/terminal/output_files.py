@@ -1,4 +1,4 @@
-"""Output files of commands: checked before the work, written whole or not at all."""
+"""Output files of commands: checked in advance, written atomically."""
 
 import json
 import re
@@ -11,19 +11,19 @@ from krl.errors import InputError
 from support.files.atomic_write import atomic_path
 
 _NOT_ASCII: Final = re.compile(r"[^\n\x20-\x7e]")
-#: So many pieces of the encoder, of some ten characters each, are one of ours.
+#: How many pieces of the encoder, of some ten characters each, are written at once.
 _AT_ONCE: Final = 10_000
 
 
 def check_targets(out: Path, json_file: Path | None) -> None:
-    """Raise `InputError` where the folder is no folder or the file cannot be one."""
+    """Raise `InputError` if ``out`` cannot be a folder or ``json_file`` cannot be a file."""
     if out.exists() and not out.is_dir():
         raise InputError(f"{out}: not a folder")
     check_files(json_file)
 
 
 def check_files(*targets: Path | None) -> None:
-    """Raise `InputError` where something cannot be a file: it is a folder, or below a file."""
+    """Raise `InputError` if a target cannot be a file: it is a folder, or below a file."""
     for target in targets:
         if target is None:
             continue
@@ -37,16 +37,16 @@ def check_files(*targets: Path | None) -> None:
 
 
 def write_json(record: Mapping[str, Any], target: Path | None, indent: int | None = None) -> None:
-    """Write ``record``, if there is a target, on one line or with so many blanks a level."""
+    """Write ``record`` if there is a target; on one line, or indented by ``indent``."""
     if target is None:
         return
     write_pieces(target, chain(json_pieces(record, indent), "\n"))
 
 
 def json_pieces(record: Any, indent: int | None = None) -> Iterator[str]:
-    """The record as JSON that steers no terminal: what is not printable is escaped.
+    """Yield the record as JSON with unprintable characters escaped.
 
-    In pieces where it is indented, so that the text of a large one is never held whole.
+    With ``indent`` it comes in pieces, so that the text of a large record is never held as a whole.
     """
     encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False, indent=indent)
     pieces = iter([encoder.encode(record)] if indent is None else encoder.iterencode(record))
@@ -55,7 +55,7 @@ def json_pieces(record: Any, indent: int | None = None) -> Iterator[str]:
 
 
 def write_pieces(target: Path, pieces: Iterable[str]) -> None:
-    """Write a text that comes in pieces as UTF-8, whole or not at all."""
+    """Write a text that comes in pieces as UTF-8, atomically."""
     with atomic_path(target) as part, part.open("w", encoding="utf-8", newline="") as file:
         file.writelines(pieces)
 

@@ -1,4 +1,4 @@
-"""Progress of long-running commands."""
+"""Progress display of long-running commands."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _SECONDS: Final = 10.0
 
 
 class Bar:
-    """How far a step of a command is; calling it advances it.
+    """The progress of one step of a command; call it to advance.
 
-    A bar where stderr is a terminal. Elsewhere a line each 10 s, so that logs of short commands
-    stay clean; ``KRL_PROGRESS`` says after how many seconds, and 0 never.
+    In a terminal it is a bar on stderr. Otherwise it prints a line every 10 s, so that logs of
+    short commands stay clean; ``KRL_PROGRESS`` sets other seconds, 0 means never.
     """
 
     #: When the last line was written, or the command began (s).
@@ -45,13 +45,13 @@ class Bar:
             sys.stderr.flush()
 
     def note(self, line: str) -> None:
-        """Say something above the bar, where there is a terminal."""
+        """Print a line above the bar, in a terminal only."""
         if self._shown is not None:
             console = self._shown[0].console
             console.print(line, markup=False, highlight=False, soft_wrap=True)
 
     def expect(self, total: int) -> None:
-        """Say how many there will be in all, once that is known."""
+        """Set the total, once it is known."""
         self._total = total
         if self._shown is not None:
             progress, task = self._shown
@@ -59,7 +59,7 @@ class Bar:
 
 
 def _interval() -> float:
-    """Seconds between lines; those by default where the environment has no number."""
+    """Return the seconds between lines, from the environment or the default."""
     try:
         return float(os.environ.get("KRL_PROGRESS", ""))
     except ValueError:
@@ -68,7 +68,7 @@ def _interval() -> float:
 
 @contextmanager
 def progress_bar(label: str, total: int | None = None) -> Iterator[Bar]:
-    """Show on stderr how far the block is; a bar of a terminal goes away at its end."""
+    """Yield a progress display; the bar in a terminal disappears at the end of the context."""
     if not sys.stderr.isatty():
         yield Bar(label, total)
         return

@@ -1,4 +1,4 @@
-"""The terminal summary of a survey: figures, clusters, path of the page."""
+"""The summary of a survey in the terminal: figures, clusters, path of the page."""
 
 import math
 from pathlib import Path
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from recovery.records import ClusterRecord, StartRecord, SurveyRecord
 
 _ROWS = 15
-_WIDE = 120  # columns: on narrower terminals the title needs the room of the example
+_WIDE = 120  # columns; narrower terminals have no room for examples
 _WORDS = 12
 _SKIPPED = 5
 
@@ -55,7 +55,7 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
 
 
 def share(part: float, whole: float) -> str:
-    """Per cent, rounded down: all but one is not yet all."""
+    """Return a percentage, rounded down, so that all but one is never shown as 100 %."""
     return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
 
 
@@ -82,7 +82,7 @@ def _table(clusters: "list[ClusterRecord]", *, has_examples: bool) -> Table:
 
 
 def _advice(record: "SurveyRecord") -> str:
-    """How far mending goes: "mend these nine and 95 % of the files parse"."""
+    """Return how many clusters to repair so that 95 % of the files parse."""
     files = record["files"]
     for number, step in enumerate(record["greedy"], 1):
         if step["parsed"] >= 0.95 * files:
@@ -94,7 +94,7 @@ def _advice(record: "SurveyRecord") -> str:
 
 
 def _story(start: "StartRecord") -> str:
-    """What the ledger made of the restrictive start."""
+    """Return what the ledger achieved, starting from the restrictive start."""
     clusters, constructs = start["clusters"], start["constructs"]
     each = f", {len(clusters) / len(constructs):.1f} clusters each" if constructs else ""
     answered = sum(cluster["answered_by"] is not None for cluster in clusters)

@@ -1,4 +1,4 @@
-"""A table in the terminal: words in its first column, figures in the others."""
+"""Tables in the terminal: text in the first column, figures in the others."""
 
 from collections.abc import Iterable, Sequence
 
@@ -7,7 +7,7 @@ from rich.table import Table
 
 
 def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> Table:
-    """A table with these headings, whose figures are never broken over lines."""
+    """Return a table with these headings whose figures are never wrapped."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for place, heading in enumerate(columns):
         table.add_column(heading, justify="right" if place else "left", no_wrap=place > 0)
@@ -17,5 +17,5 @@ def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> Table
 
 
 def plain(figure: float | None) -> str:
-    """A figure in few digits; a dash where there is none."""
+    """Return a figure with few digits, or a dash if there is none."""
     return "–" if figure is None else f"{figure:g}"

@@ -20,7 +20,7 @@ _PLANTED_FIGURES = ("planted", "found", "in_place", "median", "p95", "most")
 
 
 def _missing(value: str) -> str:
-    """The value of ``--missing``, if it is one."""
+    """Return the value of ``--missing`` if it is valid."""
     try:
         is_share = 0 <= float(value) < 1
     except ValueError:

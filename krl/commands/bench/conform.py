@@ -172,7 +172,7 @@ def _removals(json_file: Path | None, jobs: int) -> int:
 
 
 def _rows(drawn: Mapping[str, Any]) -> str:
-    """The mutants that no case has failed with, a line each."""
+    """Return a row for each mutant that no case detects."""
     keys = ("fate", "file", "line", "function", "was", "now", "case", "reached", "changed", "why")
     rows = [one for one in drawn.get("trials", ()) if one["fate"] not in ("red", "invalid")]
     lines = sorted({"\t".join(str(one[key]) for key in keys) for one in rows})

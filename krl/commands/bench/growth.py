@@ -44,7 +44,7 @@ _Writer = Callable[[Path, int], Path]
 
 
 def _archive(folder: Path, size: int) -> Path:
-    """An archive with many small members."""
+    """Return an archive with many small members."""
     path = folder / "a.zip"
     with zipfile.ZipFile(path, "w") as archive:
         for i in range(max(1, size // 100)):
@@ -62,7 +62,7 @@ def _written(shape: Shape) -> _Writer:
 
 
 def _shapes(shapes: Mapping[str, Shape], name: str | None = None) -> dict[str, _Writer]:
-    """Files of these shapes, or such files with another name."""
+    """Return functions that write files of these shapes, by title; ``name`` is the file name."""
     return {
         title: _written(shape if name is None else replace(shape, name=name))
         for title, shape in shapes.items()
@@ -75,7 +75,7 @@ _G4_END: Final = " ;\nX : 'X' ;\nNAME : [A-Z]+ ;\n"
 
 
 def _messages(file: Path) -> bytes:
-    """What an editor says that opens a file, asks for what it shows of it, and goes."""
+    """Return the messages of an editor that opens a file, requests its features, and exits."""
     uri = {"uri": file.as_uri()}
     text = file.read_text(encoding="ascii")
     opened = {"textDocument": {**uri, "languageId": "krl", "version": 1, "text": text}}
@@ -107,12 +107,12 @@ def _messages(file: Path) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """A command, and what it reads.
+    """A command and its input.
 
-    Its words may have the places ``{file}``, ``{other}`` (the same with lines left out), ``{out}``
-    and ``{small}``. ``before`` are commands that make what is read, and are not measured; what
-    they print is at ``{printed}``; shapes that they refuse are left out. ``said`` gives the
-    standard input.
+    Its words may contain the placeholders ``{file}``, ``{other}`` (the same file without some
+    lines), ``{out}`` and ``{small}``. ``before`` are commands that make the input and are not
+    measured; their output is at ``{printed}``; shapes that they reject are omitted. ``said`` gives
+    the standard input.
     """
 
     words: str
@@ -266,7 +266,7 @@ def growth(
 
 
 def _kept(record: Path | None) -> list[dict[str, Any]]:
-    """The rows of an earlier record."""
+    """Return the rows of an earlier record."""
     if record is None or not record.is_file():
         return []
     try:
@@ -290,7 +290,7 @@ def _isolated(entry: str, shape: str, largest: int) -> Growth | None:
 
 
 class _Unmade(Exception):
-    """What a command is to read cannot be made of a shape."""
+    """The input of a command cannot be made from a shape."""
 
 
 def _measure(entry: str, shape: str, largest: int) -> Growth | None:
@@ -305,8 +305,8 @@ def _measure(entry: str, shape: str, largest: int) -> Growth | None:
         numbers = count()
 
         def prepare(size: int) -> list[str]:
-            # a folder for each: what is remembered by path is not what is measured, and a program
-            # is read with all that lies beside and below it
+            # a folder for each, because results cached by path would distort the measurement, and a
+            # program is read with all files beside and below it
             folder = root / str(next(numbers))
             for name in ("given", "less", "small"):
                 (folder / name).mkdir(parents=True)
@@ -353,7 +353,7 @@ def _measure(entry: str, shape: str, largest: int) -> Growth | None:
 
 
 def _row(entry: str, shape: str, found: Growth | None) -> dict[str, Any]:
-    """A row of the record; without costs where the shape cannot be made for the command."""
+    """Return a row of the record; without costs if the input cannot be made from the shape."""
     if found is None:
         return {"entry": entry, "shape": shape, "costs": []}
     return {

@@ -1,4 +1,4 @@
-"""`krl bench mutation`: how well the search for causes finds its way back."""
+"""`krl bench mutation`: how often the search for causes finds the removed part of a grammar."""
 
 from pathlib import Path
 from typing import Annotated

@@ -49,7 +49,7 @@ _SERVED = ("end", "halt", "waits", "goes on")
 
 
 class Part(StrEnum):
-    """What there is of a backup."""
+    """How much of a project a backup contains."""
 
     WHOLE = "whole"
     MODULES = "modules"
@@ -58,7 +58,7 @@ class Part(StrEnum):
 
 
 def _kinds(value: str) -> str:
-    """The value of ``--damage``, if each of its kinds is one."""
+    """Return the value of ``--damage`` if each of its kinds is valid."""
     from grammar.bench.damage import DAMAGES
 
     kinds = list(DAMAGES) if value == "all" else value.split(",")
@@ -191,7 +191,7 @@ def programs(
 
 
 def _origins(paths: list[Path], scripts: Path | None) -> "list[Origin]":
-    """What is to be surveyed, with the scripts for it."""
+    """Return the origins to survey, with their scripts."""
     from interp.bench.program_survey import Origin
 
     files: dict[str, list[Source]] = {}
@@ -205,7 +205,7 @@ def _origins(paths: list[Path], scripts: Path | None) -> "list[Origin]":
 
 
 def _scripts(folder: Path | None) -> dict[str, str]:
-    """What inputs do, by the name of an archive or of a program."""
+    """Return the input scripts by the name of an archive or of a program."""
     if folder is None:
         return {}
     if not folder.is_dir():
@@ -215,7 +215,7 @@ def _scripts(folder: Path | None) -> dict[str, str]:
 
 
 def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
-    """Put what is known so far into the record."""
+    """Put the results so far into the record."""
     rows = [row for one in finished for row in one.rows]
     record["programs"] = rows
     record["unread"] = [

@@ -146,7 +146,7 @@ def _print(record: Mapping[str, Any]) -> None:
 
 
 def _reasons(trials: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Why routines came no further, and what faults they ended with; the most frequent first."""
+    """Yield the reasons why routines failed, and their faults; the most frequent first."""
     for stage, words in _STAGES:
         counts = Counter(one["reason"] for one in trials if one["stage"] == stage)
         if counts:

@@ -21,7 +21,7 @@ SizesOption = Annotated[
 
 
 def sizes_of(given: str) -> list[float]:
-    """Sizes in MB from a list with commas."""
+    """Return the sizes in MB from a list with commas."""
     try:
         sizes = [float(size) for size in given.split(",") if size.strip()]
     except ValueError:
@@ -32,7 +32,7 @@ def sizes_of(given: str) -> list[float]:
 
 
 def phases_table(record: Mapping[str, Any]) -> Table:
-    """Where the time went, a row for each phase."""
+    """Return a row with the time of each phase."""
     return figures(
         ("where the time goes", "seconds", "share"),
         [
@@ -43,7 +43,7 @@ def phases_table(record: Mapping[str, Any]) -> Table:
 
 
 def peak(entry: Mapping[str, Any]) -> str:
-    """The most memory that a corpus took."""
+    """Return the peak memory for a corpus."""
     return "–" if entry["peak_mb"] is None else f"{entry['peak_mb']:,.0f} MB"
 
 

@@ -109,7 +109,7 @@ def _print(record: Mapping[str, Any]) -> None:
 
 
 def _before_running(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, float]]:
-    """What comes before the first statement of a kernel, in milliseconds; medians."""
+    """Yield the time of each phase before the first statement of a kernel: medians in ms."""
     yield "check", median(row["load_ms"] for row in rows)
     yield "bytecode", median(row["translate_ms"] for row in rows)
     for name in rows[0]["start_ms"]:

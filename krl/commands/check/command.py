@@ -1,4 +1,4 @@
-"""The command: what is to be checked, under which settings, and what is done about it."""
+"""The command `krl check`: options, settings, baseline, exit status."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
-#: Findings that are no faults: why the robot stops.
+#: Codes of notes about why the robot stops, which are no faults.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
 
 
@@ -166,7 +166,7 @@ def _agreed(paths: Sequence[Path], file: Path | None, has_none: bool) -> Setting
 
 
 def _selection(agreed: Settings, select: list[str] | None, ignore: list[str] | None) -> "Selection":
-    """What is wanted: a choice on the command line stands in place of the one in the settings."""
+    """Return the selected findings; a choice on the command line replaces the one in settings."""
     from grammar.diagnostics.suppression import Selection
 
     with as_input_errors(ValueError):
@@ -175,7 +175,7 @@ def _selection(agreed: Settings, select: list[str] | None, ignore: list[str] | N
 
 @dataclass(frozen=True, slots=True)
 class _Check:
-    """A check that can be made again and again."""
+    """A check that can be repeated."""
 
     paths: Sequence[Path]
     options: "CheckOptions"
@@ -186,7 +186,7 @@ class _Check:
     cache: Path | None
 
     def run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
-        """The severities of the findings that are new, which it writes and counts on stderr."""
+        """Write the new findings, sum them up on stderr, and return their severities."""
         report, kept = self._found()
         more = ""
         if self.baseline is not None:
@@ -200,7 +200,7 @@ class _Check:
         return {one.severity for one in kept}
 
     def make_baseline(self, file: Path) -> int:
-        """Write all findings down as known."""
+        """Write all findings to a baseline."""
         from grammar.diagnostics.baseline import Baseline
 
         report, kept = self._found()
@@ -209,7 +209,7 @@ class _Check:
         return FINE
 
     def is_wanted(self, found: "Diagnostic") -> bool:
-        """Whether a finding is reported, but for the baseline."""
+        """Return whether a finding is reported, apart from the baseline."""
         return self.selection.keeps(found.code) and bool(self.agreed.adjusted([found]))
 
     def _found(self) -> "tuple[CheckReport, list[Diagnostic]]":
@@ -236,7 +236,7 @@ class _Check:
 
 
 def _packages(given: list[str]) -> tuple[str, ...]:
-    """The option packages of the command line and the settings."""
+    """Return the option packages of the command line and the settings."""
     from grammar.semantics.packages import load_packages
 
     names = {name.strip().upper() for word in given for name in word.split(",") if name.strip()}
@@ -248,7 +248,7 @@ def _packages(given: list[str]) -> tuple[str, ...]:
 
 
 def _asks_for_stops(selection: "Selection") -> bool:
-    """Whether those notes are among what was selected by name."""
+    """Return whether notes about stops were selected by their codes."""
     return bool(selection.select) and any(map(selection.keeps, _STOPS))
 
 
@@ -260,7 +260,10 @@ def _line_of(report: "CheckReport") -> Callable[[str, int], str]:
 
 
 def _usable(wanted: Path | None, default: Path | None) -> Path | None:
-    """The folder for what is kept; without a usable one nothing is, unless it was asked for."""
+    """Return the cache folder, or ``None`` if the default one is not usable.
+
+    Raises `InputError` if a folder was named and is not usable.
+    """
     folder = wanted or default
     if folder is None:
         return None

@@ -1,4 +1,4 @@
-"""`krl check --fix`: files mended where the remedy is plain, or shown as they would be."""
+"""`krl check --fix`: applies the fixes that are certain, or shows them as a diff."""
 
 import difflib
 from collections.abc import Callable, Sequence
@@ -22,9 +22,9 @@ def fix_files(
     *,
     is_shown: bool,
 ) -> bool:
-    """Mend the files below some paths, or show the differences; whether there were any.
+    """Fix the files below some paths, or show the differences; return whether there were any.
 
-    Encoding, line ends and all other lines stay as they are. Archives are not written to.
+    Encoding, line ends and all other lines stay as they are. Archives are not changed.
     """
     from grammar.check.project.repair import repair
     from grammar.syntax.source import Source

@@ -1,4 +1,4 @@
-"""Findings as they are written: text for people, and forms that other tools read."""
+"""Writing findings: text for people, and formats for other tools."""
 
 import io
 import os
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 _SKIPPED_SHOWN = 5
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
 _COMMANDS_OF_GITHUB = {"error": "error", "warning": "warning", "note": "notice"}
-#: What XML cannot have, not even as an escape. Compiled where it is used, as it takes 5 ms.
+#: Characters that XML cannot contain, even escaped. Compiled on use, because that takes 5 ms.
 _NOT_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 class Format(StrEnum):
-    """How findings are written."""
+    """The format in which findings are written."""
 
     TEXT = "text"
     JSON = "json"
@@ -46,7 +46,7 @@ def write(
     *,
     is_verbose: bool = False,
 ) -> None:
-    """Write findings to a file or the terminal; with ``is_verbose`` text names the rules."""
+    """Write findings to a file or the terminal; ``is_verbose`` adds rule IDs to text."""
     if format_ is Format.TEXT and out is None:
         _print_text(kept, report, is_verbose)
         return
@@ -80,7 +80,7 @@ def _written(
 
 
 def _lines(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> Iterator[str]:
-    """The findings for people."""
+    """Yield the lines of the text format."""
     from grammar.diagnostics.rendering import rendered
 
     return rendered(kept, lambda path, number: report.lines.get((path, number), ""), is_verbose)
@@ -92,7 +92,7 @@ def _said(found: "Diagnostic") -> str:
 
 
 def _github(found: "Diagnostic") -> str:
-    """A finding as a workflow command of GitHub Actions, which shows it beside its line."""
+    """Return a finding as a workflow command of GitHub Actions, which annotates its line."""
     region = found.region
     properties = {
         "file": found.path,
@@ -114,7 +114,7 @@ def _escaped(text: str) -> str:
 
 
 def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
-    """JUnit XML: a test case a file, with a failure for each finding that is more than a note."""
+    """Return JUnit XML: a test case for each file, a failure for each error or warning."""
     from junitparser import Failure, JUnitXml, TestCase, TestSuite
 
     by_path: dict[str, list[Failure]] = {path: [] for path in paths}
@@ -130,7 +130,7 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
         case.result = [*failures]
         cases.append(case)
     suite = TestSuite("krl check")
-    suite.add_testcases(cases)  # one by one, it counts all of them each time
+    suite.add_testcases(cases)  # all at once, because each call counts all of them again
     report = JUnitXml("krl check")
     report.add_testsuite(suite)
     stream = io.BytesIO()
@@ -139,7 +139,7 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
 
 
 def _print_text(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> None:
-    """The findings on the terminal, in colours where it has any."""
+    """Print the findings, in colour if the terminal has it."""
     lines = _lines(kept, report, is_verbose)
     if not (sys.stdout.isatty() or os.environ.get("FORCE_COLOR")):
         for line in lines:
@@ -165,7 +165,7 @@ def _coloured(line: str) -> "Text":
 
 
 def sum_up(kept: "Sequence[Diagnostic]", report: "CheckReport", more: str = "") -> None:
-    """What was checked and found, on one line of stderr, and what was left out."""
+    """Print what was checked, found and skipped on stderr."""
     from grammar.diagnostics.rendering import summary
 
     for skipped in report.skipped[:_SKIPPED_SHOWN]:

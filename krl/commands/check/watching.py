@@ -9,9 +9,9 @@ _ENDINGS = (".src", ".dat", ".sub", ".zip", ".toml")
 
 
 def changes(paths: Sequence[Path]) -> Iterator[None]:
-    """Once now, and then whenever programs or settings below some paths have changed.
+    """Yield once at the start, and again whenever programs or settings below the paths change.
 
-    Ends when it is interrupted.
+    Ends when interrupted.
     """
     from watchfiles import Change, watch
 
@@ -19,7 +19,7 @@ def changes(paths: Sequence[Path]) -> Iterator[None]:
         return path.lower().endswith(_ENDINGS)
 
     yield
-    # a file that is written anew in place of another is seen in its folder only
+    # a file that is replaced by another is only noticed in its folder
     roots = {path if path.is_dir() else path.absolute().parent for path in paths}
     for _ in watch(*roots, watch_filter=is_ours, raise_interrupt=False):
         typer.echo("", err=True)

@@ -1,1 +1,1 @@
-"""`krl conform`: cases, metamorphic laws and planted faults."""
+"""`krl conform`: conformance cases, metamorphic laws and planted faults."""

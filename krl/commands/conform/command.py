@@ -1,4 +1,4 @@
-"""`krl conform`: the conformance cases, on any executors and robots."""
+"""`krl conform`: runs the conformance cases on any executors and robots."""
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -138,7 +138,7 @@ def conform(
 
 @contextmanager
 def _expected_errors() -> Iterator[None]:
-    """What is not installed, here or on workers, and workers that cannot do the work."""
+    """Turn missing packages, here or on workers, and unusable workers into `InputError`."""
     from support.parallel.workers import WorkersError
 
     with as_input_errors(WorkersError), expected_extras():
@@ -179,7 +179,7 @@ def _conform(
 
 
 def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
-    """The cases, with what a recording needs to know of them."""
+    """Print the cases; the record has what a recording on a controller needs."""
     for case in cases:
         typer.echo(shown(f"{case.name:42} {','.join(case.rules):22} {case.title}"))
     expected = sum(len(case.expectations) for case in cases)
@@ -288,7 +288,7 @@ def _write(
 
 
 def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
-    """What failed, case by case, then the figures."""
+    """Print the failed cases, then the figures."""
     from conformance.evaluation.verdicts import VERDICTS
     from conformance.lint import coverage
 
@@ -308,7 +308,7 @@ def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
 
 
 def _print_failure(one: "CaseResult") -> None:
-    """Print on what a case failed and why; setups that failed alike share a line."""
+    """Print on which setups a case failed and why; equal failures share a line."""
     typer.echo(shown(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]"))
     failed = [result for result in one.results if result.verdict == "fail"]
     for reason in dict.fromkeys(result.reason for result in failed):
@@ -340,7 +340,7 @@ def _lint(words: Iterable[str]) -> int:
 
 
 def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> int:
-    """Write the cases, what they expect and what the tree interpreter does with them."""
+    """Write the cases, their expectations, and the results of the tree interpreter."""
     from conformance.export import write_export
 
     if not words or not words[0].endswith(".zip"):
@@ -364,7 +364,7 @@ def _compare(
     junit: Path | None,
     html: Path | None,
 ) -> int:
-    """Tell by suite how many cases each parser reads, or refuses, as it should."""
+    """Print for each suite how many cases each parser accepts or rejects correctly."""
     from conformance.parser_comparison import OWN, ParserError, compared, parsers
 
     if not wanted:
@@ -399,7 +399,7 @@ def _print_comparison(results: "Sequence[CaseResult]", names: Sequence[str]) -> 
 def _import(
     words: Sequence[str], json_file: Path | None, junit: Path | None, html: Path | None
 ) -> int:
-    """Judge a recording: what it fails, and what it says of rules that are unconfirmed."""
+    """Evaluate a recording: its failures, and its evidence on unconfirmed rules."""
     from conformance.recording import Recording, RecordingError, answers, evaluate_recording
     from conformance.suite.case import CaseError, find_cases
 

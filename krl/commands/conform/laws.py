@@ -1,4 +1,4 @@
-"""`krl conform --metamorphic N`: programs changed in ways that must not change what they do."""
+"""`krl conform --metamorphic N`: changes to programs that must not change their results."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,7 +25,7 @@ def check_laws(
     jobs: int | None,
     scheduler: str | None,
 ) -> int:
-    """Try every law, report each, and write the record; returns 1 where one was broken."""
+    """Try every law, report each, and write the record; return 1 if one is broken."""
     from conformance.metamorphic import LAWS, record_of, try_laws
 
     need(*ARM)

@@ -1,4 +1,4 @@
-"""`krl conform --fault`: a fault or a mutant in the controller, the arm or the interpreter."""
+"""`krl conform --fault`: plants a fault or a mutant in the controller, arm or interpreter."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,10 +14,10 @@ _SHOWN = 12
 
 @contextmanager
 def planted(words: str) -> Iterator[str]:
-    """Plant a fault as long as the context lasts; gives its whole name.
+    """Plant a fault while the context lasts; yield its full name.
 
-    ``words`` are some of it, enough to identify it, or a mutant: its name, or the file and line
-    that it alone is on. Raises `InputError` where they are not.
+    ``words`` are a part of its name that identifies it. For a mutant they are its name, or the file
+    and line if only one is there. Raises `InputError` if they identify none.
     """
     if "interp" in words and ":" in words:
         with _mutant(words) as name:
@@ -48,7 +48,7 @@ def _mutant(words: str) -> Iterator[str]:
 
 
 def _chosen(words: str) -> "Fault":
-    """The one with these words, or with these among its own, whatever the letter case."""
+    """Return the fault with these words, or the only one that contains them; ignores case."""
     from conformance.sensitivity.planted_faults import FAULTS
 
     wanted = words.strip().casefold()

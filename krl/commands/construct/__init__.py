@@ -1,1 +1,1 @@
-"""`krl construct`: constructs on their way into the grammar."""
+"""`krl construct`: constructs, which extend the grammar."""

@@ -1,4 +1,4 @@
-"""`krl construct oracle`: what the official implementation says about constructs."""
+"""`krl construct oracle`: the verdicts of the official implementation on constructs."""
 
 import os
 import shlex
@@ -86,7 +86,7 @@ def oracle(
 
 
 def _ask(constructs: "Sequence[Construct]", asked: "Oracle") -> int:
-    """Ask about constructs, write the verdicts into their files, say what was answered."""
+    """Ask about constructs, write the verdicts into their files, and print them."""
     from recovery.ledger.construct_file import text_of
     from recovery.ledger.oracle import verdict_on
     from support.files.atomic_write import write_together
