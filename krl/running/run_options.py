@@ -28,6 +28,9 @@ _MOST_LISTED = 3
 _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
 #: With automatic inputs, seconds without motion after which the program is taken to wait for ever.
 _AUTO_PATIENCE = 20.0
+#: Statements after which a program counts as endless: a few seconds of a machine, or of the tree
+#: interpreter.
+_STATEMENTS, _TREE_STATEMENTS = 10_000_000, 1_000_000
 
 
 class Executor(StrEnum):
@@ -125,13 +128,15 @@ class RunOptions:
         ),
     ] = None
     statements: Annotated[
-        int,
+        int | None,
         typer.Option(
             min=1,
             max=2**31 - 1,
-            help="Statements each program may execute before it counts as endless.",
+            metavar="N",
+            help="Statements each program may execute before it counts as endless; default: "
+            "10000000, with the executor tree 1000000.",
         ),
-    ] = 10_000_000
+    ] = None
     strict: Annotated[
         bool,
         typer.Option(
@@ -198,8 +203,10 @@ def prepared_run(
     if seconds is None:
         seconds, patience = (_AUTO_SECONDS, _AUTO_PATIENCE) if is_auto else (_SECONDS, _SECONDS)
     profile = Profile.load(options.profile or _agreed_profile(file))
+    executor = options.executor.value if options.executor is not None else available()[-1]
+    most = options.statements or (_TREE_STATEMENTS if executor == "tree" else _STATEMENTS)
     setup = RunSetup(
-        executor=options.executor.value if options.executor is not None else available()[-1],
+        executor=executor,
         robot=options.robot.value,
         profile=profile,
         script=script,
@@ -210,7 +217,7 @@ def prepared_run(
         motion=options.motion.value,
         until=round(seconds * 1e6),
         patience=round(patience * 1e6),
-        limits=Limits(statements=options.statements, per_slice=profile.statements),
+        limits=Limits(statements=most, per_slice=profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,
         machine=own.machine,

@@ -99,6 +99,18 @@ def test_statements_that_are_over(run: Run) -> None:
     assert out.endswith("it has not ended after 70 statements\n")
 
 
+@pytest.mark.parametrize(("executor", "most"), [("tree", 70), ("vm", 90)])
+def test_limit_of_statements(
+    run: Run, monkeypatch: pytest.MonkeyPatch, executor: str, most: int
+) -> None:
+    """The tree interpreter has a limit of its own, as it is slower."""
+    monkeypatch.setattr("krl.running.run_options._TREE_STATEMENTS", 70)
+    monkeypatch.setattr("krl.running.run_options._STATEMENTS", 90)
+    status, out, _ = run("LOOP\nENDLOOP\n", "--executor", executor)
+    assert status == 1
+    assert out.endswith(f"it has not ended after {most} statements\n")
+
+
 def test_all_executors_may_begin_as_many(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """Or traces would differ, where a submit program computes without end for instance."""
     seen: list[Limits | None] = []
