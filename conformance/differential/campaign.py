@@ -32,7 +32,6 @@ from support.parallel.workers import WorkersError
 _SHARD: Final = 50
 #: After so many shards, a process clears the caches of the front end, which grow by about 100 kB
 #: for each program.
-#: 100 kB each, would fill the memory.
 _LIFE: Final = 20
 #: A reduced program may need another seed for its random world to show the difference again; so
 #: many are tried.

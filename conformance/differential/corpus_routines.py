@@ -33,12 +33,9 @@ from interp.values.faults import BudgetExhausted, Fault, LinkError
 #: The stage that a routine reaches: it cannot be called, has errors, names something that does not
 #: exist, has something that is not compiled, is invalid bytecode, or can run. A routine that is
 #: ``unlinked`` or ``refused`` is run too, up to that place.
-#: not compiled, is no sound bytecode, or nothing is wrong with it. What is unlinked or refused runs
-#: all the same, until that is reached.
 Stage = Literal["uncalled", "errors", "unlinked", "refused", "unverified", "runs"]
 #: How a run ended: by itself, by a fault, at a missing name, after too many statements, after too
 #: many requests, or by a defect of ours.
-#: or by a defect of ours.
 Ending = Literal["", "end", "fault", "unlinked", "budget", "stopped", "crash"]
 
 

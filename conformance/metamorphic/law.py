@@ -11,7 +11,6 @@ from conformance.metamorphic.subject import Program, Run
 
 #: Returns a changed program, optionally with its own comparison; ``None`` if the law does not
 #: apply to the program.
-#: the law does not apply to it.
 Change = Callable[[Program, Random], "Program | tuple[Program, Compare] | None"]
 
 

@@ -63,7 +63,7 @@ def _sequence(items: Sequence[Any], change: Change) -> Iterator[Any]:
             yield found
 
 
-# ------------------------------------------------------------------------------------ made by hand
+# ---------------------------------------------------------------------------------- generated nodes
 
 
 def name(text: str) -> ast.Name:
@@ -91,7 +91,7 @@ def negated(condition: ast.Expression) -> ast.Unary:
     return ast.Unary(MADE, "NOT", parenthesised(condition))
 
 
-# ------------------------------------------------------------------------------------ looked at
+# ------------------------------------------------------------------------------------ queries
 
 
 def routines(module: ast.Module) -> tuple[ast.Routine, ...]:

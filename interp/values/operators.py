@@ -262,7 +262,7 @@ def kind_of_value(value: Value) -> Kind:
     return kind
 
 
-# ------------------------------------------------------------------------------- values at hand
+# ------------------------------------------------------------------------------- application
 
 
 def apply(operator: str, left: Value, right: Value) -> Value:

@@ -28,12 +28,10 @@ from support.lazy_dataclass import dataclass
 
 #: The effect of an event on a command: ``cancel`` ends it gently, a motion with its own braking
 #: ramp; ``stop`` ends it at once, a motion with the hardest ramp.
-#: ``stop`` ends it at once, a motion by the hardest ramp.
 Effect = Literal["start", "cancel", "stop"]
 
 #: What happens to a command. ``reached`` is a place of a motion, ``apex`` the middle of the blend
 #: after it; ``stopped`` is an event of the arm, which is at rest after a brake.
-#: behind it; ``stopped`` is the arm's, which stands still after it braked.
 What = Literal[
     "started",
     "ended",
