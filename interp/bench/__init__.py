@@ -1,1 +1,1 @@
-"""Executors, arm and real programs measured and compared."""
+"""Benchmarks of executors, arm and real programs."""

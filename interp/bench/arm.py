@@ -24,9 +24,9 @@ from interp.robot.simulation.factory import ROBOTS, RobotName, make_robot
 from interp.robot.simulation.tracking import Tracking
 from interp.values.poses import Pose
 
-#: Simulated seconds a second that are aimed at.
+#: The goals, in simulated seconds per second.
 AIMS: Final[dict[str, float]] = {"kinematic": 200.0, "mujoco": 20.0}
-#: How often `measure` reports progress.
+#: The number of times that `measure` reports progress.
 STEPS: Final = len(ROBOTS) + 2
 
 _CYCLE = 12_000  # µs
@@ -38,10 +38,10 @@ _POSES = 20_000  # for inverse kinematics
 
 
 def motions(count: int) -> list[Motion]:
-    """A program of so many motions: handling, and contours of a hand's breadth at 0.25 m/s.
+    """Return a program of ``count`` motions: handling, and small contours at 0.25 m/s.
 
-    By turns: a PTP to above the next contour, a LIN down to it, two along it, a CIRC, a LIN up. All
-    of them blend but the last, where a program would do something.
+    Each cycle is a PTP to above a contour, a LIN down to it, two LIN along it, a CIRC, and a LIN
+    up. All motions are blended except the last of a cycle, after which a program would act.
     """
     settings = Settings(
         placement=Placement(base=_BASE, tool=_TOOL),
@@ -69,10 +69,10 @@ def motions(count: int) -> list[Motion]:
 
 
 def measure(count: int = 200, on_step: Callable[[], None] = lambda: None) -> dict[str, Any]:
-    """The record of a bench of so many motions.
+    """Return the record of a benchmark of ``count`` motions.
 
-    Seconds are those of the processor, so that whatever else a computer does counts little. What is
-    loaded once is not counted.
+    Seconds are processor time, so that other load on the computer matters little. Modules are
+    loaded before the measurement.
     """
     program = motions(count)
     drive(program[:10], "kinematic")
@@ -107,10 +107,10 @@ def drive(
     *,
     thinking: int = 0,
 ) -> tuple[int, float]:
-    """Run motions to their end, at most so many ahead of the arm as an advance run is.
+    """Run motions to their end, with an advance run of limited depth.
 
-    ``thinking`` µs pass in the program before each motion: what a batch has to wait for. Returns
-    the time of the last event in µs, and the seconds that loading took.
+    ``thinking`` is the time in µs that passes in the program before each motion, for which a batch
+    has to wait. Return the time of the last event in µs, and the seconds that planning took.
     """
     machine = default_machine()
     arm = PlannedArm(machine, _HOME)
@@ -152,7 +152,7 @@ def _robot(name: RobotName, program: Sequence[Motion]) -> dict[str, Any]:
 
 
 def _inverse() -> tuple[int, float]:
-    """So many poses solved for all their ways, a thousand at once, and the seconds it took."""
+    """Return the number of poses that were solved, a thousand at once, and the seconds it took."""
     machine = default_machine()
     arm = kinematics_of(machine)
     lower = [axis.lower for axis in machine.axes]
@@ -169,6 +169,6 @@ def _axes(values: Sequence[float]) -> Target:
 
 
 def _point(x: float, y: float, z: float, turned: int) -> Target:
-    """The tool looks down, and turns with the row."""
+    """Return a target with the tool pointing down, turned a little."""
     angle = 8.0 * math.sin(turned)
     return {"X": x, "Y": y, "Z": z, "A": angle, "B": 0.0, "C": 180.0, "S": 2.0, "T": 2.0}

@@ -1,12 +1,12 @@
-"""Speed of the executors: kernels on each and in other languages; the cost of a request.
+"""Speed of the executors: kernels on each executor and in other languages; the cost of a request.
 
-All do the same work, ``WORK(N)``, as many rounds, one after the other in each round, and the best
-round counts: by the processor's time, not that of the clock on the wall. N is found with the tree
-interpreter, and what is fast does the work several times in a round. All must come to the same
-result. What comes before the first statement is measured by itself.
+All do the same work, ``WORK(N)``, in several rounds. In each round they run one after the other,
+and the fastest round counts, in processor time. N is determined with the tree interpreter; fast
+executors repeat the work in a round. All results must be equal. What happens before the first
+statement is measured separately.
 
-The full trace is off and a slice is a million statements, so that nothing but computing is
-measured; what a request costs is measured by itself.
+The full trace is off, and a slice is a million statements, so that only computation is measured.
+The cost of a request is measured separately.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ from interp.values.faults import LinkError
 
 ROUNDS = 3
 _LIMITS = Limits(statements=2**31 - 1, per_slice=1_000_000)
-#: The tree takes at least so many seconds for the work of a kernel, where any amount takes so long.
+#: The smallest time in s that the tree interpreter should need for the work of a kernel.
 _LEAST = 0.05
 _MOST: Final = 1_000_000  # as an amount
-#: What is fast does the work so often in a round.
+#: The number of repetitions of the work in a round for fast executors.
 _REPEATS: Final = 200
 _FAST: Final = frozenset({"native", COMPILED, "lua", "luajit", "c"})
-_PATIENCE: Final = 600  # seconds for a program in another language
-#: Where the result of a kernel goes.
+_PATIENCE: Final = 600  # the longest time in s for a program in another language
+#: The variable for the result of a kernel.
 _RESULT = "$OV_PRO"
 _REQUESTS = 20_000
-#: Does the work of the kernel that follows it.
+#: The driver of a kernel, whose text follows it.
 _MAIN: Final = f"""DEF KRL_BENCH()
    DECL INT ROUND, RESULT
    RESULT = 0
@@ -59,7 +59,7 @@ END
 
 
 class MeasurementError(Exception):
-    """A kernel cannot be measured, or executors do not come to the same; the message says which."""
+    """A kernel cannot be measured, or results differ; the text says which."""
 
 
 def measure_executors(
@@ -67,17 +67,17 @@ def measure_executors(
     rounds: int = ROUNDS,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Measure, by default the kernels of this project; ``on_step`` is called `steps` times.
+    """Measure kernels, by default those of this project; ``on_step`` is called `steps` times.
 
-    In the record, ``kernels`` have the ``amount`` N and as ``ns`` the nanoseconds that ``WORK(N)``
-    takes on each executor, ``None`` where there is none; ``load_ms``, ``translate_ms`` and
-    ``start_ms`` are what it takes to check the source, to make verified bytecode of it, and to make
-    each executor. ``vm_vs_tree`` and so on are geometric means of how many times as fast the first
-    is; ``request_us`` is what a request costs that writes or reads, from the instruction to behind
-    the reply, in microseconds, with the statement and the loop around it; ``controlled_vs_bare`` is
-    how many times as long the machine in C and native code compute under the controller.
+    In the record, each of ``kernels`` has the ``amount`` N, and in ``ns`` the time of ``WORK(N)``
+    on each executor in ns, ``None`` if it is not available. ``load_ms``, ``translate_ms`` and
+    ``start_ms`` are the times to check the source, to compile and verify it, and to create each
+    executor. ``vm_vs_tree`` and so on are geometric means of speed ratios. ``request_us`` is the
+    time of a request that writes or reads in µs, including its reply, statement and loop.
+    ``controlled_vs_bare`` is the ratio of the computing time of the machine in C and of native code
+    under the controller to that without it.
 
-    Raises `MeasurementError` where executors disagree or a kernel fails.
+    Raises `MeasurementError` if results differ or a kernel fails.
     """
     rows = []
     for kernel in kernels_in().values() if kernels is None else kernels:
@@ -110,7 +110,7 @@ def measure_executors(
 
 
 def steps(kernels: Sequence[Kernel]) -> int:
-    """How often `measure_executors` calls ``on_step``."""
+    """Return how many times `measure_executors` calls ``on_step``."""
     return len(kernels) + 1
 
 
@@ -119,19 +119,19 @@ def steps(kernels: Sequence[Kernel]) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Timed:
-    """The seconds that the work took, and what the kernel gave."""
+    """The seconds that the work took, and the result of the kernel."""
 
     seconds: float
     result: int
 
 
 def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
-    """The row of a kernel."""
+    """Return the row of a kernel."""
     amount = _amount(kernel)
     began = time.process_time()
     once = _prepared(kernel, amount, 1)
     loaded = time.process_time()
-    _verified = once.verified  # made now
+    _verified = once.verified  # compiles and verifies the program now
     translated = time.process_time()
     programs = {1: once, _REPEATS: _prepared(kernel, amount, _REPEATS)}
     start: dict[str, float] = {}
@@ -160,7 +160,7 @@ def _measured(kernel: Kernel, rounds: int) -> dict[str, Any]:
 
 
 def _repeats(name: str) -> int:
-    """How often an executor or a language does the work in a round."""
+    """Return the number of repetitions of the work in a round of an executor or language."""
     return _REPEATS if name in _FAST else 1
 
 
@@ -172,7 +172,7 @@ def _better(name: str, timed: _Timed, best: Mapping[str, _Timed]) -> _Timed:
 
 
 def _amount(kernel: Kernel) -> int:
-    """The first of 1, 2, 3, 4, 6, 9, … for which the tree takes `_LEAST`, or the last to work."""
+    """Return the first of 1, 2, 3, 4, 6, 9, … that takes `_LEAST`, or the last without a fault."""
     amount, working = 1, 0
     while amount <= _MOST:
         try:
@@ -189,15 +189,15 @@ def _amount(kernel: Kernel) -> int:
 
 
 def _prepared(kernel: Kernel, amount: int, repeats: int) -> Prepared:
-    """A program that does so much work so often."""
+    """Return a program that repeats the work of a kernel."""
     source = _MAIN.format(repeats=repeats, amount=amount) + kernel.krl
     return Prepared(load([Source(source, "krl_bench.src")], "krl_bench.src"))
 
 
 def _run(program: Prepared, executor: str, repeats: int) -> tuple[float, _Timed]:
-    """Make an executor and run a program that does the work so often.
+    """Create an executor, and run a program that repeats the work.
 
-    The seconds that the first takes, and those of the work once with its result.
+    Return the seconds for the creation, and those for the work once with its result.
     """
     gc.collect()
     began = time.process_time()
@@ -218,7 +218,7 @@ def _run(program: Prepared, executor: str, repeats: int) -> tuple[float, _Timed]
 
 
 def _mean(rows: Sequence[Mapping[str, Any]], slow: str, fast: str) -> float | None:
-    """How many times as fast one is as the other: the geometric mean over all with both."""
+    """Return the geometric mean of the speed ratios of two executors over all common kernels."""
     pairs = [(row["ns"][slow], row["ns"][fast]) for row in rows]
     ratios = [one / other for one, other in pairs if one and other]
     return math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios else None
@@ -256,18 +256,18 @@ int main(void)
     return 0;
 }}
 """
-#: Programs of other languages by their usual names.
+#: The possible commands of other languages.
 _COMMANDS: Final[Mapping[str, tuple[str, ...]]] = {
     "lua": ("lua5.4", "lua"),
     "luajit": ("luajit",),
     "c": ("cc", "gcc", "clang"),
 }
-#: What is measured; the machine in C where it was built, the others where they are installed.
+#: What is measured: executors, if they are available, and languages, if they are installed.
 MEASURED: Final = (*EXECUTORS, COMPILED, *_COMMANDS, "python")
 
 
 def _foreign(kernel: Kernel, amount: int, work: Path) -> Iterator[tuple[str, list[str]]]:
-    """The commands that run the kernel in other languages and print seconds and result."""
+    """Yield the commands that run the kernel in other languages and print seconds and result."""
 
     def driver(template: str, file: Path) -> str:
         return template.format(file=file.resolve().as_posix(), amount=amount, repeats=_REPEATS)
@@ -285,7 +285,7 @@ def _foreign(kernel: Kernel, amount: int, work: Path) -> Iterator[tuple[str, lis
 
 
 def _run_foreign(name: str, command: Sequence[str]) -> _Timed:
-    """Seconds for the work once in a language, and its result."""
+    """Return the seconds for the work once in another language, and its result."""
     seconds, result = _output(command).split()
     return _Timed(max(float(seconds), 1e-9) / _repeats(name), int(result))
 
@@ -311,7 +311,7 @@ def _version(name: str) -> str | None:
 
 # ------------------------------------------------------------------------------- controller
 
-#: A request each 400,000 statements.
+#: A program with a request every 400,000 statements.
 _COMPUTING = f"""
 DEF RUN()
    DECL INT I, K, SUM
@@ -327,7 +327,7 @@ END
 
 
 def _controlled(executor: str, rounds: int) -> float:
-    """How many times as long computing takes in a run as without a controller."""
+    """Return the ratio of computing time in a run with a controller to that without one."""
     programs = [_program(_COMPUTING.format(count)) for count in (20, 120)]
     limits = Limits(statements=_LIMITS.statements)
     setup = RunSetup(executor=executor, is_traced=False, limits=limits)
@@ -371,7 +371,7 @@ def _program(text: str) -> Prepared:
 
 
 def _request_cost(executor: str, rounds: int) -> dict[str, float]:
-    """Microseconds for a request that writes and one that reads, with their replies."""
+    """Return the µs of a request that writes and of one that reads, with their replies."""
     return {"write": _cost(_WRITING, executor, rounds), "read": _cost(_READING, executor, rounds)}
 
 

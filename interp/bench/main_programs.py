@@ -1,11 +1,11 @@
-"""Main programs of controllers' backups, run whole: which get to their end, what stops the others.
+"""Main programs of controller backups, run completely: which end, and what stops the others.
 
-A main program is the first routine of a file below R1, outside the folders of the controller and of
-its packages, that takes no arguments, moves the arm, and is called by no other program but the one
-that only chooses between programs, CELL. It is run with the machine data, tools, bases and points
-of its own backup, with its submit program where there is one, with somebody at the panel who goes
-on after a HALT, acknowledges messages and gives each dialogue its first answer, and with a cell
-that obliges: the inputs that a WAIT FOR waits for come after a second.
+A main program is the first routine of a file below R1, outside of the folders of the controller and
+its packages. It has no parameters, moves the arm, and is called by no other program except CELL,
+which only chooses between programs. It is run with the machine data, tools, bases and points of its
+own backup, and with its submit program if there is one. A simulated operator continues after a
+HALT, acknowledges messages, and gives each dialogue its first answer. A simulated cell fulfils each
+WAIT FOR after a second.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from interp.session import RunResult, RunSetup, run_program, submit_of
 from interp.standins.uses import FOLDER
 from interp.values.faults import FAULTS, Fault, LinkError
 
-#: Folders of a backup that hold what the controller and its packages bring along.
+#: Folders of a backup with the files of the controller and its packages.
 _NOT_OF_USERS: Final = frozenset({"SYSTEM", "TP", "MADA", "TEMPLATE"})
-#: Requests of the submit program in a cycle: it goes round many times a second all the same.
+#: Requests of the submit program in a cycle; this is enough for several passes per second.
 _SUBMIT_REQUESTS: Final = 20
 _CHOOSES: Final = "CELL"
 _MOVES: Final = (ast.Motion, ast.SplineBlock)
 
-#: A line with so many events is in a loop.
+#: The number of events of one line from which on the program counts as being in a loop.
 _ROUNDS: Final = 100
-#: So long in µs may the arm stand before a program counts as one that waits.
+#: How long the arm may stand, in µs, before a program counts as waiting.
 PATIENCE: Final = 20_000_000
 
-#: How a main program ended: as a run ends, or ``waits`` where the arm has stood for `PATIENCE`,
-#: ``goes on`` where it went round in a loop when its time was over, ``moves`` where it still moved
-#: then and it is unknown whether it would have ended, ``unlinked`` at what no file has, ``refused``
-#: where it could not begin, ``cpu`` where it has taken too long for whoever waits.
+#: How a main program ended: as a run ends, or ``waits`` if the arm has stood for `PATIENCE`,
+#: ``goes on`` if it was in a loop when its time was over, ``moves`` if it still moved then and it
+#: is unknown whether it would have ended, ``unlinked`` at a name that no file declares, ``refused``
+#: if it could not begin, ``cpu`` if it took too much processor time.
 Result = Literal[
     "end",
     "halt",
@@ -67,7 +67,7 @@ Result = Literal[
 class MainProgram:
     """A main program, and the first routine of its submit program if its backup has one.
 
-    ``has_machine``: whether its backup has the machine data of an arm.
+    ``has_machine`` says whether its backup has the machine data of an arm.
     """
 
     prepared: Prepared
@@ -79,12 +79,12 @@ class MainProgram:
 
 @dataclass(frozen=True, slots=True)
 class Ran:
-    """What came of a main program: virtual seconds, motions made, and where and why it ended.
+    """The result of a main program: virtual seconds, number of motions, where and why it ended.
 
-    ``at`` is where it was when its time was over. ``inputs``: how many changes of inputs it
-    took to fulfil its waits. ``skipped`` are lines that failed where something
-    stood in for what the backup lacks, ``stood_in`` what did. ``own_faults`` tell file, line and
-    why of lines that failed and name nothing that stood in; ``is_own_fault``: there are such.
+    ``at`` is the place that it had reached. ``inputs`` is the number of changes of inputs that
+    fulfilled its waits. ``skipped`` is the number of lines that failed and were skipped, and
+    ``stood_in`` are the stand-ins in use. ``own_faults`` has file, line and reason of failed lines
+    that name no stand-in; ``is_own_fault`` says whether there are any.
     """
 
     result: Result
@@ -103,10 +103,10 @@ class Ran:
 def main_programs(
     sources: Iterable[Source], *, stands_in: bool = False
 ) -> tuple[list[MainProgram], list[tuple[str, str]]]:
-    """The main programs of files of one origin, and which files cannot be read and why.
+    """Return the main programs in the files of an origin, and the unreadable files with reasons.
 
-    Files that are not laid out like a backup have none of R1: all their folders count. A file that
-    is all there is counts wherever it lay; where something ``stands_in``, with parameters too.
+    If the files are not laid out like a backup, there is no R1, and all their folders count. A
+    single file counts wherever it is; with ``stands_in``, its routine may also have parameters.
     """
     files = list(sources)
     programs, unread = load_all(files, stands_in=stands_in)
@@ -140,7 +140,7 @@ def main_programs(
 
 
 def is_of_controller(path: str) -> bool:
-    """Whether a file lies in a folder of the controller or of its packages."""
+    """Return whether a file is in a folder of the controller or of its packages."""
     return not _NOT_OF_USERS.isdisjoint(_folders(path))
 
 
@@ -153,7 +153,7 @@ def _folders(path: str) -> list[str]:
 
 
 def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
-    """The names of routines that others call, but for CELL, and of those that move the arm."""
+    """Return the names of routines that others than CELL call, and of those that move the arm."""
     calls: dict[str, set[str]] = {}
     moving: set[str] = set()
     for routine in program.routines.values():
@@ -173,7 +173,7 @@ def _calls(program: CheckedProgram) -> tuple[set[str], set[str]]:
 
 
 def _moves(routine: ast.Routine) -> bool:
-    """Whether a routine moves the arm itself."""
+    """Return whether a routine itself contains a motion."""
     return any(isinstance(node, _MOVES) for one in routine.body for node in walk(one))
 
 
@@ -185,7 +185,7 @@ def _has_machine(program: CheckedProgram) -> bool:
 
 
 def survey_profile() -> Profile:
-    """The default profile with a slower submit program: less of it, more of what moves."""
+    """Return the default profile with a slower submit program, so the robot gets more time."""
     return replace(Profile.load(), submit_requests=_SUBMIT_REQUESTS)
 
 
@@ -199,11 +199,11 @@ def run_main(
     script: str = "",
     is_over: Callable[[], bool] = lambda: False,
 ) -> Ran:
-    """Run a main program; ``script`` adds to what the person at the panel and the cell do.
+    """Run a main program; ``script`` adds to the actions of the operator and of the cell.
 
-    ``is_over`` is asked after each virtual second whether it has taken too long. A defect of ours
-    is a result like others, its exception the reason. Raises `ScriptError` for a script that names
-    what does not exist.
+    ``is_over`` is called after each virtual second, and says whether the program has taken too
+    long. A defect of ours is a result like others, with its exception as the reason. Raises
+    `ScriptError` for a script with an unknown name.
     """
     seen = _Seen()
     text = script + "\n" + OPERATOR
@@ -267,9 +267,9 @@ def run_main(
 
 
 def _own_faults(program: CheckedProgram, run: RunResult, stood_in: Iterable[str]) -> Iterator[str]:
-    """The lines of the backup that failed and name nothing that stood in.
+    """Yield the lines of the backup that failed and name no stand-in.
 
-    A motion that another arm than its own cannot make is none.
+    A motion that only the stand-in arm cannot execute is left out.
     """
     failed = dict(run.controller.skipped)
     outcome = run.outcome
@@ -287,7 +287,7 @@ def _own_faults(program: CheckedProgram, run: RunResult, stood_in: Iterable[str]
 
 @dataclass(slots=True)
 class _Seen:
-    """What is kept of a trace: motions made, the last report of the time, the last line."""
+    """What is kept of a trace: the number of motions, the last time, the last line."""
 
     motions: int = 0
     now: int = 0
@@ -296,7 +296,7 @@ class _Seen:
 
     @property
     def is_in_loop(self) -> bool:
-        """Whether the last line has many events."""
+        """Whether the last line has had many events."""
         return self.visits[self.at] >= _ROUNDS
 
     def take(self, event: TraceEvent) -> None:

@@ -1,9 +1,9 @@
-"""All main programs of many backups, run in parallel processes, each within its own limits.
+"""The survey of main programs of many backups, in parallel processes and within limits.
 
-The files of an origin are read and linked once in one process, and its programs are run there one
-after the other. A program ends at the latest when its virtual time, its CPU time or its statements
-are used up, and a defect of ours ends it alone. Results are kept by the content of the origin, so
-that a survey that was ended goes on where it was.
+The files of an origin are read and linked once, in one process, which then runs its programs one
+after the other. A program ends at the latest when its virtual time, its processor time or its
+statements are used up. A defect of ours ends only that program. Results are stored by the content
+of the origin, so that an interrupted survey can be continued.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
 from support.parallel.sticky_pool import StickyPool
 
-#: Statements of one program: what computes longer without end is known to do so by then.
+#: The largest number of statements of a program: an endless computation is detected before.
 _STATEMENTS: Final = 3_000_000
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where files come from, the files, and scripts of their programs by the stem of the file.
+    """The origin of files, the files, and scripts for their programs by the stem of the file.
 
-    ``script`` is for all of its programs. ``damage`` is what kind its files have suffered.
+    ``script`` is for all of its programs. ``damage`` is the kind of damage of its files.
     """
 
     name: str
@@ -53,25 +53,25 @@ class Origin:
     damage: str = ""
 
 
-#: What there is of a backup: all, what its users wrote without the folders of the controller, all
-#: but the data lists, or each program file by itself.
+#: The part of a backup that remains: all, the files of its users without the folders of the
+#: controller, all except data lists, or each program file by itself.
 Part = Literal["whole", "modules", "code", "file"]
 
 
 @dataclass(frozen=True, slots=True)
 class Chance:
-    """Draws a share of paths, as they are given: each by itself, whatever others there are."""
+    """Draws a random sample of paths; each path is drawn independently of the others."""
 
     share: float = 1.0
     seed: int = 1
 
     def draws(self, path: str) -> bool:
-        """Whether a path is among them."""
+        """Return whether a path is in the sample."""
         return Random(f"{self.seed} {path}").random() < self.share
 
 
 def remaining(origins: Iterable[Origin], part: Part) -> Iterator[Origin]:
-    """The origins with what there is of them."""
+    """Yield the origins with only the remaining part of their files."""
     for origin in origins:
         some = [one for one in origin.sources if _remains(one, part)]
         if part == "file":
@@ -81,7 +81,7 @@ def remaining(origins: Iterable[Origin], part: Part) -> Iterator[Origin]:
 
 
 def damaged(origins: Iterable[Origin], kinds: Sequence[str], seed: int) -> Iterator[Origin]:
-    """Each origin with each kind of damage, one at a time; ``""`` is none."""
+    """Yield each origin with each kind of damage, one at a time; "" means no damage."""
     for origin, kind in product(origins, kinds):
         some = (damaged_source(one, kind, seed) if kind else one for one in origin.sources)
         yield replace(origin, sources=tuple(one for one in some if one), damage=kind)
@@ -95,9 +95,9 @@ def _remains(source: Source, part: Part) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """How programs are run, and which: those that ``sample`` draws.
+    """How programs are run, and which of them: those that ``sample`` draws.
 
-    ``until`` is the most virtual time in µs, ``cpu`` the most CPU time in seconds.
+    ``until`` is the limit of virtual time in µs, ``cpu`` that of processor time in s.
     """
 
     executor: str
@@ -111,7 +111,7 @@ class Bounds:
 
 @dataclass(frozen=True, slots=True)
 class Surveyed:
-    """An origin whose programs have run: their rows, files that cannot be read, and the reasons.
+    """An origin whose programs have run: their rows, and the unreadable files with reasons.
 
     A row has ``origin``, ``damage`` and ``path``, the fields of `interp.bench.main_programs.Ran`,
     and ``wall`` in seconds.
@@ -131,11 +131,11 @@ def survey(
     on_found: Callable[[int], None] = lambda _count: None,
     on_done: Callable[[], None] = lambda: None,
 ) -> Iterator[Surveyed]:
-    """The results of each origin as soon as they are there; the largest are begun first.
+    """Yield the result of each origin when it is complete; the largest origins are begun first.
 
-    ``on_found`` receives the number of further programs found, ``on_done`` each that has run.
-    ``cache`` is a folder for results. Raises `input_script.ScriptError` for a
-    script that names what does not exist.
+    ``on_found`` is called with the number of further programs found, ``on_done`` for each that has
+    run. ``cache`` is a folder for results. Raises `input_script.ScriptError` for a script with an
+    unknown name.
     """
     key = code_digest("grammar", "interp", "support")
     with ResultStore(cache, f"programs {key}") as store, StickyPool(jobs) as pool:
@@ -144,7 +144,7 @@ def survey(
 
 @dataclass(slots=True)
 class _Running:
-    """An origin in a process: the results of its programs by their places; ``digest`` is of it."""
+    """An origin in a process, with the rows of its programs by index, and a digest of its input."""
 
     origin: Origin
     process: int
@@ -154,13 +154,13 @@ class _Running:
     rows: dict[int, dict[str, Any]] = field(default_factory=dict)
 
     def placed(self, place: int, row: dict[str, Any]) -> dict[str, Any]:
-        """A row with what it is about."""
+        """Return a row with its origin, damage and path."""
         name, damage = self.origin.name, self.origin.damage
         return {"origin": name, "damage": damage, "path": self.paths[place], **row}
 
 
 class _Survey:
-    """Gives each process an origin at a time."""
+    """Assigns an origin at a time to each process."""
 
     def __init__(
         self,
@@ -175,7 +175,7 @@ class _Survey:
         self._bounds = bounds
         self._on_found = on_found
         self._on_done = on_done
-        #: The program that each is about; ``None`` for the list of an origin's programs.
+        #: The program of each pending result; ``None`` for the list of an origin's programs.
         self._pending: dict[Future[Any], tuple[_Running, int | None]] = {}
 
     def run(self, origins: Sequence[Origin]) -> Iterator[Surveyed]:
@@ -233,12 +233,12 @@ def _size(sources: Sequence[Source]) -> int:
 
 # --------------------------------------------------------------------------- in a process
 
-#: The programs of the origin that this process works on.
+#: The programs of the origin on which this process works.
 _programs: list[tuple[MainProgram, str]] = []
 
 
 def _list_programs(origin: Origin, bounds: Bounds) -> tuple[list[str], list[tuple[str, str]]]:
-    """The paths of the main programs of an origin, and files that cannot be read."""
+    """Return the paths of the main programs of an origin, and its unreadable files."""
     mains, unread = main_programs(origin.sources, stands_in=bounds.stands_in)
     scripts = dict(origin.scripts)
     _programs[:] = [
@@ -250,7 +250,7 @@ def _list_programs(origin: Origin, bounds: Bounds) -> tuple[list[str], list[tupl
 
 
 def _run_program(place: int, bounds: Bounds) -> dict[str, Any]:
-    """The row of one program: the fields of `Ran`, and its wall time."""
+    """Return the row of one program: the fields of `Ran`, and its wall-clock time."""
     main, script = _programs[place]
     profile = survey_profile()
     setup = RunSetup(

@@ -1,1 +1,1 @@
-"""Runs of unit tests of robot programs: calls of routines, stand-ins, coverage."""
+"""Support for unit tests of robot programs: drivers that call routines, stand-ins, coverage."""

@@ -1,7 +1,7 @@
-"""Coverage of statements and branches, from the events of traces.
+"""Coverage of statements and branches, computed from the events of traces.
 
-A branch is a way out of IF, UNTIL and SWITCH as the trace records it, and of a FOR or WHILE whether
-its body was entered, and whether it was passed by without a single pass.
+For IF, UNTIL and SWITCH, the branches are those that the trace reports. A FOR or WHILE has two
+branches: its body was entered, and it was passed without entering the body.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ _PASSED: Final = "zero times"
 class FileCoverage(TypedDict):
     """How often each statement, branch and routine of a file was executed.
 
-    ``branches`` are by line, then by their name; ``routines`` by name: the line of the first
-    statement, and how often it was executed.
+    ``branches`` are by line, then by name. ``routines`` are by name: the line of the first
+    statement, and how often that was executed.
     """
 
     lines: dict[int, int]
@@ -33,13 +33,13 @@ class FileCoverage(TypedDict):
     routines: dict[str, tuple[int, int]]
 
 
-#: By the path of the file.
+#: The coverage of files, by path.
 CoverageRecord = dict[str, FileCoverage]
 
 
 @dataclass(frozen=True, slots=True)
 class _Statements:
-    """What there is to execute in a file; ``loops`` gives the last line of FOR and WHILE."""
+    """The statements and branches of a file; ``loops`` has the last line of each FOR and WHILE."""
 
     lines: frozenset[int]
     ways: Mapping[int, Mapping[int, str]]
@@ -48,7 +48,7 @@ class _Statements:
 
 
 class Coverage:
-    """Counts what the runs of a program execute; ``paths`` are the files that count."""
+    """Counts what the runs of a program execute in the files with the given ``paths``."""
 
     def __init__(self, program: CheckedProgram, paths: Iterable[str]) -> None:
         wanted = frozenset(paths)
@@ -59,9 +59,9 @@ class Coverage:
         }
 
     def of(self, events: Iterable[TraceEvent], but: Mapping[str, range]) -> CoverageRecord:
-        """What one run has executed, by its full trace.
+        """Return what one run has executed, from its full trace.
 
-        ``but`` are lines by file that were replaced and executed nothing of the program.
+        ``but`` are lines by file that were replaced, and are not lines of the program.
         """
         counts = {path: _empty(one) for path, one in self._files.items()}
         passes: dict[str, _Passes] = {}
@@ -93,7 +93,7 @@ class Coverage:
 
 @dataclass(slots=True)
 class _Passes:
-    """Follows the lines of a task, to distinguish the first pass of a loop from the others."""
+    """Follows the lines of a task, to distinguish the first pass of a loop from later passes."""
 
     files: Mapping[str, _Statements]
     counts: CoverageRecord
@@ -106,7 +106,7 @@ class _Passes:
         self.arrived.pop(depth, None)
 
     def begun(self, file: str, line: int, depth: int) -> None:
-        """A statement begins; line 0 where the routine at this depth ends instead."""
+        """A statement begins; line 0 says that the routine at this depth ends."""
         loop_file, loop = self.arrived.pop(depth, ("", 0))
         if loop:
             last = self.files[loop_file].loops[loop]
@@ -122,7 +122,7 @@ class _Passes:
 
 
 def coverage_of(records: Sequence[CoverageRecord]) -> CoverageRecord:
-    """The sum of several records, of the files that any of them has."""
+    """Return the sum of several records, for all files in any of them."""
     total: CoverageRecord = {}
     for record in records:
         for path, one in record.items():
@@ -177,7 +177,7 @@ def _statements(program: CheckedProgram, unit: Unit) -> _Statements:
 
 
 def _is_passed_through(node: ast.For) -> bool:
-    """Whether a loop cannot but be entered: from one number up to another."""
+    """Return whether a loop is always entered, because it counts from a number up to another."""
     first, last = node.first, node.last
     if not isinstance(first, ast.IntegerLiteral) or not isinstance(last, ast.IntegerLiteral):
         return False
@@ -185,7 +185,7 @@ def _is_passed_through(node: ast.For) -> bool:
 
 
 def _blocks(body: Sequence[ast.Statement]) -> Iterator[ast.Statement]:
-    """All statements of a body, whatever block they stand in."""
+    """Yield all statements of a body, including those in blocks."""
     for statement in body:
         yield statement
         if not isinstance(statement, ast.SplineBlock):

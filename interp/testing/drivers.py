@@ -1,8 +1,9 @@
-"""Programs with drivers: a routine of ours that sets variables and calls what is tested.
+"""Programs with drivers: added routines that set variables and call the routine under test.
 
-Drivers, and the bodies of routines that stand in, are written behind the text of files, and the
-body of a routine that is stood in for shrinks to one call of it. So every line of a program keeps
-its number. What they contain is KRL: it is typed, checked and executed as the program itself.
+Drivers, and the bodies of stand-ins, are appended to the text of files. The body of a routine that
+is replaced by a stand-in becomes a single call of the stand-in, padded with empty lines. So every
+line of the program keeps its number. The added text is KRL: it is typed, checked and executed like
+the program itself.
 """
 
 from __future__ import annotations
@@ -19,21 +20,21 @@ from grammar.syntax.source import Source
 from interp.program.load import CheckedProgram, Routine
 from interp.standins.uses import FOLDER
 
-#: What a driver calls the result of the function that it calls.
+#: The variable of a driver for the result of the function that it calls.
 RESULT: Final = "KRL_RESULT"
-#: The routine in which variables can be looked at once a run is over; it waits at its first line.
+#: The routine in which variables can be inspected after a run; it waits at its first line.
 VALUES: Final = "KRL_VALUES"
 _DATA: Final = "KRL_TESTDATA"
 _LINE_END: Final = re.compile(r"\r\n|\r|\n")
 
 
 class DriverError(ValueError):
-    """A statement, a call or a stand-in that cannot be; the text says why, in one line."""
+    """A statement, a call or a stand-in is invalid; the text is one line with the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Driver:
-    """A routine ``name`` with statements in KRL, then a call: ``PICK(2)``, or ``PICK`` alone."""
+    """A routine ``name`` with statements in KRL, followed by a call: ``PICK(2)`` or ``PICK``."""
 
     name: str
     statements: tuple[str, ...]
@@ -45,11 +46,12 @@ def with_drivers(
     drivers: Sequence[Driver],
     stand_ins: Mapping[str, Sequence[Sequence[str]]],
 ) -> list[Source]:
-    """The files of a program with drivers, which see what its first file sees.
+    """Return the files of a program with drivers, which see everything that its main file sees.
 
-    ``stand_ins`` are statements by the name of the routine that they stand in for, with its
-    parameters: those of its first call, of its second and so on; the last ones remain. A routine
-    that no file has, and that has a stand-in already, becomes a file. Raises `DriverError`.
+    ``stand_ins`` has statements by the name of the routine that they replace: for its first call,
+    its second and so on; the last ones also serve all later calls. They may use the routine's
+    parameters. A routine that no file has, but that already has a stand-in, becomes a file. Raises
+    `DriverError`.
     """
     texts = {
         unit.module.path: unit.source.text
@@ -106,7 +108,7 @@ def _driver(program: CheckedProgram, driver: Driver) -> str:
 
 
 def _seen(program: CheckedProgram, key: str) -> Routine | None:
-    """The routine that the first file means by a name."""
+    """Return the routine to which a name refers in the main file, ``None`` if there is none."""
     for routine in program.routines_of(program.main):
         if routine.node.name.key == key:
             return routine
@@ -119,7 +121,7 @@ def _is_seen(program: CheckedProgram, routine: Routine) -> bool:
 
 
 def _read(statement: str) -> ast.Statement:
-    """The one statement that a line is."""
+    """Parse a line that must be a single statement."""
     read = read_module(f"DEF X()\n{statement}\nEND\n")
     if isinstance(read, ast.Module) and isinstance(read.content, ast.Program):
         (routine, *more) = read.content.routines
@@ -133,9 +135,9 @@ def _text(routine: Routine, node: ast.Node) -> str:
 
 
 def _shim(routine: Routine, own: str) -> tuple[int, int, str]:
-    """Where the statements of a routine stand, and the call that stands there instead.
+    """Return the span of the statements of a routine, and the call that replaces them.
 
-    As many lines as before, so that none behind them changes its number.
+    The replacement has as many lines, so that all following lines keep their numbers.
     """
     node, text = routine.node, routine.unit.source.text
     definitions = [one for one in node.body if isinstance(one, ast.Definition)]
@@ -153,13 +155,13 @@ def _shim(routine: Routine, own: str) -> tuple[int, int, str]:
 
 
 def _head_end(routine: Routine) -> int:
-    """Where the head of a routine ends: behind its parameters."""
+    """Return the end of the head of a routine, after its parameters."""
     text, start = routine.unit.source.text, routine.node.name.span[1]
     return text.index(")", start) + 1
 
 
 def _stand_in(routine: Routine, own: str, bodies: Sequence[Sequence[str]], counter: str) -> str:
-    """A routine with the parameters and declarations of another one, and other statements."""
+    """Return a routine with the parameters and declarations of another one, and new statements."""
     for statement in (one for body in bodies for one in body):
         _read(statement)
     node, text = routine.node, routine.unit.source.text
@@ -174,7 +176,7 @@ def _stand_in(routine: Routine, own: str, bodies: Sequence[Sequence[str]], count
 
 
 def _by_call(bodies: Sequence[Sequence[str]], counter: str) -> Iterator[str]:
-    """The statements of each call in turn; those of the last remain."""
+    """Yield the statements for each call in turn; the last ones also serve all later calls."""
     if not counter:
         yield from bodies[0]
         return

@@ -1,7 +1,7 @@
-"""Arms that come along: machine data in the words of a `$machine.dat`, and the MJCF made of it.
+"""The built-in arms: machine data in the form of a `$machine.dat`, and the MJCF generated from it.
 
-`kr6r900.dat` says where each of its values is from and what is assumed. `kr6r900.xml` is what
-`interp.robot.simulation.mujoco_model` makes of it; a test fails where it is stale.
+`kr6r900.dat` names the source of each value and says what is assumed. `kr6r900.xml` is the output
+of `interp.robot.simulation.mujoco_model`; a test fails if it is stale.
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ from pathlib import Path
 
 from interp.robot.kinematics.machine_data import MachineData, read_machine
 
-#: The arm of whoever brings no machine data of their own.
+#: The arm that is used if a project has no machine data.
 DEFAULT = "kr6r900"
 
 
 def model_file(name: str) -> Path:
-    """A file of this folder, such as ``kr6r900.dat``."""
+    """Return the path of a file in this folder, such as ``kr6r900.dat``."""
     return Path(__file__).with_name(name)
 
 
 @cache
 def default_machine() -> MachineData:
-    """The machine of `DEFAULT`."""
+    """Return the machine data of `DEFAULT`."""
     path = model_file(f"{DEFAULT}.dat")
     return read_machine(path.read_text(encoding="utf-8"), path.name)

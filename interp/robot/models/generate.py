@@ -1,4 +1,4 @@
-"""Makes the MJCF of the built-in arm: ``python -m interp.robot.models.generate``."""
+"""Generator of the MJCF of the built-in arm: ``python -m interp.robot.models.generate``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from interp.robot.simulation.mujoco_model import mjcf_of
 
 
 def generated() -> str:
-    """The text of the model, with a word on where it is from."""
+    """Return the text of the model, with a comment on its origin."""
     word = (
         f"<!-- Made of {DEFAULT}.dat by python -m interp.robot.models.generate; do not edit.\n"
         f"     {DEFAULT}.dat names the sources,"

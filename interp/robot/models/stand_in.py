@@ -1,16 +1,16 @@
-"""The arm of a project, or one in its place where its machine data is missing, and places for it.
+"""The arm of a project, a stand-in if its machine data is missing, and stand-ins for points.
 
-Points of a large robot lie out of reach of a small one. The stand-in is the default arm as long as
-its outstretched length covers the points of the project, measured from its shoulder. Where it does
-not, its links are longer by one factor, so that they do with any orientation. Nothing else is known
-of the arm; its dynamics are those of the default, and its axis limits are assumed.
+The points of a large robot may be out of reach of a small one. The stand-in is the default arm if
+its stretched length, measured from the shoulder, covers the points of the project. Otherwise all
+links are scaled by one factor, so that the points can be reached with any orientation. Nothing else
+is known of the arm: its dynamics are those of the default arm, and its axis limits are assumed.
 
-Points behind a $BASE that a program writes out count in it. Where the bases are lost too, points
-lie in the arm or behind it. Then the arm stands elsewhere: its foot is where it reaches the most of
-them in one posture, upright or hanging, from any side.
+Points after a $BASE that a program writes out are relative to it. If the bases are lost too, points
+may lie inside the arm or behind it. Then the foot of the arm is moved to where the arm reaches most
+points in one posture, standing or hanging, from any side.
 
-A point that no file has gets a place that the arm reaches, by its name: about the same posture, so
-that a straight line leads from each place to each other one.
+A point that no file contains gets a reachable position, derived from its name. All such positions
+are near one posture, so that a straight line leads from each to every other.
 """
 
 from __future__ import annotations
@@ -46,40 +46,40 @@ _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_
 _WHOLE: Final = re.compile(
     rf"{_POSE.pattern}\s*,\s*A{_NUMBER}\s*,\s*B{_NUMBER}\s*,\s*C{_NUMBER}", re.I
 )
-#: An assignment to $BASE, of a frame as it is written or of anything else.
+#: An assignment to $BASE, of a frame as an aggregate or of anything else.
 _BASE: Final = re.compile(rf"\$BASE\s*=\s*(?:{_WHOLE.pattern})?", re.I)
 NO_MACHINE: Final = "no machine data of an arm"
-#: For points fewer than these the foot of the arm stays where it is: they may be anything.
+#: With fewer points, the foot of the arm is not moved: they may be anything.
 _FEWEST: Final = 3
-#: The share of the points that is to be reached: a few may be garbage.
+#: The fraction of the points that must be reached: a few may be garbage.
 _SHARE: Final = 0.95
-#: How much of its outstretched length an arm uses to reach a point with any orientation.
+#: The fraction of its stretched length at which an arm reaches a point with any orientation.
 _USABLE: Final = 0.8
 _LARGEST: Final = 5.0
-#: So far from its first axis, in shares of its length, lies what the arm itself takes up below its
+#: Distance from axis 1, as a fraction of the arm's length, that the arm itself occupies below its
 #: shoulder.
 _OWN: Final = 0.2
-#: An arm stays where it is as long as it reaches this share of the points.
+#: An arm is not moved if it reaches this fraction of the points.
 _REACHED: Final = 0.75
-#: Where the middle of the points may lie in front of the foot: how far and how high, in shares of
-#: the length of the arm; and A and C in degrees of how the foot may stand. The first is the best.
+#: Candidates for the middle of the points relative to the foot (ahead and up, as fractions of the
+#: arm's length), and for A and C of the foot in degrees. The first are preferred.
 _AHEAD: Final = tuple(product((0.75, 0.6), (0.4, 0.7, 0.1)))
 _FEET: Final = tuple(product((0.0, 90.0, -90.0, 180.0), (0.0, 180.0)))
-#: mm and degrees from which on a number in a point is garbage.
+#: mm and degrees from which on a number in a point counts as garbage.
 _GARBAGE: Final = 1e6
-#: So many points are enough to place an arm.
+#: The largest number of points that are used to place an arm.
 _MOST_POINTS: Final = 64
-#: Axes in degrees of the posture about which places lie, and how far they are from it at most: the
-#: forearm level, the hand half down.
+#: The posture near which positions lie, in degrees, and their largest distance from it: the forearm
+#: is level, the hand half down.
 _POSTURE: Final = (0.0, -90.0, 95.0, 0.0, 50.0, 0.0)
 _SPREAD: Final = (35.0, 12.0, 12.0, 0.0, 15.0, 20.0)
 _DECIMALS: Final = 3
 
 
 def machine_data_of(sources: Iterable[Source]) -> Source | None:
-    """The machine data of an arm among the files of a project.
+    """Return the machine data of an arm among the files of a project, ``None`` if there is none.
 
-    Tools that copy files leave out the dollar sign of its name.
+    The dollar sign in its name may be missing, because some tools that copy files drop it.
     """
     for source in sources:
         is_named = source.kind == "dat" and source.name.upper().lstrip("$") == "MACHINE"
@@ -89,7 +89,7 @@ def machine_data_of(sources: Iterable[Source]) -> Source | None:
 
 
 def understood(source: Source) -> MachineData:
-    """The arm of machine data. Raises `MachineDataError` where its kinematics cannot be solved."""
+    """Return the arm of machine data; raise `MachineDataError` if it cannot be solved."""
     machine = read_machine(source.text, source.path)
     try:
         kinematics_of(machine)
@@ -101,10 +101,10 @@ def understood(source: Source) -> MachineData:
 def arm_or_stand_in(
     sources: Sequence[Source], default: MachineData, used: Iterable[Source] = ()
 ) -> tuple[MachineData, str]:
-    """The arm of a project's own machine data, else one in its place and why.
+    """Return the arm of a project, or a stand-in with the reason.
 
-    ``sources`` are the files that the project has itself, ``default`` the arm where it has none;
-    those that are ``used`` by the program to be run count by themselves too.
+    ``sources`` are the project's own files, and ``default`` the arm if they have no machine data.
+    The points in files that are ``used`` by the program must be reached too, counted separately.
     """
     source = machine_data_of(sources)
     if source is None:
@@ -119,7 +119,7 @@ def arm_or_stand_in(
 
 
 class Places:
-    """Places that the arm of a project reaches, for points that have none: one for each name."""
+    """Stand-ins for missing points: positions that the arm of a project reaches, by name."""
 
     def __init__(self, sources: Sequence[Source]) -> None:
         self._sources = sources
@@ -129,7 +129,7 @@ class Places:
         return kinematics_of(arm_or_stand_in(self._sources, default_machine())[0])
 
     def axes(self, name: str) -> tuple[float, ...]:
-        """The six axes in degrees; names that differ only in case have the same."""
+        """Return the six axes in degrees; names that differ only in case have the same axes."""
         digest = hashlib.sha256(name.upper().encode()).digest()
         wanted = []
         for place, axis in enumerate(self._arm.machine.axes):
@@ -140,7 +140,7 @@ class Places:
         return tuple(round(float(value), _DECIMALS) for value in coupled)
 
     def pose(self, name: str) -> tuple[float, ...]:
-        """X, Y, Z in mm and A, B, C in degrees of the flange in $WORLD, at those axes."""
+        """Return X, Y, Z in mm and A, B, C in degrees of the flange in $WORLD, at those axes."""
         machine = self._arm.machine
         flange = Pose.from_matrix(self._arm.forward(self.axes(name)).tolist())
         foot = machine.foot(machine.standing(self.axes(name))[ROBOT_AXES:])
@@ -150,26 +150,26 @@ class Places:
 def fitting_arm(
     machine: MachineData, every: Iterable[str], used: Iterable[str] = ()
 ) -> MachineData:
-    """The machine itself where it reaches the points in some texts, else a larger one.
+    """Return the machine if it reaches the points in some texts, else a larger one.
 
-    Points are aggregates of numbers with X, Y, Z in mm. Those in texts that are ``used`` are
-    reached, however many others are nearer.
+    Points are aggregates of numbers with X, Y, Z in mm. The points in texts that are ``used`` are
+    reached, no matter how many other points are nearer.
     """
     factor = max(_factor(machine, texts) for texts in (every, used))
     return machine if factor == 1.0 else _scaled(machine, factor)
 
 
 def with_assumed_limits(machine: MachineData) -> MachineData:
-    """A machine that no limit of its axes stops."""
+    """Return a machine whose axis limits reject no motion."""
     return replace(machine, axes=tuple(replace(axis, assumed=True) for axis in machine.axes))
 
 
 def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
-    """The machine where it stands, or where it reaches the points in some texts.
+    """Return the machine, moved to where it reaches the points in some texts if it does not.
 
     Points are aggregates of numbers with X, Y, Z in mm and A, B, C in degrees.
     """
-    every = [  # else a base, or a way, or garbage
+    every = [  # an aggregate without a position is a base, an offset, or garbage
         base @ Pose.of(*numbers)
         for text in texts
         for base, part in _stretches(text)
@@ -188,9 +188,9 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
     )
 
     def statuses(foot: Pose) -> Array:
-        """The Status of each way that points have within the limits, else -1: (points, ways).
+        """Return the Status of each solution within the limits, else -1: (points, solutions).
 
-        There is none to where the arm itself stands.
+        Points inside the arm itself have none.
         """
         flanges = np.array(foot.inverse().matrix) @ poses
         x, y, z = np.moveaxis(flanges[:, :3, 3], -1, 0)
@@ -200,7 +200,7 @@ def reaching(machine: MachineData, texts: Iterable[str]) -> MachineData:
         return np.where(inside, arm.status(np.nan_to_num(ways)), -1)
 
     def reached(foot: Pose) -> int:
-        """How many points have a way in the Status that has the most."""
+        """Return how many points can be reached with the Status that reaches most."""
         found = statuses(foot)
         return max(int((found == one).any(axis=-1).sum()) for one in range(8))
 
@@ -226,14 +226,14 @@ def _numbers(match: re.Match[str]) -> tuple[float, ...]:
 
 
 def _placed(base: Pose, point: tuple[float, ...]) -> Sequence[float]:
-    """X, Y, Z of a point in a base; of garbage, as it is."""
+    """Return X, Y, Z of a point given in a base; garbage is returned as it is."""
     return (base @ Pose.of(*point)).position if max(map(abs, point)) < _GARBAGE else point
 
 
 def _stretches(text: str) -> Iterator[tuple[Pose, str]]:
-    """The parts of a text, each with the base that the lines above it have written out.
+    """Yield the sections of a text, each with the base that an assignment before it has set.
 
-    So programs are written by offline systems: $BASE={X 800,...}, then the points in it.
+    Offline programming systems write programs in this form: $BASE={X 800,...}, then points.
     """
     base, start = IDENTITY, 0
     for match in _BASE.finditer(text):
@@ -244,13 +244,13 @@ def _stretches(text: str) -> Iterator[tuple[Pose, str]]:
 
 
 def _length(machine: MachineData) -> float:
-    """From the shoulder to the wrist of the outstretched arm, in mm."""
+    """Return the distance from the shoulder to the wrist of the stretched arm in mm."""
     forearm = math.hypot(*(row[3] for row in machine.tx3p3.rows))
     return machine.length_a + machine.length_b + forearm
 
 
 def _factor(machine: MachineData, texts: Iterable[str]) -> float:
-    """How much longer its links have to be for the points in texts, in steps of a tenth."""
+    """Return the factor by which the links must be longer to reach points, in steps of 0.1."""
     distances = [  # from the shoulder, in mm
         math.dist(_placed(base, _numbers(one)), machine.tiroro.position)
         for text in texts
