@@ -1,1 +1,1 @@
-"""Pages that people read, made from records."""
+"""HTML pages made from the records of commands."""

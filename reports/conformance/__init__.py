@@ -1,1 +1,1 @@
-"""Pages of a conformance run and of the paper's claims."""
+"""The page of a conformance run and the page of the paper's claims."""

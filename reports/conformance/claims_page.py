@@ -1,4 +1,4 @@
-"""The page of the paper's claims and of our measurements."""
+"""The page of the paper's claims, with our measurements beside them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,10 +13,10 @@ from support.files.atomic_write import write_atomic
 def write_claims_page(records: Mapping[str, Mapping[str, Any]], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of the paper's claims, and return its path.
 
-    ``records`` are what commands wrote with ``--json``, by the names of the steps of a
-    nightly run: growth, recover, conform, conform-arm, bench-vm, bench-arm, bench-conform. Any of
-    them may be absent: the page then says which command measures it. The page appears
-    whole or not at all. Raises OSError when the folder cannot be made or written.
+    ``records`` are what commands wrote with ``--json``, by the names of the steps of a nightly run:
+    growth, recover, conform, conform-arm, bench-vm, bench-arm, bench-conform. Any of them may be
+    absent; the page then names the command that measures it. The page is written atomically. Raises
+    OSError if the folder cannot be made or written.
     """
     page = render(
         "claims.html.j2",

@@ -1,7 +1,7 @@
-"""The words of the page of claims: each claim beside our measurement.
+"""The content of the page of claims: each claim of the paper beside our measurement.
 
 The paper is Mühe, Angerer, Hoffmann and Reif, "On reverse-engineering the KUKA Robot Language"
-(2010). Everything here is text ready to print; all foreign text has passed through `shown`.
+(2010). All texts can be printed as they are: untrusted ones have passed through `shown`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from reports.rendering.number_format import Figure, counted, percent, share
 from reports.rendering.record_fields import Record, count, nested, number, records, text
 from reports.rendering.sanitizing import shown
 
-#: The commands that make each record, by its name in a nightly run.
+#: The command that makes each record, by its name in a nightly run.
 _COMMANDS: Final[Mapping[str, str]] = {
     "growth": "krl growth --json growth.json",
     "recover": "krl recover --json recover.json",
@@ -27,13 +27,13 @@ _COMMANDS: Final[Mapping[str, str]] = {
 _MOST_BARS: Final = 12
 _WIDTH: Final = 860
 _HEIGHT: Final = 220
-#: Around the plot: left, right, top, bottom.
+#: The margins of the plot.
 _LEFT, _RIGHT, _TOP, _BOTTOM = 44, 12, 10, 26
 
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """A row of a table with a bar: ``share`` of the longest one, 0 to 1."""
+    """A row of a table with a bar; ``share`` is its length relative to the longest one, 0 to 1."""
 
     label: str
     values: tuple[str, ...]
@@ -42,7 +42,7 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A curve as the points of an SVG polyline, with lines at 0, 50 and 100 % and a caption."""
+    """A curve as points of an SVG polyline, with a caption and grid lines at 0, 50 and 100 %."""
 
     points: str
     grid: tuple[tuple[float, str], ...]
@@ -56,10 +56,10 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A claim of the paper: what it says, what was found, and in figures.
+    """A claim of the paper: its statement, our finding, and figures.
 
-    ``command`` is set where nothing was measured: the one that does. ``is_kept``: whether the
-    figure reaches the paper's; ``None`` where that is no question.
+    ``command`` is the one that measures the claim, set if there is no measurement. ``is_kept`` says
+    whether our figure reaches the paper's, ``None`` if they cannot be compared.
     """
 
     anchor: str
@@ -75,7 +75,7 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """Something that the paper left out, and a case that shows it here with its verdict."""
+    """Something that the paper left out, and a case that demonstrates it, with its verdict."""
 
     what: str
     paper: str
@@ -86,7 +86,7 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class ClaimsView:
-    """The page."""
+    """The content of the page."""
 
     figures: tuple[Figure, ...]
     claims: tuple[Claim, ...]
@@ -95,7 +95,7 @@ class ClaimsView:
 
 
 def claims_view(found: Mapping[str, Any]) -> ClaimsView:
-    """The page of records by their names; any of them may be absent."""
+    """Return the content of the page from records by their names; any of them may be absent."""
     by_name = {name: nested(found, name) for name in _COMMANDS}
     claims = (
         _growth(by_name["growth"]),
@@ -166,7 +166,7 @@ def _growth(record: Record) -> Claim:
 
 
 def _curve(values: Sequence[float]) -> Curve:
-    """Stairs: a value holds from its construct to the next."""
+    """Return a step curve: a value holds from its construct to the next."""
     width, height = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM
     step = width / max(1, len(values) - 1)
 
@@ -337,7 +337,7 @@ def _sensitivity(record: Record) -> Claim:
 
 # ------------------------------------------------------------------------------------ left out
 
-#: What it is, what the paper says of it, the case that shows it, and which executor and robot.
+#: Subject, what the paper says about it, the case that demonstrates it, its executor and its robot.
 _SHOWN: Final = (
     ("Submit interpreter", "not looked at", "submit/runs_beside", "", ""),
     ("Submit interpreter", "not looked at", "submit/while_moving", "", ""),
@@ -358,7 +358,7 @@ _SHOWN: Final = (
 
 
 def _left_out(record: Record, arm: Record) -> Iterable[LeftOut]:
-    """What each case came to; ``arm`` is the record of a run on the simulated arm."""
+    """Yield the verdict of each case; ``arm`` is the record of a run on the simulated arm."""
     cases, moved = (
         {text(one, "name"): one for one in records(found, "cases")} for found in (record, arm)
     )
@@ -369,7 +369,10 @@ def _left_out(record: Record, arm: Record) -> Iterable[LeftOut]:
 
 
 def _verdict(case: Record, executor: str, robot: str) -> str:
-    """The verdict on the executor and robot that it is about: the last of those there are."""
+    """Return the verdict on an executor and robot; an empty name matches any.
+
+    The last matching result counts.
+    """
     fitting = [
         one
         for one in records(case, "results")

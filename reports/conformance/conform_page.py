@@ -1,4 +1,4 @@
-"""The page of a conformance run: suites by executor and robot, and each case with what it did."""
+"""The page of a conformance run: suites by executor and robot, and the details of each case."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +17,7 @@ _MAX_CASES = 5_000
 _MAX_RUNS = 400
 # The embedded data stays below this, which keeps the whole page below 5 MB.
 _MAX_DATA_CHARACTERS = 4_500_000
-#: What a result is shown without where a page would be too large.
+#: The fields of a result that are emptied if the page would be too large.
 _WITHOUT: Json = {
     "events": [],
     "path": {},
@@ -42,11 +42,11 @@ _CHECK = ("file", "line", "text", "state", "actual")
 def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one conformance run, and return its path.
 
-    ``record`` is what ``krl conform --json`` writes; every field may be absent. Its ``history``,
-    where there is one, are the lines of ``history.jsonl`` of the nightly runs before. The
-    same record gives the same bytes. The page appears whole or not at all.
+    ``record`` is what ``krl conform --json`` writes; every field may be absent. Its optional
+    ``history`` has the lines of ``history.jsonl`` of earlier nightly runs. Equal records give equal
+    bytes. The page is written atomically.
 
-    Raises OSError when the folder cannot be made or written.
+    Raises OSError if the folder cannot be made or written.
     """
     cases = records(record, "cases")[:_MAX_CASES]
     shared = {
@@ -83,9 +83,9 @@ def _never(_case: Record) -> bool:
 
 
 def _case(case: Record, *, has_details: bool) -> Json:
-    """A case as the page's script reads it; its first result is the one it is shown by.
+    """Return a case as the page's script reads it.
 
-    Without details it has its results but not what they did, nor its files.
+    Without details its files are omitted, as are the events, paths and findings of its results.
     """
     return {
         "name": shown(text(case, "name"), 200),

@@ -1,4 +1,4 @@
-"""The words of the page of a conformance run: headline figures, and the matrix of the suites."""
+"""The content of the page of a conformance run: headline figures, and the matrix of the suites."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ VERDICTS = ("pass", "fail", "unconfirmed", "known-failure", "skipped")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A suite on one executor and robot: how many cases came to which verdict."""
+    """A suite on one executor and robot: the number of cases by verdict."""
 
     executor: str
     robot: str
@@ -21,12 +21,12 @@ class Cell:
 
     @property
     def total(self) -> int:
-        """All its cases."""
+        """Return the number of its cases."""
         return sum(number for _, number in self.counts)
 
     @property
     def worst(self) -> str:
-        """The gravest verdict that occurs."""
+        """Return the most severe verdict that occurs."""
         there = {name for name, number in self.counts if number}
         order = ("fail", "known-failure", "unconfirmed", "pass", "skipped")
         return next((name for name in order if name in there), "none")
@@ -34,7 +34,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A suite with its cells, one for each column or ``None``."""
+    """A suite with a cell for each column, ``None`` if it did not run there."""
 
     suite: str
     cases: int
@@ -44,7 +44,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class ConformView:
-    """What the template shows, fit to be printed. ``fault`` is one that was planted."""
+    """The data of the template, safe to print. ``fault`` is a planted fault."""
 
     headline: str
     fault: str
@@ -58,7 +58,7 @@ class ConformView:
 
 
 def conform_view(record: Mapping[str, Any]) -> ConformView:
-    """The view of a record that `conform_page.write_conformance_page` takes."""
+    """Return the view of a record; see `conform_page.write_conformance_page`."""
     suites = records(record, "suites")
     columns = _columns(suites)
     failed = count(nested(record, "case_verdicts"), "fail")
@@ -78,7 +78,7 @@ def conform_view(record: Mapping[str, Any]) -> ConformView:
 
 
 def _columns(suites: list[Record]) -> tuple[tuple[str, str], ...]:
-    """The executors and robots that occur; the front end's column comes last."""
+    """Return the executors and robots that occur; the column of the front end is last."""
     found = {
         (shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40))
         for suite in suites

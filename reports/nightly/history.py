@@ -1,7 +1,7 @@
 """The history of nightly runs, and the changes from one to the next.
 
-``history.jsonl`` has a line for each. A line that cannot be read is passed over: a run that was cut
-off must not hide those before it.
+``history.jsonl`` has a line for each run. Unreadable lines are skipped, so that a run that was cut
+off does not hide earlier ones.
 """
 
 import hashlib
@@ -16,18 +16,18 @@ from support.files.atomic_write import write_atomic
 
 Json = dict[str, Any]
 
-#: A figure of a bench that is so much worse than in the run before is reported; machines are noisy.
+#: A figure of a bench is reported if it is worse by this factor. Smaller changes may be noise.
 _WORSE = 1.25
 #: Events whose times are compared between nightly runs.
 _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
 )
 _MOST_LISTED = 40
-#: A year of runs is kept; what single cases and clusters were, of the last ones only.
+#: Runs are kept for a year; single cases and clusters only of the last `_IN_FULL` runs.
 _MOST_RUNS = 366
 _IN_FULL = 7
 _LONG = {"recover": "clusters", "conform": "cases"}
-#: What a bench says of itself that is no result: how much it did, and with what.
+#: Figures of benches that are no results, such as the amount of work and parameters.
 _SIZES = frozenset(
     "aim bytes cases cycle_us failures files held_out inverse_poses killed motions mutants parsed"
     " failing programs rounds seed shown thinking_us".split()
@@ -35,7 +35,7 @@ _SIZES = frozenset(
 
 
 def read_history(file: Path) -> list[Json]:
-    """The nightly runs of a history, the oldest first; none where there is no file."""
+    """Return the nightly runs of a history, the oldest first; empty if there is no file."""
     try:
         lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
     except FileNotFoundError:
@@ -44,10 +44,10 @@ def read_history(file: Path) -> list[Json]:
 
 
 def append_run(file: Path, run: Mapping[str, Any]) -> None:
-    """Write the history anew with one more line, whole or not at all.
+    """Add a run to the history file, which is written atomically.
 
-    A run of the same date, which was broken off or repeated, gives way to it. Of older runs the
-    figures are kept, for a year. Raises OSError.
+    It replaces an earlier run of the same date, which was interrupted or repeated. Only the figures
+    of older runs are kept, for a year. Raises OSError.
     """
     before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
     kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, run)]
@@ -56,8 +56,8 @@ def append_run(file: Path, run: Mapping[str, Any]) -> None:
 
 
 def _shortened(lines: Sequence[str]) -> list[str]:
-    """The lines, without single cases and clusters but in the last few that have any."""
-    seen = dict.fromkeys(_LONG, 1)  # the line that is added is one
+    """Return the lines; single cases and clusters are only kept in the last runs that have any."""
+    seen = dict.fromkeys(_LONG, 1)  # counts the line that is being added
     kept = []
     for line in reversed(lines):
         run, is_cut = _run(line) or {}, False
@@ -76,10 +76,10 @@ def _line(run: Mapping[str, Any]) -> str:
 
 
 def known_before(runs: Sequence[Json]) -> Json | None:
-    """What is known from all runs together, the last of them first; ``None`` where there are none.
+    """Return the latest known results of all runs together; ``None`` if there are no runs.
 
-    A run of some steps only does not hide what those before it found. ``of`` has for each part the
-    date of the run that it is of.
+    A run of only some steps does not hide earlier results of the other steps. ``of`` maps each part
+    to the date of its run.
     """
     if not runs:
         return None
@@ -94,7 +94,7 @@ def known_before(runs: Sequence[Json]) -> Json | None:
 
 
 def _run(line: str) -> Json | None:
-    """The run of a line; ``None`` where it is damaged or has numbers that are not finite."""
+    """Return the run of a line; ``None`` if it is damaged or has numbers that are not finite."""
     try:
         run = json.loads(line, parse_float=_finite, parse_constant=_finite)
     except (ValueError, RecursionError):
@@ -115,9 +115,10 @@ def _is_of(line: str, run: Mapping[str, Any]) -> bool:
 
 
 def nightly_record(date: str, made: Mapping[str, Record], steps: Mapping[str, Json]) -> Json:
-    """The line of a nightly run: from the records of its steps by name, and how each step went.
+    """Return the history line of a nightly run.
 
-    A step without a record is left out: nothing is known of it.
+    ``made`` are the records of its steps by name, ``steps`` their states. A step without a record
+    is left out, because nothing is known about it.
     """
     run: Json = {"date": date, "steps": dict(steps)}
     for name, section in (
@@ -174,7 +175,7 @@ def _fuzzed(record: Record) -> Json:
 
 
 def _short(case: Record) -> str:
-    """A case in a word: its verdict, and a digest of when its events happened."""
+    """Return a case in short: its verdict, and a digest of the times of its events."""
     code = hashlib.sha256()
     for label, time in _timing(case):
         code.update(f"{label} {time};".encode())
@@ -182,7 +183,7 @@ def _short(case: Record) -> str:
 
 
 def _timing(case: Record) -> Iterator[tuple[str, int]]:
-    """What happened when in the first run of a case that was kept whole."""
+    """Yield label and time of the events in the first run of a case that recorded events."""
     for result in records(case, "results"):
         events = records(result, "events")
         if events:
@@ -194,7 +195,7 @@ def _timing(case: Record) -> Iterator[tuple[str, int]]:
 
 
 def _figures(record: Record) -> Iterator[tuple[str, float]]:
-    """The figures of a bench that are ratios or speeds: those that stand at its top level."""
+    """Yield the figures of a bench at its top level, which are ratios and speeds."""
     for name, value in record.items():
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if is_number and "second" not in name and name not in _SIZES:
@@ -207,10 +208,10 @@ def _figures(record: Record) -> Iterator[tuple[str, float]]:
 def changes(
     before: Record | None, now: Record, old: Record | None = None, new: Record | None = None
 ) -> list[str]:
-    """What changed since the nightly run before, a sentence each; nothing where nothing did.
+    """Return the changes since the previous nightly run, one sentence each.
 
-    ``old`` and ``new`` are the conformance records of both runs, where they are still there: they
-    have the times of events that were shifted. What one of them has no record of has not changed.
+    ``old`` and ``new`` are the conformance records of both runs if available; they have the times
+    of events. Parts that one of the runs has no record of are not compared.
     """
     if before is None:
         return ["this is the first run"]
@@ -280,7 +281,7 @@ def _shifts(before: Record, now: Record, old: Record | None, new: Record | None)
 
 
 def _details(old: Record, new: Record, names: set[str]) -> dict[str, str]:
-    """The first event of each case that happens at another time, or not at all."""
+    """Return, for each case, the first event whose time differs, or that has no counterpart."""
     rows = [{text(c, "name"): list(_timing(c)) for c in records(r, "cases")} for r in (old, new)]
     reported = {}
     for name in names:
@@ -303,7 +304,7 @@ def _fuzz(before: Record, now: Record) -> Iterator[str]:
         yield f"{'fixed: ' if became < was else ''}fuzz: divergences {was:,} → {became:,}"
 
 
-#: Figures of which less is better; of all others more is.
+#: Parts of the names of figures where less is better; for all others more is better.
 _COSTS = (
     "_per_mb",
     "_us",

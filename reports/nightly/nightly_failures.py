@@ -1,7 +1,8 @@
-"""Failures of a nightly run: each with a link and the command that repeats it.
+"""Failures of a nightly run, each with a link and the command that repeats it.
 
-A step that did not end, a case that fails on any executor and robot, a case of an unsure rule that
-passed in the run before, a law that was broken, executors that diverge on a random program.
+A failure is: a step that did not end; a case that fails on any executor and robot; a case of an
+unsure rule that passed in the previous run; a violated law; executors that diverge on a random
+program.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,12 +13,12 @@ from reports.rendering.number_format import counted
 from reports.rendering.record_fields import Record, nested, records, text
 from reports.rendering.sanitizing import shown
 
-#: How the text of a failure begins that is of the nightly run itself, and not of a step.
+#: The start of the text of a failure of the nightly run itself, as opposed to one of a step.
 OF_THE_RUN = "the nightly run "
 _FINE = ("ok", "findings")
-#: The steps that run cases; their pages lie in folders of the same names.
+#: The steps that run cases; their pages are in folders of the same names.
 _CONFORM = ("conform", "conform-arm")
-#: What the name of a step ends with that runs the failed cases of such a step once more.
+#: The suffix of the name of a step that runs the failed cases of such a step once more.
 AGAIN = "-again"
 _ROBOTS = ("none", "kinematic", "mujoco")
 _LONGEST = 200
@@ -25,9 +26,9 @@ _MOST_PROGRAMS = 5
 
 
 class Failure(TypedDict):
-    """``page`` and ``command`` are empty where there is none.
+    """A failure of a nightly run. ``page`` and ``command`` are empty if there is none.
 
-    ``files`` are those of a program that shows it, texts by name.
+    ``files`` are those of a program that demonstrates it, texts by name.
     """
 
     what: str
@@ -39,9 +40,9 @@ class Failure(TypedDict):
 def failures(
     made: Mapping[str, Record], steps: Mapping[str, Record], before: Record | None = None
 ) -> list[Failure]:
-    """All failures of a run, from the records and the states of its steps by name.
+    """Return all failures of a run, from the records and the states of its steps by name.
 
-    ``before`` is what was known before it (`reports.nightly.history.known_before`).
+    ``before`` are the earlier results (`reports.nightly.history.known_before`).
     """
     return [
         *_steps(steps),
@@ -60,7 +61,7 @@ def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
 
 
 def failed_cases(step: str, record: Record) -> list[str]:
-    """The names of the cases that failed in a step that runs cases, from its record."""
+    """Return the names of the cases that failed in a step that runs cases, from its record."""
     cases = records(record, "cases") if step in _CONFORM else ()
     return [text(case, "name") for case in cases if _failed(case)]
 
@@ -70,7 +71,7 @@ def _failed(case: Record) -> list[Record]:
 
 
 def _cases(step: str, made: Mapping[str, Record]) -> Iterator[Failure]:
-    """The cases that failed; flaky is what did not when it was run once more."""
+    """Yield the cases that failed; one is flaky if it did not fail when it was run once more."""
     again = {text(case, "name"): case for case in records(made.get(step + AGAIN, {}), "cases")}
     for case in records(made[step], "cases"):
         if failed := _failed(case):
@@ -83,7 +84,7 @@ def _cases(step: str, made: Mapping[str, Record]) -> Iterator[Failure]:
 
 
 def _no_longer_passing(record: Record, before: Record) -> Iterator[Failure]:
-    """Cases that never fail a run by themselves, and passed in the run before."""
+    """Yield cases that do not fail a run by themselves, but passed in the previous run."""
     was = nested(nested(before, "conform"), "cases")
     for case in records(record, "cases"):
         now = text(case, "verdict")
@@ -116,7 +117,7 @@ def _laws(record: Record) -> Iterator[Failure]:
 
 
 def _programs(record: Record) -> Iterator[Failure]:
-    """The first programs on which executors diverge, made small."""
+    """Yield the first reduced programs on which executors diverge."""
     found = records(record, "differences")
     command = f"krl fuzz --programs {record.get('programs')} --seed {record.get('seed')}"
     for one in found[:_MOST_PROGRAMS]:

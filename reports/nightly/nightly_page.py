@@ -1,4 +1,4 @@
-"""The page of a nightly run: what changed, how its steps went, and curves over all runs."""
+"""The page of a nightly run: changes, states of the steps, and curves over all runs."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,12 +19,12 @@ _MAX_CHANGES = 300
 _BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
 _FINE = ("ok", "findings")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d")
-#: So many earlier runs are linked.
+#: The number of earlier runs that are linked.
 MOST_EARLIER = 30
-#: Where the pages of failed cases lie.
+#: The starts of links to failed cases.
 _PAGES = ("conform/index.html#", "conform-arm/index.html#")
 _GOOD = ("fixed", "survey: gone cluster")
-#: The figures of benches in words; others are shown by their names.
+#: Labels of the figures of benches; others are shown by their names.
 _IN_WORDS = {
     "recover.bytes_per_s": "survey, bytes a second",
     "recover.warm_bytes_per_s": "survey with a warm automaton, bytes a second",
@@ -89,9 +89,10 @@ class _Failure:
 
 @dataclass(frozen=True, slots=True)
 class _NightlyView:
-    """``bench`` has words, value, that of before, and the change.
+    """The data of the template.
 
-    ``earlier`` are dates of runs whose pages are there: none where each has a machine of its own.
+    ``bench`` has label, value, previous value and change. ``earlier`` are the dates of runs whose
+    pages exist: none if each run has a machine of its own.
     """
 
     date: str
@@ -107,10 +108,10 @@ class _NightlyView:
 def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one nightly run, and return its path.
 
-    ``record`` is a line of the history with ``changes``, the sentences of
-    `history.changes`, ``failures`` (`nightly_failures.Failure`), and ``history``,
-    the lines up to it; every field may be absent. The page appears whole or not at
-    all. Raises OSError when the folder cannot be made or written.
+    ``record`` is a line of the history with ``changes``, the sentences of `history.changes`,
+    ``failures`` (`nightly_failures.Failure`), and ``history``, the lines up to it; every field may
+    be absent. The page is written atomically. Raises OSError if the folder cannot be made or
+    written.
     """
     runs = records(record, "history")[-_MAX_RUNS:]
     data = embedded_json({"runs": [_short(run) for run in runs]})
@@ -126,7 +127,7 @@ def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
 
 
 def _short(run: Record) -> Json:
-    """A nightly run as its curves need it."""
+    """Return a nightly run with the data for the curves."""
     recover, fuzz = nested(run, "recover"), nested(run, "fuzz")
     verdicts = nested(nested(run, "conform"), "verdicts")
     return {
@@ -175,7 +176,7 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> _Nigh
 
 
 def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
-    """What was found; a step that was not done has no figure."""
+    """Yield the headline figures; a step that was not performed has none."""
     recover, conform = nested(record, "recover"), nested(record, "conform")
     fuzz, bench = nested(record, "fuzz"), nested(record, "bench")
     if recover:
@@ -223,7 +224,7 @@ def _figure(value: Any) -> str:
 
 
 def _change(value: float, before: Any) -> str:
-    """By how much a figure has changed, in per cent; empty where nothing can be said."""
+    """Return the change of a figure in per cent; empty without a change or previous value."""
     if not isinstance(before, int | float) or not before or value == before:
         return ""
     return f"{100 * (value - before) / abs(before):+.1f} %"
@@ -236,7 +237,7 @@ def _tone(change: str) -> str:
 def _step(name: str, step: Any) -> _Step:
     fields: Record = step if isinstance(step, Mapping) else {}
     status, page = text(fields, "status"), text(fields, "page")
-    # a link of ours: a relative one without any scheme
+    # our own links are relative ones without a scheme
     is_ours = page.replace("/", "").replace(".", "").replace("-", "").isalnum()
     return _Step(
         shown(name, 60),

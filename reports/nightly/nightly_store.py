@@ -1,6 +1,7 @@
 """The folder of all nightly runs: its index page, and retention of older runs.
 
-The page leads to the last run. Where that is too long ago, which no run is left to say, it is red.
+The index page leads to the last run. It warns if that was too long ago, because then no run is left
+to report it.
 """
 
 from collections.abc import Iterator
@@ -14,13 +15,13 @@ from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render, source
 from support.files.atomic_write import write_atomic
 
-#: What is kept of a run when its pages are no longer linked, and of how many runs.
+#: The files that are kept of a run whose pages are no longer linked, and the most runs kept.
 _SUMS = ("nightly.json", "summary.md")
 _MOST_RUNS = 366
 
 
 def write_entry_page(out: Path, date: str, made: datetime) -> Path:
-    """Write ``out``/index.html, which leads to the run ``date``, made at that time.
+    """Write ``out``/index.html, which leads to the run ``date`` and has the time ``made``.
 
     Raises OSError.
     """
@@ -32,11 +33,11 @@ def write_entry_page(out: Path, date: str, made: datetime) -> Path:
 
 
 def bound_store(folder: Path) -> None:
-    """Remove what is not needed beside the last run, that of ``folder``.
+    """Remove data of earlier runs that is no longer needed.
 
-    Results that it keeps itself are kept once; of runs whose pages it no longer links summary and
-    record are kept, for a year, and nothing where a run was broken off. Only folders that have a
-    record of a run are touched; what cannot be removed stays.
+    ``folder`` is the last run. Caches that it has too are removed from earlier runs. Runs whose
+    pages are no longer linked keep only summary and record, for a year; those that were interrupted
+    are removed. Only folders with a record of a run are touched, and what cannot be removed stays.
     """
     earlier = sorted(filter(_is_run, folder.parent.iterdir()), reverse=True)
     for number, run in enumerate((one for one in earlier if one.name != folder.name), 1):
@@ -48,7 +49,7 @@ def bound_store(folder: Path) -> None:
         elif number > MOST_EARLIER:
             for one in _pages(run):
                 rmtree(one, ignore_errors=True)
-                with suppress(OSError):  # a folder that stays
+                with suppress(OSError):  # a folder that could not be removed
                     one.unlink(missing_ok=True)
 
 

@@ -1,4 +1,4 @@
-"""A nightly run summarised in Markdown, for an issue or an e-mail."""
+"""The summary of a nightly run in Markdown, for an issue or an e-mail."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -11,10 +11,10 @@ _MOST = 40
 
 
 def nightly_summary(record: Mapping[str, Any]) -> str:
-    """Failures with how to repeat them, what changed, and how the steps went.
+    """Return the failures with the commands that repeat them, the changes, and the steps.
 
-    ``record`` is that of `nightly_page.write_nightly_page`. Names and messages are set as
-    code: they may be of other people, and link, mention and embed nothing.
+    ``record`` is that of `nightly_page.write_nightly_page`. Names and messages are untrusted, and
+    are set as code so that they cannot link, mention or embed anything.
     """
     return "\n".join(_lines(record))
 
@@ -45,6 +45,6 @@ def _more(count: int) -> Iterator[str]:
 
 
 def _code(foreign: str) -> str:
-    """A text as code in a line or a cell of a table."""
+    """Return a text as inline code that is safe in a line or a table cell."""
     cleaned = shown(foreign, 300).replace("`", "'").replace("|", "¦").strip()
     return f"`{cleaned or ' '}`"

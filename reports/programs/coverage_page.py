@@ -1,4 +1,4 @@
-"""Coverage of robot programs by tests: a page without script, and a file for lcov."""
+"""Coverage of robot programs by tests: a page without a script, and a file for lcov."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,10 @@ from support.files.atomic_write import write_atomic
 
 @dataclass(frozen=True, slots=True)
 class CoveredFile:
-    """A file with its text, and how often each line, branch (by line) and routine was executed."""
+    """A file with its text and the execution counts of its lines, branches and routines.
+
+    ``branches`` are by line; ``routines`` have line and count.
+    """
 
     path: str
     text: str
@@ -24,13 +27,13 @@ class CoveredFile:
 
     @property
     def ways(self) -> list[int]:
-        """How often each branch was taken."""
+        """Return the count of each branch."""
         return [count for ways in self.branches.values() for count in ways.values()]
 
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A line of a file; ``state`` is ran, part, missed, or empty for what is no statement."""
+    """A line of a file; ``state`` is ran, part or missed, or empty if it is no statement."""
 
     number: int
     text: str
@@ -40,7 +43,7 @@ class _Line:
 
 
 def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) -> Path:
-    """Write ``folder``/index.html and return its path; raises OSError where it cannot be."""
+    """Write ``folder``/index.html and return its path. Raises OSError if that fails."""
     ways = [count for one in files for count in one.ways]
     lines = [count for one in files for count in one.lines.values()]
     folders = {one.path.rpartition("/")[0] for one in files}
@@ -61,7 +64,7 @@ def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) 
 
 
 def write_lcov(files: Sequence[CoveredFile], target: Path) -> None:
-    """Write what genhtml, Codecov and editors read; the file appears whole or not at all."""
+    """Write the format that genhtml, Codecov and editors read. The file is written atomically."""
     lines = (line for one in files for line in _lcov(one))
     write_atomic(target, "\n".join(["TN:", *lines, ""]))
 

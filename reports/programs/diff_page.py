@@ -1,4 +1,4 @@
-"""The page of a comparison of two versions: one file, no network, no script."""
+"""The page of a comparison of two versions: one file without a script or network access."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,10 +11,10 @@ from support.files.atomic_write import write_atomic
 
 
 def write_diff_page(record: Mapping[str, Any], place: Path) -> Path:
-    """Write the page of a comparison into a folder, or a file ``….html``, and return its path.
+    """Write the page of a comparison into a folder, or to a file ``….html``, and return its path.
 
-    ``record`` is what ``krl diff --json`` writes; every field may be absent. The page appears whole
-    or not at all. Raises OSError when the folder cannot be made or written.
+    ``record`` is what ``krl diff --json`` writes; every field may be absent. The page is written
+    atomically. Raises OSError if the folder cannot be made or written.
     """
     page = render(
         "diff.html.j2",

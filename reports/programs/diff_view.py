@@ -1,4 +1,4 @@
-"""The words of a comparison, for `krl diff` and its page."""
+"""The texts of a comparison, for `krl diff` and its page."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,17 +11,17 @@ from reports.rendering.record_fields import Record, count, nested, records, text
 
 _MOST = 2_000
 _LONGEST = 400
-#: An angle below this is what rounding leaves.
+#: Angles below this are rounding errors.
 _SMALLEST_ANGLE = 0.005
-#: Components that distance and angle stand for.
+#: Components that are summarised by the distance and the angles.
 _SUMMED = frozenset("X Y Z A B C A1 A2 A3 A4 A5 A6".split())
 
 
 @dataclass(frozen=True, slots=True)
 class RoutineRow:
-    """A routine: what became of it, and its statements, removed ones marked "-", new ones "+".
+    """A routine with its change and its statements: "-" marks removed ones, "+" new ones.
 
-    Each hunk begins with where it stands.
+    Each hunk has its location and its marked lines.
     """
 
     place: str
@@ -33,7 +33,7 @@ class RoutineRow:
 
 @dataclass(frozen=True, slots=True)
 class PointRow:
-    """A point: what became of it; distance in mm, angles in degrees, empty where there is none."""
+    """A point with its change; distance in mm, angles in degrees, empty if there is none."""
 
     place: str
     name: str
@@ -46,7 +46,7 @@ class PointRow:
 
 @dataclass(frozen=True, slots=True)
 class DatumRow:
-    """Another item of a data list, old and new."""
+    """Another item of a data list, with its old and new value."""
 
     place: str
     name: str
@@ -57,7 +57,10 @@ class DatumRow:
 
 @dataclass(frozen=True, slots=True)
 class DiffView:
-    """What the page shows; lists are cut, ``left_out`` says how many rows of each are missing."""
+    """The content of the page.
+
+    Lists are limited; ``left_out`` has the number of omitted rows of each.
+    """
 
     old: str
     new: str
@@ -71,7 +74,7 @@ class DiffView:
 
 
 def diff_view(record: Record) -> DiffView:
-    """The view of a record of ``krl diff``; every field may be absent."""
+    """Return the view of a record of ``krl diff``; every field may be absent."""
     files = nested(record, "files")
     routines, points, data = (records(record, key) for key in ("routines", "points", "data"))
     far = sorted(points, key=lambda one: -_far(one))
@@ -105,7 +108,7 @@ def diff_view(record: Record) -> DiffView:
 
 
 def _figure(label: str, value: int, section: str, note: str = "") -> Mapping[str, Any]:
-    """A number above the page, which leads to its section."""
+    """Return a headline figure that links to its section."""
     link = {"href": f"#{section}"} if section and value else {}
     return {"label": label, "value": f"{value:,}", "share": None, "note": note, **link}
 
@@ -135,14 +138,14 @@ def _place(one: Record) -> str:
 
 
 def routine_name(one: Record) -> str:
-    """The name of a routine; of what stands in none, what that is."""
+    """Return the name of a routine; for statements outside routines a description."""
     is_list = text(one, "file").lower().endswith(".dat")
     rest = "lines that cannot be read" if is_list else "outside all routines"
     return text(one, "name") or rest
 
 
 def routine_words(one: Record) -> str:
-    """What became of a routine."""
+    """Return the change of a routine in words."""
     size = counted(count(one, "statements"), "statement")
     match text(one, "kind"):
         case "added" | "removed" as kind:
@@ -173,7 +176,7 @@ def _routine(one: Record) -> RoutineRow:
 
 
 def point_words(one: Record) -> str:
-    """What became of a point or another item of a data list."""
+    """Return the change of a point or another item of a data list in words."""
     match text(one, "kind"):
         case "added":
             return f"added: {text(one, 'new')}"
@@ -215,7 +218,7 @@ def _others(one: Record) -> Iterator[str]:
 
 
 def _frames(one: Record) -> str:
-    """Tool and base, with what they were."""
+    """Return tool and base in words, with their previous values if they changed."""
     said = []
     for name in ("tool", "base"):
         pair = one.get(name)

@@ -1,4 +1,4 @@
-"""The page of one run: the path of the arm, speeds, signals, and the lines behind them."""
+"""The page of one run: path of the arm, speeds, signals, and the program lines that caused them."""
 
 from collections.abc import Mapping, Sequence
 from itertools import accumulate, chain
@@ -15,7 +15,7 @@ from support.files.atomic_write import write_atomic
 
 _MAX_SAMPLES = 6_000
 _MAX_EVENTS = 10_000
-_STEPS = ("line", "assign", "branch")  # of the advance run; there may be millions
+_STEPS = ("line", "assign", "branch")  # steps of the advance run; there may be millions
 _MAX_FILES = 40
 _MAX_LINES = 5_000
 _MAX_POINTS = 5_000
@@ -44,11 +44,11 @@ Rows = list[list[float]]
 def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
     """Write the page of a run to the file ``target`` and return its path.
 
-    ``record`` is what `interp.run_record` makes of a run; every field may be absent. Times are µs,
-    lengths mm, angles degrees, speeds of the tool m/s. The same record gives the same bytes, and
-    the page appears whole or not at all.
+    ``record`` is the one that `interp.run_record` makes from a run; every field may be absent.
+    Times are in µs, lengths in mm, angles in degrees, speeds of the tool in m/s. Equal records give
+    equal bytes, and the page is written atomically.
 
-    Raises OSError when the file cannot be written.
+    Raises OSError if the file cannot be written.
     """
     view = run_view(record)
     data = embedded_json(
@@ -78,7 +78,7 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
 
 
 def _events(events: Sequence[Record]) -> Sequence[Record]:
-    """The first of what happened, and as many steps of the advance run as there is room for."""
+    """Return the first events, with as many steps of the advance run as there is room for."""
     is_event = [text(event, "kind") not in _STEPS for event in events]
     room = max(0, _MAX_EVENTS - sum(is_event))
     stride = 1 + (len(events) - sum(is_event)) // (room + 1)
@@ -92,7 +92,7 @@ def _events(events: Sequence[Record]) -> Sequence[Record]:
 
 
 def _event(event: Record) -> Json:
-    """An event with all its fields; what the page reckons with has its type."""
+    """Return an event with all its fields; those used in calculations have their types."""
     fields: Json = plain(event, 200)
     named = {name: printable(clip(text(event, name), 200)) for name in ("task", "kind", "at")}
     return {**fields, **named, "t": count(event, "t")}
@@ -117,11 +117,11 @@ def _file(file: Record) -> Json:
 
 
 def _path(path: Record) -> Json:
-    """Set-points, as many as a page can show.
+    """Return the set-points, thinned out if there are too many.
 
-    Of a stretch where nothing moves the first and the last are kept. Of others positions are
-    thinned out evenly; of speeds, accelerations and torques the greatest of what one sample stands
-    for is kept, so that no peak is lost.
+    Of a stretch without motion the first and the last are kept. Elsewhere positions are sampled
+    evenly. For speeds, accelerations and torques the greatest value of each sample is kept, so that
+    no peak is lost.
     """
     times = _finite(path.get("t"))
 
@@ -151,7 +151,7 @@ def _path(path: Record) -> Json:
 
 
 def _samples(columns: Sequence[Sequence[float]], count: int) -> list[list[int]]:
-    """The rows that each sample stands for, those left out where nothing moves."""
+    """Return the rows that each sample represents, without those at rest."""
     if not count:
         return []
     states = list(zip(*columns, strict=False)) if columns else []
@@ -184,7 +184,7 @@ def _limits(limits: Record) -> Json:
 
 
 def _arm(arm: Record) -> Json:
-    """Links, flange and frames, as `interp.run_record` has them."""
+    """Return links, flange and frames, as in `interp.run_record`."""
     links = records(arm, "links")[:_MAX_LINKS]
     return {
         "axes": [printable(clip(name, 20)) for name in texts(arm, "axes")],
@@ -244,7 +244,7 @@ def _point(point: Record) -> Json:
 
 
 def _index(record: Record, key: str) -> int:
-    """An index, -1 where there is none."""
+    """Return an index; -1 if there is none."""
     return max(count(record, key), -1) if key in record else -1
 
 
@@ -253,7 +253,7 @@ def _sequence(value: Any) -> Sequence[Any]:
 
 
 def _finite(values: Any) -> list[float]:
-    """Numbers of a size that can be drawn; anything else counts as 0."""
+    """Return the numbers that can be drawn; all other values become 0."""
     return [
         one if isinstance(one, int | float) and abs(one) < _LARGEST else 0
         for one in _sequence(values)
@@ -261,12 +261,12 @@ def _finite(values: Any) -> list[float]:
 
 
 def _column(values: Any, length: int) -> list[float]:
-    """As `_finite`, of a certain length: what is missing counts as 0."""
+    """Return the numbers as `_finite` does, padded or cut to a length; missing ones are 0."""
     column = _finite(values)[:length]
     return column + [0] * (length - len(column))
 
 
 def _rounded(values: Sequence[float], digits: int) -> list[float]:
-    """Numbers as short as JSON can have them: 3 and not 3.0."""
+    """Return the rounded numbers in their shortest JSON form, such as 3 instead of 3.0."""
     rounded = [round(one, digits) for one in values]
     return [int(one) if one == int(one) else one for one in rounded]

@@ -1,4 +1,4 @@
-"""The words of the page of a run: its head and headline figures."""
+"""The texts of the page of a run: its header and headline figures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ _ENDS = {
 
 @dataclass(frozen=True, slots=True)
 class RunView:
-    """What the template shows; all texts are fit to be printed."""
+    """The data of the template; all texts are safe to print."""
 
     name: str
     program: str
@@ -35,7 +35,7 @@ class RunView:
 
 
 def run_view(record: Mapping[str, Any]) -> RunView:
-    """The view of a run's record, as `reports.programs.run_page.write_run_page` takes it."""
+    """Return the view of a run's record; see `reports.programs.run_page.write_run_page`."""
     outcome, path = nested(record, "outcome"), nested(record, "path")
     kind = text(outcome, "kind")
     how = [text(record, name) for name in ("executor", "robot", "profile", "machine")]

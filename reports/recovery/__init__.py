@@ -1,1 +1,1 @@
-"""Pages of the recovery of a grammar: survey, growth, automatic recovery."""
+"""Pages about the recovery of a grammar: survey, growth, automatic recovery."""

@@ -1,4 +1,4 @@
-"""The page of an automatic recovery: growth, accepted and refused edits, and why."""
+"""The page of an automatic recovery: growth, and accepted and refused edits with the reasons."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 640, 220, 68, 24
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A step that was taken or refused; ``note`` is its evidence or the reason."""
+    """An accepted or refused step; ``note`` is the evidence or the reason."""
 
     round: int
     id: str
@@ -31,7 +31,7 @@ class _Row:
 
 @dataclass(frozen=True, slots=True)
 class _Curve:
-    """A line of the chart: its class, and its points as SVG has them."""
+    """A line of the chart: its CSS class, and its points in SVG notation."""
 
     name: str
     points: str
@@ -56,8 +56,8 @@ class _View:
 def write_auto_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html and return its path; any field of the record may be absent.
 
-    ``record`` is what ``krl recover --auto --json`` writes. The page appears whole or not at all.
-    Raises OSError when the folder cannot be made or written.
+    ``record`` is what ``krl recover --auto --json`` writes. The page is written atomically. Raises
+    OSError if the folder cannot be made or written.
     """
     page = render(
         "auto.html.j2",
@@ -113,7 +113,7 @@ def _figure(name: str, reading: Record) -> Figure:
 
 
 def _target(target: Record) -> list[Figure]:
-    """How what has grown compares with the grammar it was to become."""
+    """Return figures that compare the grown grammar with the one it should become."""
     name = shown(text(target, "name"), _LONGEST)
     labels = {
         "shown": f"of the files shown that {name} parses",
@@ -160,7 +160,7 @@ def _taken(number: int, done: Record) -> list[_Row]:
 
 
 def _refused(done: Record, number: int) -> list[_Row]:
-    """What the last round refused: what earlier rounds did may have been taken since."""
+    """Return the refused steps of the last round; those of earlier rounds may be accepted since."""
     return [
         _Row(
             number,

@@ -1,4 +1,4 @@
-"""A construct of the ledger as the scripts of a page read it."""
+"""A construct of the ledger as JSON for the scripts of a page."""
 
 from typing import Any
 
@@ -13,12 +13,12 @@ Json = dict[str, Any]
 
 
 def anchor(construct: Record) -> str:
-    """The name of a construct in links, such as ``c-0012``."""
+    """Return the name of a construct for links, such as ``c-0012``."""
     return f"c-{count(construct, 'number'):04}"
 
 
 def construct_data(construct: Record) -> Json:
-    """A construct as the scripts read it: what it is, its evidence, its edit, its examples."""
+    """Return a construct as JSON: its description, evidence, edits and examples."""
     evidence = nested(construct, "evidence")
     return {
         "anchor": anchor(construct),
@@ -45,5 +45,5 @@ def construct_data(construct: Record) -> Json:
 
 
 def clipped(foreign: list[str], width: int) -> list[str]:
-    """Texts in printable form, each at most so long."""
+    """Return the texts in printable form, each of limited length."""
     return [printable(clip(line, width)) for line in foreign]

@@ -1,4 +1,4 @@
-"""The page of the growth of the grammar: one file, no network, opens from disk."""
+"""The page of the growth of the grammar: one file without network access."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,10 +30,10 @@ Json = dict[str, Any]
 def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one replay of the ledger, and return its path.
 
-    ``record`` is what ``krl growth --json`` writes; every field may be absent. The same record
-    gives the same bytes. The page appears whole or not at all.
+    ``record`` is what ``krl growth --json`` writes; every field may be absent. Equal records give
+    equal bytes. The page is written atomically.
 
-    Raises OSError when the folder cannot be made or written.
+    Raises OSError if the folder cannot be made or written.
     """
     steps, meanings = records(record, "steps")[:_MAX_STEPS], nested(record, "meanings")
     data = embedded_json(
@@ -59,7 +59,7 @@ def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
 
 
 def _step(step: Record) -> Json:
-    """A step as the page's script reads it."""
+    """Return a step as the page's script reads it."""
     metrics = nested(step, "metrics")
     return {
         **construct_data(step),

@@ -1,6 +1,6 @@
-"""The fixed parts of the growth page: headline, steps, what remains.
+"""The static parts of the growth page: headline, steps, remaining files.
 
-Everything here is text ready to print; all foreign text has passed through `printable`.
+All texts can be printed as they are: untrusted ones have passed through `printable`.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,10 @@ _MAX_OTHERS = 60
 
 @dataclass(frozen=True, slots=True)
 class StepRow:
-    """One step of the growth; ``anchor`` is its name in links, ``bar`` its share of the most."""
+    """One step of the growth.
+
+    ``anchor`` is its name in links, ``bar`` its restored files relative to the largest such number.
+    """
 
     anchor: str
     number: int
@@ -51,9 +54,10 @@ class LeftLine:
 
 @dataclass(frozen=True, slots=True)
 class LeftFile:
-    """A file that does not parse at the end.
+    """A file that does not parse after the last step.
 
-    ``kind`` is invalid, template, damaged, waiting or empty; ``why`` says why, ``why_line`` where.
+    ``kind`` is invalid, template, damaged, waiting or empty; ``why`` is the reason and ``why_line``
+    its line.
     """
 
     path: str
@@ -67,7 +71,7 @@ class LeftFile:
 
 @dataclass(frozen=True, slots=True)
 class GrowthView:
-    """The fixed parts of the page. ``state``: no-files, no-steps or steps."""
+    """The static parts of the page. ``state`` is no-files, no-steps or steps."""
 
     state: str
     grammar: str
@@ -94,7 +98,7 @@ class GrowthView:
 
 
 def growth_view(record: Record) -> GrowthView:
-    """The fixed parts of the page of ``record``."""
+    """Return the static parts of the page of ``record``."""
     steps = records(record, "steps")
     rows = _rows(steps)
     version = text(record, "version")
@@ -142,7 +146,7 @@ def _state(record: Record, steps: Sequence[Record]) -> str:
 
 
 def _headline(record: Record, steps: Sequence[Record]) -> str:
-    """The growth in one sentence."""
+    """Return the growth in one sentence."""
     if len(steps) < 2 or not count(record, "files"):
         return ""
     files = count(record, "files")
@@ -244,7 +248,7 @@ def _left_line(line: Record) -> LeftLine:
 
 
 def _skipped(skipped: Sequence[Record]) -> tuple[tuple[str, int, tuple[str, ...]], ...]:
-    """Reasons with the number of files and the first of their paths, the most frequent first."""
+    """Return each reason with its number of files and first paths, the most frequent one first."""
     groups: dict[str, list[str]] = {}
     for entry in skipped:
         groups.setdefault(text(entry, "reason") or "no reason given", []).append(

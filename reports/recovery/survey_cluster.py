@@ -1,8 +1,8 @@
-"""The clusters of a survey as the page's script reads them: compact, bounded, indexed.
+"""The clusters of a survey as compact JSON for the page's script.
 
 Paths, origins and token names recur in hundreds of clusters, so they are stored once and referred
-to by number. How much of each cluster is kept depends on how much there is (`Detail`), which keeps
-the page of a large survey quick to open.
+to by number. The details of each cluster are limited by a `Detail`, so that the page of a large
+survey opens quickly.
 """
 
 from collections.abc import Iterable, Sequence
@@ -26,7 +26,7 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Detail:
-    """How much of a cluster is kept: examples, context lines, files, characters a line, words."""
+    """The limits of a cluster: examples, context lines, files, characters per line, words."""
 
     examples: int
     context: int
@@ -35,7 +35,7 @@ class Detail:
     words: int
 
 
-# Fullest first; the page takes the first one that fits its size.
+# The most detailed first; the page uses the first one that fits its maximum size.
 DETAILS = (
     Detail(examples=6, context=11, files=400, line=1000, words=400),
     Detail(examples=3, context=7, files=100, line=400, words=200),
@@ -49,13 +49,13 @@ _MAX_REPRODUCER = 4000
 
 @dataclass(slots=True)
 class Strings:
-    """Texts numbered in the order of their first use."""
+    """Texts, numbered in the order of their first use."""
 
     items: list[str] = field(default_factory=list)
     _numbers: dict[str, int] = field(default_factory=dict)
 
     def number(self, item: str) -> int:
-        """The number of ``item``, new where it was not seen before; kept in printable form."""
+        """Return the number of ``item`` in printable form; an unknown one gets a new number."""
         item = printable(item)
         known = self._numbers.setdefault(item, len(self.items))
         if known == len(self.items):
@@ -63,12 +63,12 @@ class Strings:
         return known
 
     def numbers(self, items: Iterable[str]) -> list[int]:
-        """The number of each item."""
+        """Return the number of each item."""
         return [self.number(item) for item in items]
 
 
 def cluster_data(clusters: Sequence[Record], detail: Detail) -> Json:
-    """Everything the page's script needs to show the cards of ``clusters``."""
+    """Return the data that the page's script needs to show the cards of ``clusters``."""
     strings = Strings()
     return {
         "clusters": [_cluster(cluster, strings, detail) for cluster in clusters],
@@ -77,19 +77,19 @@ def cluster_data(clusters: Sequence[Record], detail: Detail) -> Json:
 
 
 def cluster_id(record: Record, key: str = "id") -> str:
-    """The stable name of a cluster, standing at ``key`` of ``record``; used in links."""
+    """Return the stable name of a cluster for links, from the field ``key`` of ``record``."""
     return printable(text(record, key))[:80]
 
 
 def title_of(cluster: Record) -> str:
-    """The title, with something to call the cluster by where it has none."""
+    """Return the title of a cluster, or its rule or id if it has none."""
     return clip(text(cluster, "title") or text(cluster, "rule") or cluster_id(cluster), 160)
 
 
 def clip_around(line: str, column: int, width: int) -> tuple[str, int]:
-    """The part of ``line`` of at most ``width`` characters around ``column`` (from 1).
+    """Return the part of ``line`` of at most ``width`` characters around ``column`` (from 1).
 
-    Returns the part and the column in it; a cut is marked with an ellipsis on its side.
+    The second value is the column in that part. An ellipsis marks a cut on its side.
     """
     if len(line) <= width:
         return line, column
@@ -103,7 +103,7 @@ def clip_around(line: str, column: int, width: int) -> tuple[str, int]:
 
 
 def is_follower(cluster: Record) -> bool:
-    """Whether every failure of the cluster only follows from an earlier one."""
+    """Return whether every failure of the cluster only follows from an earlier one."""
     return 0 < count(cluster, "failures") <= count(cluster, "follows")
 
 
@@ -149,7 +149,7 @@ def _example(example: Record, cluster_token: str, strings: Strings, detail: Deta
     number = count(example, "line")
     token = text(example, "token") or cluster_token
     column = count(example, "column")
-    # Tokens differ in case from cluster to cluster; the text of the line is what counts.
+    # The case of tokens differs between clusters, so they are compared with the line ignoring case.
     found = source[column - 1 : column - 1 + len(token)].lower() if column > 0 else ""
     width = len(token) if token and found == token.lower() else 1
     context = records(example, "context")
@@ -174,7 +174,7 @@ def _example(example: Record, cluster_token: str, strings: Strings, detail: Deta
 
 
 def _files_by_origin(by_origin: list[Record], strings: Strings, detail: Detail) -> list[list[Any]]:
-    """``[origin, files left out, [[path, line], …]]`` for each origin; texts numbered."""
+    """Return ``[origin, files left out, [[path, line], …]]`` for each origin; texts are numbers."""
     result: list[list[Any]] = []
     room = detail.files
     for origin in by_origin:

@@ -1,4 +1,4 @@
-"""The page of a survey: one file, no network, opens from disk."""
+"""The page of a survey: one file without network access."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,18 +20,18 @@ _MAX_DATA_CHARACTERS = 3_500_000
 def write_survey_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one survey, and return its path.
 
-    ``record`` is what ``krl recover --json`` writes; every field may be absent. Lines and columns
-    in it count from 1, columns in characters (a tab is one). The failures are not read: the page
-    shows clusters with their examples. The same record gives the same bytes. The page appears whole
-    or not at all.
+    ``record`` is what ``krl recover --json`` writes; every field may be absent. Its lines and
+    columns count from 1, columns in characters (a tab is one). Its failures are not used: the page
+    shows clusters with their examples. Equal records give equal bytes. The page is written
+    atomically.
 
-    Raises OSError when the folder cannot be made or written.
+    Raises OSError if the folder cannot be made or written.
     """
     return write_atomic(folder / "index.html", render_survey_page(record))
 
 
 def render_survey_page(record: Mapping[str, Any]) -> str:
-    """The page of ``record`` as text; see `write_survey_page`."""
+    """Return the page of ``record`` as text; see `write_survey_page`."""
     view = survey_view(record)
     for detail in DETAILS:
         sections = [_section(record, view.section, detail)]
@@ -50,7 +50,7 @@ def render_survey_page(record: Mapping[str, Any]) -> str:
 
 
 def _section(record: Record, shown: Section, detail: Detail) -> dict[str, Any]:
-    """A section as the page's script reads it."""
+    """Return a section as the page's script reads it."""
     clusters = records(record, "clusters")[: len(shown.rows)]
     constructs = {text(c, "id"): construct_data(c) for c in records(record, "constructs")}
     answers = {cluster_id(c): text(c, "answered_by") for c in clusters}
@@ -67,7 +67,7 @@ def _section(record: Record, shown: Section, detail: Detail) -> dict[str, Any]:
 
 
 def _script() -> str:
-    """The scripts of the page: what shows a section is a function of its data and its prefix."""
+    """Return the page's scripts: a function of a section's data and prefix shows the section."""
     parts = "\n".join(source(f"survey-{name}.js") for name in ("cards", "table", "chart"))
     return f""""use strict";
 {{

@@ -1,7 +1,7 @@
-"""A section of the survey page: the clusters of one grammar, in their order and as a table.
+"""A section of the survey page: the clusters of one grammar, in mending order and as a table.
 
-The page has one for the grammar in force and may have one for the restrictive start. All foreign
-text has passed through `printable`.
+The page has one for the grammar in force and may have one for the restrictive start. All untrusted
+texts have passed through `printable`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,9 +20,9 @@ _TARGETS = (0.95, 0.99, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class ClusterRow:
-    """One row of the table of clusters; ``place`` is the one in the greedy order, if any.
+    """A row of the table of clusters; ``place`` is its position in the mending order, if any.
 
-    ``answer`` is the title of the construct that answered it, empty where none did.
+    ``answer`` is the title of the construct that resolves it, empty if there is none.
     """
 
     id: str
@@ -40,7 +40,10 @@ class ClusterRow:
 
 @dataclass(frozen=True, slots=True)
 class MendingStep:
-    """After mending this cluster and all before it, ``parsed`` files parse, ``gain`` more."""
+    """A step of the mending order.
+
+    After mending this cluster and all before it, ``parsed`` files parse, ``gain`` more than before.
+    """
 
     place: int
     id: str
@@ -54,9 +57,9 @@ class MendingStep:
 class Section:
     """The clusters of a survey.
 
-    ``prefix`` begins the ids of its elements and the keys of its links.
-    ``answered`` counts the rows with an answer, ``None`` where clusters are not asked for one, and
-    ``constructs`` the constructs that gave them. ``rate`` is the share of files that parse.
+    ``prefix`` starts the ids of its elements and the keys of its links. ``answered`` is the number
+    of rows with an answer, ``None`` if answers do not apply, and ``constructs`` the number of
+    constructs that gave them. ``rate`` is the share of files that parse.
     """
 
     prefix: str
@@ -73,7 +76,7 @@ class Section:
 
 
 def section(record: Record, clusters: Sequence[Record], prefix: str = "") -> Section:
-    """The section of ``record``, whose shown clusters are ``clusters``."""
+    """Return the section of ``record`` with the shown ``clusters``."""
     mending = _mending(record, clusters)
     constructs = records(record, "constructs")
     titles = {text(c, "id"): printable(clip(text(c, "title"), 200)) for c in constructs}
@@ -110,7 +113,7 @@ def _mending(record: Record, clusters: Sequence[Record]) -> tuple[MendingStep, .
 
 
 def _verdict(record: Record, mending: Sequence[MendingStep]) -> str:
-    """The sentence over the chart: how few clusters bring the corpus to the next round share."""
+    """Return the sentence above the chart: how many clusters to mend for the next target share."""
     files, parsed = count(record, "files"), count(record, "parsed")
     if not mending or files == 0:
         return ""

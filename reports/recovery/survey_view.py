@@ -1,6 +1,6 @@
-"""The fixed parts of the survey page: headline, mending order, tables.
+"""The static parts of the survey page: headline, mending order, tables.
 
-Everything here is text ready to print; all foreign text has passed through `printable`.
+All texts can be printed as they are: untrusted ones have passed through `printable`.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ _MAX_PATHS = 200
 
 @dataclass(frozen=True, slots=True)
 class OriginRow:
-    """How one origin fared; ``share`` in 0…1."""
+    """The results of one origin; ``share`` is 0 to 1."""
 
     name: str
     files: int
@@ -37,7 +37,7 @@ class OriginRow:
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """The files skipped for one reason, of which ``paths`` are listed and ``more`` are not."""
+    """The files skipped for one reason; ``paths`` are listed, ``more`` is the number of others."""
 
     reason: str
     total: int
@@ -47,7 +47,10 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True)
 class Copies:
-    """Files whose content was met before: pairs (path, path it equals), ``more`` unlisted."""
+    """Files with the content of an earlier one, as pairs of paths.
+
+    ``more`` is the number of pairs that are not listed.
+    """
 
     total: int
     pairs: tuple[tuple[str, str], ...]
@@ -56,10 +59,11 @@ class Copies:
 
 @dataclass(frozen=True, slots=True)
 class SurveyView:
-    """The fixed parts of the page. ``state``: no-files, complete, unclustered or clusters.
+    """The static parts of the page.
 
-    ``start`` is the section of the restrictive start, where that was surveyed too; ``pending``
-    says what is still being computed, empty when nothing is.
+    ``state`` is no-files, complete, unclustered or clusters. ``start`` is the section of the
+    restrictive start if that was surveyed too; ``pending`` describes what is still being computed
+    and is empty when nothing is.
     """
 
     state: str
@@ -80,7 +84,7 @@ class SurveyView:
 
 
 def survey_view(record: Record) -> SurveyView:
-    """The fixed parts of the page of ``record``."""
+    """Return the static parts of the page of ``record``."""
     clusters = _shown(record)
     begun = nested(record, "start")
     skipped = records(record, "skipped")

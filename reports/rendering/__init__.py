@@ -1,1 +1,1 @@
-"""What all pages share: templates, embedding of untrusted texts, figures, typed records."""
+"""Common parts of all pages: templates, embedding of untrusted texts, figures, typed records."""

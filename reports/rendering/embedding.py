@@ -1,7 +1,7 @@
 """Embedding of untrusted text in a page, so that it cannot run or break the markup.
 
-KRL files may hold anything: `</script>` in a comment, terminal escapes, NUL, bidirectional
-overrides that make text read differently from what it is.
+KRL files may contain anything: `</script>` in a comment, terminal escapes, NUL, or bidirectional
+overrides that display text in a different order.
 """
 
 import base64
@@ -23,25 +23,25 @@ _ENDS_ELEMENT = re.compile(r"</\s*(script|style)|<!--", re.IGNORECASE)
 
 
 def printable(text: str) -> str:
-    """``text`` with every character that is invisible or steers the output made visible.
+    """Return ``text`` with visible replacements for invisible and control characters.
 
-    One character gives one character, so columns stay right. Meant for one-line text: tabs and
-    line ends become pictures too.
+    Each character becomes one character, so that columns stay valid. This is for one-line text:
+    tabs and line ends are replaced too.
     """
     return _UNSEEN.sub(_REPLACEMENT, text.translate(_CONTROL_PICTURES))
 
 
 def embedded_json(value: Any) -> Markup:
-    """``value`` as JSON that may stand inside a ``<script type="application/json">`` element."""
+    """Return ``value`` as JSON for a ``<script type="application/json">`` element."""
     plain = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     safe = _UNSAFE_IN_JSON.sub(lambda found: f"\\u{ord(found.group()):04x}", plain)
-    return Markup(safe)  # nothing is left that ends the element
+    return Markup(safe)  # contains nothing that could end the element
 
 
 def inline_source(source: str) -> Markup:
-    """Our own script or style sheet, to stand inside its element.
+    """Return our own script or style sheet as markup for the inside of its element.
 
-    Raises ValueError when the source holds what would end the element.
+    Raises ValueError if the source contains text that would end the element.
     """
     found = _ENDS_ELEMENT.search(source)
     if found:
@@ -50,6 +50,6 @@ def inline_source(source: str) -> Markup:
 
 
 def script_hash(source: str) -> str:
-    """The Content-Security-Policy source expression that lets exactly this script run."""
+    """Return the Content-Security-Policy source expression that permits only this script."""
     digest = hashlib.sha256(source.encode("utf-8")).digest()
     return f"sha256-{base64.b64encode(digest).decode('ascii')}"

@@ -1,4 +1,4 @@
-"""Formatting of figures for people."""
+"""Formatting of figures for display."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -6,7 +6,7 @@ from datetime import datetime
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One headline figure: what it is, its value, a line below, and a share in 0…1 for a bar."""
+    """A headline figure: label, value, a note below, and a share from 0 to 1 for a bar."""
 
     label: str
     value: str
@@ -15,7 +15,7 @@ class Figure:
 
 
 def percent(part: float, whole: float) -> str:
-    """A share as text, never rounded up to 100 % nor down to 0 %."""
+    """Return a share as text, never rounded up to 100 % or down to 0 %."""
     if whole <= 0:
         return "–"
     tenths = int(1000 * part / whole)
@@ -25,12 +25,12 @@ def percent(part: float, whole: float) -> str:
 
 
 def share(part: float, whole: float) -> float:
-    """A share in 0…1, 0 where there is no whole."""
+    """Return a share from 0 to 1; 0 if the whole is 0."""
     return min(1.0, max(0.0, part / whole)) if whole > 0 else 0.0
 
 
 def size(octets: float) -> str:
-    """A number of bytes in decimal units."""
+    """Return a number of bytes in decimal units."""
     if octets < 1000:
         return f"{octets:.0f} bytes"
     scale, unit = next(
@@ -42,17 +42,17 @@ def size(octets: float) -> str:
 
 
 def counted(total: int, noun: str) -> str:
-    """``3 files``, ``1 file``."""
+    """Return a number with its noun: ``3 files``, ``1 file``."""
     return f"{total:,} {noun}" if total == 1 else f"{total:,} {noun}s"
 
 
 def clip(line: str, width: int) -> str:
-    """``line`` cut to ``width`` characters, the cut marked with an ellipsis."""
+    """Return ``line`` cut to ``width`` characters; an ellipsis marks the cut."""
     return line if len(line) <= width else line[: width - 1] + "…"
 
 
 def moment(generated: str) -> str:
-    """An ISO date and time to the minute, as people read it; anything else unchanged."""
+    """Return an ISO date and time in readable form, to the minute; other texts unchanged."""
     try:
         found = datetime.fromisoformat(generated)
     except ValueError:

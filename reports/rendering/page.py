@@ -1,4 +1,4 @@
-"""Shared by all pages: rendering from a template into one self-contained file."""
+"""Rendering of a template into one self-contained file, for all pages."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -13,10 +13,10 @@ from reports.rendering.number_format import counted
 
 
 def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:
-    """The page of a template, with our ``script`` and style sheets inside it.
+    """Return the page of a template with our ``script`` and style sheets inlined.
 
-    ``data`` is what the script reads, as `embedding.embedded_json` made it; ``view`` is
-    what the template shows. Foreign text is escaped.
+    ``data`` is read by the script and made by `embedding.embedded_json`; ``view`` is the data of
+    the template. Untrusted text is escaped.
     """
     return (
         _environment()
@@ -33,7 +33,7 @@ def render(template: str, *, script: str, styles: Sequence[str], data: Markup, v
 
 @cache
 def _environment() -> Environment:
-    """One for all pages: it compiles each template once."""
+    """Return the environment of all pages, which compiles each template once."""
     environment = Environment(
         loader=FunctionLoader(source),
         autoescape=True,
@@ -48,6 +48,6 @@ def _environment() -> Environment:
 
 
 def source(name: str) -> str:
-    """The text of a template, script or style sheet."""
+    """Return the text of a template, script or style sheet."""
     file = resources.files("reports") / "templates" / name
     return file.read_text(encoding="utf-8").replace("\r\n", "\n")

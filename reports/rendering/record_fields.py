@@ -1,6 +1,6 @@
 """Typed reading of a record that came from JSON.
 
-Fields may be absent, and a count may be given as the list of what was counted. Reading is lenient
+Fields may be absent, and a count may be given as the list of the counted items. Reading is lenient
 on purpose: the record of an older or newer release still gives a page.
 """
 
@@ -13,9 +13,9 @@ _LARGEST = 1e300
 
 
 def count(record: Record, key: str) -> int:
-    """The number at ``key``; the length where a list stands there; 0 where nothing fits.
+    """Return the number at ``key``, or the length of a list there; else 0.
 
-    What no computer could have counted fits nothing.
+    Also 0 for numbers too large to be a count.
     """
     value = record.get(key)
     if isinstance(value, int | float):
@@ -24,18 +24,18 @@ def count(record: Record, key: str) -> int:
 
 
 def optional_count(record: Record, key: str) -> int | None:
-    """As `count`, but None where the field is absent, so that "unknown" is not shown as 0."""
+    """Return `count`, but ``None`` for an absent field, so that it is not shown as 0."""
     return None if record.get(key) is None else count(record, key)
 
 
 def number(record: Record, key: str) -> float:
-    """The finite number at ``key``, else 0.0."""
+    """Return the finite number at ``key``, else 0.0."""
     value = record.get(key)
     return float(value) if isinstance(value, int | float) and -_LARGEST < value < _LARGEST else 0.0
 
 
 def text(record: Record, key: str) -> str:
-    """The text at ``key``; numbers are spelled out; the empty text where nothing fits."""
+    """Return the text at ``key``; numbers are converted; empty for other values."""
     value = record.get(key)
     if isinstance(value, str):
         return value
@@ -43,7 +43,7 @@ def text(record: Record, key: str) -> str:
 
 
 def texts(record: Record, key: str) -> list[str]:
-    """The texts listed at ``key``; anything else in the list is left out."""
+    """Return the texts listed at ``key``; anything else in the list is left out."""
     value = record.get(key)
     if not isinstance(value, list | tuple):
         return []
@@ -51,7 +51,7 @@ def texts(record: Record, key: str) -> list[str]:
 
 
 def records(record: Record, key: str) -> list[Record]:
-    """The records listed at ``key``; anything else in the list is left out."""
+    """Return the records listed at ``key``; anything else in the list is left out."""
     value = record.get(key)
     if not isinstance(value, list | tuple):
         return []
@@ -59,6 +59,6 @@ def records(record: Record, key: str) -> list[Record]:
 
 
 def nested(record: Record, key: str) -> Record:
-    """The record at ``key``, empty where there is none."""
+    """Return the record at ``key``; empty if there is none."""
     value = record.get(key)
     return value if isinstance(value, Mapping) else {}

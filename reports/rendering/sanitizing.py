@@ -1,4 +1,4 @@
-"""Untrusted values made fit for a page: short, printable, finite."""
+"""Conversion of untrusted values for display on a page: short, printable, finite."""
 
 import math
 from collections.abc import Mapping
@@ -12,12 +12,15 @@ _DEEPEST = 8
 
 
 def shown(text: str, width: int) -> str:
-    """One line of foreign text: cut to a width, tabs widened, every character visible."""
+    """Return untrusted text as one line: cut to a width, tabs widened, all characters visible."""
     return printable(clip(text.replace("\t", "    "), width))
 
 
 def plain(value: Any, width: int = 400, depth: int = 0) -> Any:
-    """A value of a record as JSON that can be shown: long lists are cut, odd numbers spelled."""
+    """Return a value of a record as JSON that can be shown.
+
+    Long lists are cut, and numbers that are not finite become text.
+    """
     if value is None or isinstance(value, bool | int):
         return value
     if isinstance(value, float):

@@ -1,4 +1,4 @@
-// A case: its rule, its source with what was expected and seen, its results, timing and path.
+// A case: its rule, its source with expected and actual values, its results, timing and path.
 
 const verdictMark = (verdict) => el("span", `v ${verdict}`, verdict);
 
@@ -44,7 +44,7 @@ function eventList(result) {
   return folded([`Events (${result.executor} ${result.robot})`], () => el("pre", "source bare", rows.join("\n")));
 }
 
-/** The sheet of a case, and what has to be drawn once it is in the page. */
+/** Returns the element of a case and the functions that draw its charts once it is in the page. */
 function caseSheet(one) {
   const failing = one.results.find((result) => result.verdict === "fail")
     ?? one.results.find((result) => result.verdict !== "skipped") ?? one.results[0];

@@ -1,12 +1,12 @@
 // A case's path from above and from the front: set-points, measured, analytic, other executors,
-// and the places that the case speaks of.
+// and the positions that its checks name.
 
 const views = [["from above", 0, 1, "X", "Y"], ["from the front", 0, 2, "X", "Z"]];
 
 const places = /^(?:pose|passes|misses|leaves|joins) (\S+) (\S+) (\S+)/;
 const isRow = (row) => row.every(Number.isFinite);
 
-/** Where a check wants the tool, and, for a pose that is missed, where it was instead. */
+/** The position that a check expects, and the actual one if the check failed. */
 function placesOf(checks) {
   return checks.flatMap(({ text, state, actual }) => {
     const wanted = (places.exec(text) ?? []).slice(1).map(Number);

@@ -1,4 +1,4 @@
-// The list of cases: open, search, filter; the matrix leads into it, and so do links.
+// The list of cases: open, search, filter, also from the matrix and by links.
 
 function settle() { /* sheets settle by themselves: their pictures are drawn when they are open */ }
 
@@ -83,7 +83,7 @@ function choose(changes) {
   writeHash();
 }
 
-// The gravest come first.
+// The most severe ones come first.
 const grave = ["fail", "known-failure", "unconfirmed", "skipped", "pass"];
 body.append(...cases.map((_, i) => i).sort((a, b) => grave.indexOf(cases[a].verdict) - grave.indexOf(cases[b].verdict) || a - b).map((i) => rows[i]));
 const shorten = shortList(body);

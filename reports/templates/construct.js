@@ -1,4 +1,4 @@
-// A construct of the ledger: what it is, its evidence, its edit, its examples.
+// A construct of the ledger: its description, evidence, edits and examples.
 
 const GROUNDS = {
   corroborated: "Two or more independent origins show it",

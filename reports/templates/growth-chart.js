@@ -1,4 +1,5 @@
-// The charts over the steps: the parse rate, and one small chart a metric. They point at the same step.
+// The charts over the steps: the parse rate, and a small chart for each metric. Pointing at a step
+// marks it in all of them.
 
 const steps = page.steps;
 const last = steps.length - 1;
@@ -39,7 +40,7 @@ function metricChart(name, meaning, values) {
   byId("metrics").append(el("figure", "metric", el("figcaption", "", el("b", "", name), now, el("span", "meaning", meaning)), holder));
   const point = (n) => now.replaceChildren(...(n === null ? [written(first), el("i", "", " → "), written(final)] : [el("i", "", `after ${n}: `), written(values[n])]));
   point(null);
-  // From zero where that leaves the line room, and never so near that little looks like much.
+  // From zero if the curve keeps enough height; never so narrow that small changes look large.
   const [least, high] = [Math.min(...values), Math.max(...values)];
   const low = least >= 0 && least < high / 2 ? 0 : Math.min(least, high - Math.abs(high) / 5);
   const room = (high - low || 1) / 12;

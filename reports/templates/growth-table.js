@@ -1,4 +1,4 @@
-// The table of steps: open, search, and the links into it (#c-0012, #q=TEXT).
+// The table of steps: open, search, and links to its rows (#c-0012, #q=TEXT).
 
 const rows = [...document.querySelectorAll("#rows > .row")];
 const cards = new Map();

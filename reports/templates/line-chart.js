@@ -1,14 +1,14 @@
-// Charts of what changes from step to step, by uPlot.
+// Charts of values over steps, drawn by uPlot.
 
 const CHART_FONT = "11.5px system-ui, sans-serif";
 
 /**
- * Draws a chart into `holder` and returns what draws it anew. `describe()` says each time what to draw:
- * `series`, each { values, hue, name, isFilled } over 0, 1, 2, …, between the values `y`, as stairs unless
- * `isJoined`; `label`, which says it in words; `xName` and `xText(n)`, `yText(value)`, without which there
- * is no such axis; a `limit`.
- * `tip(n)` gives what stands beside the step under the pointer, `point(n)` is told of it and of null
- * where there is none, `open(n)` of a click. Charts of one `group` point at the same step.
+ * Draws a chart into `holder` and returns a function that redraws it. Each time `describe()` returns:
+ * `series`, each { values, hue, name, isFilled } over 0, 1, 2, …, in the range `y`, as steps unless
+ * `isJoined`; `label`, a description in words; `xName` and `xText(n)`, `yText(value)`, without which
+ * the axis is omitted; a `limit`.
+ * `tip(n)` returns the text beside the step under the pointer. `point(n)` is called with that step, or
+ * null if there is none, and `open(n)` on a click. Charts of one `group` mark the same step.
  */
 function lineChart(holder, describe) {
   const tip = el("div", "tip");
@@ -79,7 +79,7 @@ function lineChart(holder, describe) {
       ctx.restore();
     }
 
-    /** The names stand at the ends of their lines, far enough apart to be read. */
+    /** Draws the names at the ends of their lines, without overlaps. */
     function names({ ctx, bbox, valToPos }) {
       ctx.save();
       ctx.font = `600 ${11.5 * devicePixelRatio}px system-ui, sans-serif`;

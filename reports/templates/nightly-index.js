@@ -1,4 +1,4 @@
-// Tells on the page that leads to the last nightly run when there was none for too long.
+// Opens the last nightly run, or warns if it was too long ago.
 
 const hours = (Date.now() - Date.parse(page.made)) / 3600000;
 const told = document.getElementById("told");

@@ -1,4 +1,4 @@
-// Small curves over the nightly runs, one a figure.
+// Small curves over the nightly runs, one for each figure.
 
 const runs = page.runs;
 const short = (value) => value.toLocaleString("en-GB", { maximumSignificantDigits: 4 });

@@ -1,10 +1,10 @@
-// What every page uses: the data, the spelling of figures, the making of elements. reports/ puts the
-// scripts of a page into one strict block, so each name here is seen by the parts after.
+// Common to all pages: the data, number formats, creation of elements. reports/ puts the scripts of
+// a page into one strict block, so the scripts after this one can use its names.
 
 const page = JSON.parse(document.getElementById("page-data").textContent);
 const number = (value) => value.toLocaleString("en-GB");
 const counted = (value, noun) => `${number(value)} ${noun}${value === 1 ? "" : "s"}`;
-/** A share in per cent, never rounded up to 100 %. */
+/** Returns a share in per cent, never rounded up to 100 %. */
 function percent(part, whole) {
   const tenths = Math.floor((1000 * part) / whole);
   return tenths >= 1000 ? "100 %" : `${(tenths / 10).toFixed(1)} %`;
@@ -13,7 +13,7 @@ const signed = (value) => `${value < 0 ? "−" : "+"}${number(Math.abs(value))}`
 
 const byId = (id) => document.getElementById(id);
 
-/** An element with a class and children; texts become text nodes, null is left out. */
+/** Creates an element with a class and children; texts become text nodes, null is left out. */
 function el(tag, className, ...children) {
   const element = document.createElement(tag);
   if (className) element.className = className;
@@ -57,12 +57,12 @@ function copyButton(text, label = "Copy") {
   }, `Copies: ${text.length > 80 ? `${text.slice(0, 79)}…` : text}`);
 }
 
-/** A titled part of a card. */
+/** Returns a part of a card with a title. */
 function part(title, ...content) {
   return el("section", "", title ? el("h3", "", title) : null, ...content);
 }
 
-/** What is built only when it is unfolded. */
+/** Returns a folded part whose content is created when it is unfolded. */
 function folded(summary, build) {
   const details = el("details", "", el("summary", "", ...summary));
   details.addEventListener("toggle", () => {
@@ -74,7 +74,7 @@ function folded(summary, build) {
   return details;
 }
 
-/** Arrows walk the openers of a table's rows. */
+/** Lets arrow keys move between the buttons that open a table's rows. */
 function walkWithArrows(body) {
   body.addEventListener("keydown", (event) => {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -90,8 +90,8 @@ function walkWithArrows(body) {
 const MOST_ROWS = 100;
 
 /**
- * Shows the first rows of a list that no filter hides, and a button for the others. What it returns is to
- * be called whenever rows have changed, and with `true` to show all of them.
+ * Shows the first rows of a list that no filter hides, and a button for the others. The returned
+ * function must be called whenever rows have changed; with `true` it shows all rows.
  */
 function shortList(body) {
   const heads = [...body.parentElement.tHead.rows[0].cells].map((head) => head.textContent.trim());
@@ -111,7 +111,7 @@ function shortList(body) {
   return shorten;
 }
 
-/** A click on a row, unless it marks text, or is on its opener. */
+/** Calls `toggle` on a click on a row; one that selects text only counts on the row's button. */
 function onRow(body, toggle) {
   body.addEventListener("click", (event) => {
     const row = event.target.closest(".row");
@@ -124,7 +124,7 @@ function setHash(text) {
   try { history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search); } catch { /* some browsers refuse it for local files */ }
 }
 
-/** Draws now and whenever the width of the holder changes. */
+/** Draws now, and whenever the width of the holder changes. */
 function whenResized(holder, draw) {
   let drawn = holder.clientWidth;
   draw();
@@ -135,7 +135,7 @@ function whenResized(holder, draw) {
   }).observe(holder);
 }
 
-/** Calls `draw` whenever light turns to dark or back. */
+/** Calls `draw` whenever the colour scheme changes between light and dark. */
 const whenRecoloured = (draw) => matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
-/** A colour of the style sheet. */
+/** Returns a colour of the style sheet. */
 const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

@@ -1,11 +1,11 @@
-// The arm as three.js draws it: links along their chain, the tool, and the frames in force.
+// The arm for three.js: the chain of links, the tool, and the current frames.
 
 const ALARM = path.t.length ? new THREE.Color("#d01818") : null; // of what touches something
 
-/** A frame of sixteen numbers, row by row. */
+/** Returns the matrix of a frame, given as sixteen numbers row by row. */
 const frameOf = (numbers) => new THREE.Matrix4().set(...numbers);
 
-/** A group that stands still in a frame. */
+/** Returns a group that is fixed in a frame. */
 function fixed(numbers) {
   const group = new THREE.Group();
   group.matrixAutoUpdate = false;
@@ -17,14 +17,14 @@ function lineOf(points, material) {
   return new THREE.Line(new THREE.BufferGeometry().setFromPoints(points.map((point) => new THREE.Vector3(...point))), material);
 }
 
-/** The three axes of a frame, in the colours that everybody gives them. */
+/** Returns the three axes of a frame in their usual colours. */
 function triad(size, colours) {
   const group = fixed();
   colours.forEach((material, i) => group.add(lineOf([[0, 0, 0], [0, 0, 0].map((_, j) => (i === j ? size : 0))], material)));
   return group;
 }
 
-/** A rod, with round ends where it `moves`; `facets` is how round. */
+/** Returns a rod, with round ends if it `moves`; `facets` is half the number of its sides. */
 function rod({ start, end: tip, radius, colour }, facets, moves) {
   const [from, to] = [new THREE.Vector3(...start), new THREE.Vector3(...tip)];
   const length = from.distanceTo(to);
@@ -37,7 +37,7 @@ function rod({ start, end: tip, radius, colour }, facets, moves) {
   return mesh;
 }
 
-/** An object of the scene; of a mesh, whose shape is not known here, a small ball at its origin. */
+/** Returns an object of the scene; a mesh, whose shape is unknown here, is a small ball at its origin. */
 function body({ shape, edges: [x, y, z] }, facets) {
   const shapes = {
     box: () => new THREE.BoxGeometry(x, y, z),
@@ -49,8 +49,8 @@ function body({ shape, edges: [x, y, z] }, facets) {
 }
 
 /**
- * The arm in `scene`: `follow(time)` puts it where it is at a time; `tip()` is then where its tool is, in mm in
- * $WORLD, null where there is no arm.
+ * The arm in `scene`: `follow(time)` moves it to its position at a time. `tip()` then returns the
+ * position of its tool in mm in $WORLD, or null without an arm.
  */
 function armIn(scene, facets, lines) {
   const { links, hand, flange, tools, objects } = page.arm;

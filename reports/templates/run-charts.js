@@ -1,4 +1,4 @@
-// Charts over one time axis, by uPlot: position, speed, acceleration and torque with their limits.
+// Charts over a common time axis, drawn by uPlot: position, speed, acceleration and torque, with limits.
 
 const span = { from: 0, to: end };
 const charts = [];
@@ -7,10 +7,10 @@ const isNarrow = () => byId("charts").clientWidth < 600;
 const axisWidth = () => (isNarrow() ? 68 : 130);
 
 /**
- * A chart of `series`, each { name, hue, values, told, unit, digits } over the times of the path: what it
- * draws, and what it says of the moment where that is not the same. `lines` are limits;
- * `paint(chart, x)` draws what is no series. `y` is [lowest, highest], with the lowest on top where
- * `isDown`; `ticks` are what stands beside it.
+ * Draws a chart of `series`, each { name, hue, values, told, unit, digits } over the times of the path.
+ * `told` are the values shown as numbers if they differ from those drawn. `lines` are limits;
+ * `paint(chart, x)` draws everything else. `y` is [lowest, highest], with the lowest at the top if
+ * `isDown`; `ticks` are the labels of the axis.
  */
 function chart(title, { height, series = [], lines = [], y, ticks = null, keys = [], isDown = false, paint = () => {} }) {
   const holder = el("div", "plot");
@@ -74,7 +74,7 @@ function chart(title, { height, series = [], lines = [], y, ticks = null, keys =
     place();
   }
 
-  /** Where two motions blend. */
+  /** Marks the spans in which two motions blend. */
   function bands(u) {
     painted(u, (x) => {
       u.ctx.fillStyle = colourOf("blue-wash");
@@ -114,7 +114,7 @@ function painted(u, draw) {
   u.ctx.restore();
 }
 
-/** As much of the end of a text as there is room for beside a chart: names differ in their ends. */
+/** Cuts a text at its start to fit beside a chart, because names differ at their ends. */
 function shortened(u, text) {
   u.ctx.save();
   u.ctx.font = "11.5px system-ui, sans-serif";
@@ -129,7 +129,7 @@ function enlarge(from, to) {
   for (const { zoom } of charts) zoom();
 }
 
-/** From the lowest to the highest value, and the limits where they are near. */
+/** Returns the range of the values, extended to the limits if these are near. */
 function extent(columns, bounds = []) {
   const values = columns.flatMap((column) => [column.reduce((a, b) => Math.min(a, b), Infinity), column.reduce((a, b) => Math.max(a, b), -Infinity)]);
   const most = Math.max(...values.map(Math.abs), 1e-3);
@@ -147,7 +147,7 @@ function speedChart() {
   chart("Speed of the tool [m/s]", { height: 130, series, keys, ...shown });
 }
 
-/** What is known of axes: its unit, where its values are, and how far [lowest, highest] they may go. */
+/** The quantities of axes: unit, field of the values, and limits [lowest, highest]. */
 const plusMinus = (values) => values.map((value) => (value ? [-value, value] : null));
 const QUANTITIES = [
   { title: "Position", unit: (isLinear) => (isLinear ? "mm" : "°"), digits: 1, columns: path.axes, range: limits.axes.map(([low, high]) => (high > low ? [low, high] : null)), share: "±100 % at the software limit switches" },
@@ -159,7 +159,7 @@ const axisName = (n) => page.arm.axes[n] ?? (n < 6 ? `A${n + 1}` : `E${n - 5}`);
 const axisHue = (n) => ({ hue: `h${n % 6}`, dash: n < 6 ? undefined : [6, 3] });
 const isLinear = (n) => page.arm.links.some((link) => link.joint === n && link.linear);
 
-/** A quantity of one axis, in its own unit. */
+/** Draws a quantity of one axis in its own unit. */
 function axisChart({ title, unit, digits, columns, range }, n) {
   const values = columns[n];
   if (!values?.length) return;
@@ -172,8 +172,8 @@ function axisChart({ title, unit, digits, columns, range }, n) {
 }
 
 /**
- * A quantity of all axes: each as a share of its own limits, so that one pair of lines is for all; in its
- * unit where no limits are known.
+ * Draws a quantity of all axes: relative to their own limits, so that one pair of lines serves all, or
+ * in its unit if limits are unknown.
  */
 function axesChart({ title, unit, digits, columns, range, share }) {
   const isShare = range.some((bounds) => bounds);
@@ -189,7 +189,7 @@ function axesChart({ title, unit, digits, columns, range, share }) {
   chart(`${title} of the axes${isShare ? `, ${share}` : ` [${unit(false)}], limits unknown`}`, { height: 160, series, ...shown });
 }
 
-/** The charts of the axis that is chosen, or of all. */
+/** Draws the charts of the selected axis, or of all. */
 function axisCharts() {
   const choice = byId("axis");
   const others = [charts.length, followers.length];

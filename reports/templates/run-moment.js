@@ -1,7 +1,7 @@
-// The moment that all parts of the page show, and what of the run stands at it.
+// The point in time that all parts of the page show, and the state of the run at it.
 
 const { path, limits } = page;
-/** What was seen besides the trace, as events: contacts, and torques that an axis cannot bear. */
+/** Observations outside the trace as events: contacts, and torques beyond the limits of an axis. */
 const observed = page.observations.map(({ t, end: until, kind, at, parts, value, limit }) => ({
   t, kind, at, what: kind === "collision" ? parts.join(" touches ") : `${parts[0]} needs ${value} Nm and bears ${limit}`, until: `${(until / 1e6).toFixed(3)} s`,
 }));
@@ -11,13 +11,13 @@ const seconds = (time, digits = 3) => (time / 1e6).toFixed(digits);
 
 const followers = [];
 let moment = 0;
-/** All parts show the moment `time`; `by` says who asked, so that it need not follow itself. */
+/** Makes all parts show `time`; `by` is the part that asked, which need not follow itself. */
 function pointAt(time, by = null) {
   moment = Math.min(end, Math.max(0, Math.round(time)));
   for (const follow of followers) follow(moment, by);
 }
 
-/** The last place in a rising list of times that is not after `time`; -1 before the first. */
+/** Returns the index of the last of some rising times that is not after `time`; -1 if none is. */
 function placeAt(times, time) {
   let [low, high] = [0, times.length];
   while (low < high) {
@@ -28,7 +28,7 @@ function placeAt(times, time) {
   return low - 1;
 }
 
-/** A function of columns of the path: their values at a time, between two samples in proportion. */
+/** Returns a function that interpolates columns of the path linearly at a time. */
 function valuesAt(time) {
   const last = path.t.length - 1;
   const place = Math.min(Math.max(0, placeAt(path.t, time)), last);
@@ -37,7 +37,7 @@ function valuesAt(time) {
   return (values) => values[place] + (values[next] - values[place]) * share;
 }
 
-/** What calls `act` once at the next frame, however often it is called before. */
+/** Returns a function that calls `act` at the next frame, only once even if called repeatedly. */
 function atNextFrame(act) {
   let isWaiting = false;
   return () => {
@@ -47,7 +47,7 @@ function atNextFrame(act) {
   };
 }
 
-/** The names of what touches something at a time. */
+/** Returns the names of the parts that touch something at a time. */
 const touching = (time) => new Set(page.observations.flatMap(({ t, end: until, kind, parts }) => (kind === "collision" && t <= time && time <= until ? parts : [])));
 
 const motionStarts = events.filter((event) => event.kind === "motion_start");
@@ -55,7 +55,7 @@ const startTimes = motionStarts.map((event) => event.t);
 const AHEAD = new Set(["line", "assign", "branch", "motion_planned", "advance_stop", "call", "return", "wait", "halt", "end"]);
 const advanceRun = events.filter((event) => AHEAD.has(event.kind) && event.at && event.task !== "submit");
 
-/** The spans in which two motions blend. */
+/** Returns the spans in which two motions blend. */
 const blends = [];
 for (const event of events) {
   if (event.kind === "blend_start") blends.push([event.t, end]);

@@ -1,6 +1,6 @@
 // Playing the run: button, slider and keys.
 
-/** Returns what says whether it plays. */
+/** Returns a function that tells whether the run is playing. */
 function player() {
   const [button, slider, rate] = ["play", "slider", "rate"].map(byId);
   let before = null; // the frame before in ms, while it plays
@@ -30,7 +30,7 @@ function player() {
     show();
     requestAnimationFrame(tick);
   }
-  /** The start of the motion before or after this moment, else the end of the run. */
+  /** Returns the start of the previous or next motion, or else the end of the run. */
   function neighbour(step) {
     const place = step > 0 ? placeAt(startTimes, moment) + 1 : placeAt(startTimes, moment - 1);
     return startTimes[place] ?? (step > 0 ? end : 0);

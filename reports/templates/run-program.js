@@ -1,10 +1,10 @@
-// The source with the lines of the moment, and the list of events.
+// The source with the lines that are current, and the list of events.
 
 const mainRun = motionStarts.filter((event) => event.at);
 const timesOf = (list) => list.map((event) => event.t);
 const [mainTimes, advanceTimes] = [timesOf(mainRun), timesOf(advanceRun)];
 
-/** Scrolls a holder, and not the page, where a row of it is out of sight. */
+/** Scrolls a holder, not the page, if a row of it is out of sight. */
 function keepInSight(holder, row) {
   const [top, bottom] = [row.offsetTop, row.offsetTop + row.offsetHeight];
   if (top < holder.scrollTop || bottom > holder.scrollTop + holder.clientHeight) holder.scrollTop = top - holder.clientHeight / 2;
@@ -56,7 +56,7 @@ function program() {
 }
 
 const shown = new Set(["t", "task", "kind", "at"]);
-/** Fields whose values speak for themselves. */
+/** Fields whose values are shown without their names. */
 const bare = new Set(["what", "name", "text", "motion_kind"]);
 const told = (event) => Object.entries(event).filter(([name]) => !shown.has(name)).map(([name, value]) => (bare.has(name) ? value : `${name.replaceAll("_", " ")} ${value}`)).join(", ");
 

@@ -4,7 +4,7 @@ const POINTS = 2_000; // points that are marked, and pieces of the path without 
 const POSES = 12; // at which the arm must be in the picture
 const DIRECTIONS = { slanted: [1, -1.2, 0.8], front: [1, 0, 0.001], side: [0, -1, 0.001], above: [0, -0.001, 1] };
 
-/** What draws, and how round it can afford things to be: WebGL, whose picture is printed too, or SVG where the browser has none. */
+/** Returns the renderer and its facets: WebGL, with its picture kept for printing, or else SVG. */
 function rendererFor(canvas) {
   const context = canvas.getContext("webgl2", { antialias: true, alpha: true, preserveDrawingBuffer: true });
   if (!context) return { renderer: new THREE.SVGRenderer(), facets: 6, light: 1 };
@@ -45,7 +45,7 @@ function scene() {
   }
   const { grid, step, arrow } = ground();
 
-  /** The tool at a time, in words: where it changes the path begins anew. */
+  /** Returns a key of the tool at a time; where it changes, the path is drawn separately. */
   function toolAt(time) {
     return String(page.arm.tools[placeAt(toolTimes, time)]?.tool);
   }
@@ -72,7 +72,7 @@ function scene() {
     add(path.measured.filter((_, n) => n % stride === 0), "mark");
   }
 
-  /** A grid on the ground, as wide as what there is, with lines at a round distance. */
+  /** Returns a grid on the ground as wide as the scene, with lines at a round distance. */
   function ground() {
     const size = whole.getSize(new THREE.Vector3());
     const rough = Math.max(size.x, size.y, 10) / 8;
@@ -132,7 +132,7 @@ function scene() {
     return z < 1 ? [((1 + x) * holder.clientWidth) / 2, ((1 - y) * holder.clientHeight) / 2] : null;
   };
 
-  /** Draws a mark; its box. */
+  /** Draws a mark; returns its box. */
   function dot(at, radius, fill, ring) {
     pen.beginPath();
     pen.arc(...at, radius, 0, 2 * Math.PI);
@@ -143,7 +143,7 @@ function scene() {
     return [at[0] - radius, at[1] - radius, at[0] + radius, at[1] + radius];
   }
 
-  /** Marks of points, and as many of their names as lie neither upon one another nor upon a mark. */
+  /** Draws marks of points, and those of their names that overlap neither one another nor a mark. */
   function marks() {
     const [ink, soft, paper, mark] = ["ink", "soft", "panel", "mark"].map(colourOf);
     pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);

@@ -5,7 +5,7 @@ const ROW = 20;
 const MARKED = new Set(["trigger", "interrupt_enter", "interrupt_leave", "brake", "resume", "message", "fault", "collision", "torque"]);
 const SWITCHING = new Set(["in", "out", "anout"]);
 
-/** Steps from event to event: `level` of each in pixels, from the first to the end of the run. */
+/** Draws steps between events, with the `level` of each in pixels, to the end of the run. */
 function steps(u, x, list, level) {
   u.ctx.beginPath();
   list.forEach((event, n) => {
@@ -16,7 +16,7 @@ function steps(u, x, list, level) {
   u.ctx.stroke();
 }
 
-/** The lines that moved the arm, and those that were executed, as steps over time. */
+/** Draws the lines that moved the arm and those that were executed as steps over time. */
 function lineChart() {
   const motions = motionStarts.filter((event) => event.at);
   if (!motions.length && !advanceRun.length) return;
@@ -78,7 +78,7 @@ function signalChart() {
   });
 }
 
-/** Texts beside their events, as many as do not lie upon one another. */
+/** Draws the texts of events, as many as fit without overlaps. */
 function inTurn(u, x, list, word, y) {
   const gap = 4 * devicePixelRatio;
   let free = u.bbox.left;

@@ -1,7 +1,7 @@
-// Source text, shown with line numbers and carets, no character unseen. Foreign text reaches the page
-// through text nodes only.
+// Source text with line numbers and carets; all characters are visible. Untrusted text reaches the
+// page through text nodes only.
 
-// Control, zero-width and bidirectional characters: shown as one sign each, so columns stay right.
+// Control, zero-width and bidirectional characters are shown as one sign each, so columns stay valid.
 const UNSEEN = /[\0-\x08\x0a-\x1f\x7f-\x9f\xad\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ud800-\udfff]/u;
 const SPLIT = new RegExp(`(${UNSEEN.source})`, "u");
 function shown(character) {
@@ -23,7 +23,7 @@ function commentStart(characters) {
   return characters.length;
 }
 
-/** A line of source as nodes; `from`, `to` bound the offending token, in characters from 0. */
+/** Returns a line of source as nodes; `from`, `to` bound the offending token, in characters from 0. */
 function marked(characters, from, to) {
   const comment = commentStart(characters);
   const ends = [...new Set([from, to, comment, characters.length])]
@@ -39,7 +39,7 @@ function marked(characters, from, to) {
   });
 }
 
-/** Carets below the token, after as much white space as there is text before it; tabs stay tabs. */
+/** Returns carets below the token, after white space for the text before it; tabs stay tabs. */
 function carets(characters, from, to) {
   let before = "";
   for (let i = 0; i < from; i++) before += characters[i] === "\t" ? "\t" : " ";
@@ -47,7 +47,7 @@ function carets(characters, from, to) {
     el("span", "tx", before, el("span", "marks", "^".repeat(Math.max(1, to - from)))));
 }
 
-/** Numbered lines; `at` (or null) is {line, column, width} of the token, columns from 1. */
+/** Returns numbered lines; `at` (or null) is {line, column, width} of the token, columns from 1. */
 function sourceBlock(lines, at) {
   const block = el("div", "source");
   block.tabIndex = 0;
@@ -67,8 +67,8 @@ function sourceBlock(lines, at) {
 }
 
 /**
- * Once `root` is in the page: puts the carets right where a wide character or a font whose blanks
- * differ by a hair moved them, and brings the token of a long line into view.
+ * Call this once `root` is in the page. It corrects the position of carets that wide characters or
+ * slightly different widths of blanks have shifted, and scrolls to the token of a long line.
  */
 function settle(root) {
   for (const marks of root.querySelectorAll(".marks")) {

@@ -1,6 +1,6 @@
 // The card of a cluster: example, reproducer, expected tokens, proposals, files.
 
-// Long sets and lists are folded, but never for the sake of a few.
+// Long sets and lists are folded, unless only a few items would be hidden.
 const FOLD_AFTER = 14;
 const WORTH_FOLDING = 4;
 const ORIGINS_SHOWN = 6;
@@ -90,7 +90,7 @@ function proposals(cluster) {
         return cell;
       })));
   }
-  // what the start lacked is answered or proposed under the grammar in force, not from here
+  // constructs that the start lacks are answered or proposed under the grammar in force, not here
   return part("", el("div", "heading", el("h3", "", "Proposals, the best first"),
     ...(prefix ? [] : [copyButton(`krl construct propose ${cluster.id}`, "Copy command")])),
   el("table", "proposals", el("thead", "", head), body));
@@ -130,7 +130,7 @@ function facts(cluster) {
 
 const answerOf = (cluster) => (Object.hasOwn(data.answers, cluster.id) ? data.answers[cluster.id] : null);
 
-/** What the ledger answered: the construct with its evidence and its edit. */
+/** Returns the construct that answers a cluster, with its evidence and its edit. */
 function answer(cluster) {
   const construct = answerOf(cluster);
   if (!construct) return null;

@@ -1,4 +1,4 @@
-// The sections of the survey page: the grammar in force and, where it was surveyed too, the restrictive
+// The sections of the survey page: the grammar in force and, if it was surveyed too, the restrictive
 // start. Each has the same elements, whose ids begin with its prefix.
 
 const states = {};
@@ -11,7 +11,7 @@ function writeHash() {
 
 const readers = page.sections.map((section) => present(section, section.prefix)).filter(Boolean);
 
-/** All sections read the same hash, before one of them writes it. */
+/** Lets all sections read the hash before one of them writes it. */
 function readHash() {
   const given = new URLSearchParams(location.hash.slice(1));
   for (const read of readers) read(given);

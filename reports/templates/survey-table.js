@@ -1,4 +1,4 @@
-// The table of clusters: open, sort, search, filter; and the links into it.
+// The table of clusters: open, sort, search, filter, and links to its rows.
 
 const rows = [...(byId("rows")?.querySelectorAll(":scope > .row") ?? [])];
 const indexOf = new Map(clusters.map((cluster, i) => [cluster.id, i]));
@@ -62,14 +62,14 @@ const sortValue = {
 const ascendingFirst = new Set(["place", "title", "rule", "answer"]);
 
 let shownOrder = rows.map((_, i) => i);
-/** Orders the rows by `sort`: a key, with "-" before it for descending, or "" for the survey's order. */
+/** Sorts the rows by `sort`: a key, with "-" before it for descending, or "" for the survey's order. */
 function order(sort) {
   const down = sort.startsWith("-");
   const key = sort.replace(/^-/, "");
   const value = Object.hasOwn(sortValue, key) ? sortValue[key] : null;
   const indices = rows.map((_, i) => i);
   if (value) {
-    // The survey's order decides between equals, in both directions.
+    // Equal rows keep the survey's order, in both directions.
     const compare = (a, b) => (value(a) < value(b) ? -1 : value(a) > value(b) ? 1 : 0);
     indices.sort((a, b) => (down ? compare(b, a) : compare(a, b)) || a - b);
   }
