@@ -281,7 +281,8 @@ class Folding:
                     if self._is_name(left):
                         break  # a name and members of it
                     if self._is_kind(left) and self._is_name(right):
-                        if not any(isinstance(e, Literal) for e in elements[place:]):
+                        signs = {e.text for e in elements[place:] if isinstance(e, Literal)}
+                        if signs.isdisjoint(BRACKETS):
                             found.append((number, place, elements[place:]))
                         break  # a bracket is that of a routine
             sources = {self._source(rule.name, tail) for _, _, tail in found}

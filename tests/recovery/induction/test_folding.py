@@ -156,6 +156,7 @@ line
     | STEP expression (BY NUMBER)?
     | waiting
     | declared
+    | GLOBAL INT name '=' expression
     ;
 
 declared : DECL GLOBAL (FRAME | type) name ;
@@ -192,6 +193,7 @@ WAIT : 'WAIT' ;
 FAST : 'FAST' ;
 SLOW : 'SLOW' ;
 PLUS : '+' ;
+ASSIGN : '=' ;
 DOT : '.' ;
 LPAREN : '(' ;
 RPAREN : ')' ;
@@ -213,6 +215,7 @@ SPACE : ' '+ -> skip ;
         ("MOVE_REL goes on as MOVE does", "MOVE_REL A[1] FAST SLOW\n"),
         ("variables beside values in waiting 1", "WAIT FAST A\n"),
         ("FRAME is one of type", "DECL FRAME A[1]\n"),
+        ("one form for what follows a name in line", "DECL INT A = 1\n"),
     ],
 )
 def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
