@@ -38,69 +38,6 @@ def blended(driver: Driver, *places: Place) -> None:
     driver.play()
 
 
-def test_path_from_the_end(driver: Driver) -> None:
-    """PATH=-30 is passed 30 mm before the end of a line [TRG-04]."""
-    line(driver, Place(1, "PATH", -30.0))
-    assert -70.0 == pytest.approx(driver.tool(driver.time("place", 2, 1))[1], abs=1e-3)
-
-
-def test_path_from_the_start(driver: Driver) -> None:
-    """With ONSTART the same counts from the start."""
-    line(driver, Place(1, "PATH", 30.0, on_start=True))
-    assert 170.0 == pytest.approx(driver.tool(driver.time("place", 2, 1))[1], abs=1e-3)
-
-
-@pytest.mark.parametrize("delay", [-150_000, 90_000])
-def test_delay_comes_behind_the_shift(driver: Driver, delay: int) -> None:
-    """DELAY counts from the moment in which the shifted place is passed [TRG-08]."""
-    line(driver, Place(1, "PATH", -120.0), Place(2, "PATH", -120.0, delay=delay))
-    assert delay == driver.time("place", 2, 2) - driver.time("place", 2, 1)
-
-
-@pytest.mark.parametrize(
-    ("place", "event"),
-    [
-        (Place(1, "DISTANCE", 0.0), "motion_start"),
-        (Place(1, "DISTANCE", 0.0, delay=-50_000), "motion_start"),
-        (Place(1, "DISTANCE", 1.0), "motion_end"),
-        (Place(1, "DISTANCE", 1.0, delay=50_000), "motion_end"),
-        (Place(1, "DISTANCE", 0.0, delay=99_000_000), "motion_end"),
-        (Place(1, "DISTANCE", 1.0, delay=-99_000_000), "motion_start"),
-        (Place(1, "PATH", 10.0), "motion_end"),
-        (Place(1, "PATH", -1000.0), "motion_start"),
-    ],
-)
-def test_between_exact_stops(driver: Driver, place: Place, event: str) -> None:
-    """What lies before the start or behind the end is moved there [TRG-07, TRG-10]."""
-    line(driver, place)
-    assert driver.time(event, 2) == driver.time("place", 2, 1)
-
-
-@pytest.mark.parametrize("delay", [20_000, 0])
-def test_distance_with_delay(driver: Driver, delay: int) -> None:
-    """DISTANCE=0 is the start, and DELAY counts from there [TRG-01, TRG-03]."""
-    begin = line(driver, Place(1, "DISTANCE", 0.0, delay=delay))
-    assert begin + delay == driver.time("place", 2, 1)
-
-
-@pytest.mark.parametrize(
-    ("place", "event", "motion"),
-    [
-        (Place(1, "DISTANCE", 0.0), "blend_end", 3),
-        (Place(1, "DISTANCE", 1.0), "blend_apex", 3),
-        (Place(1, "DISTANCE", 1.0, delay=-10_000_000), "blend_start", 3),
-        (Place(1, "DISTANCE", 1.0, delay=10_000_000), "blend_end", 4),
-        (Place(1, "PATH", 0.0), "blend_apex", 3),
-        (Place(1, "PATH", 900.0), "blend_end", 4),
-        (Place(1, "PATH", -900.0), "blend_start", 2),
-    ],
-)
-def test_between_blends(driver: Driver, place: Place, event: str, motion: int) -> None:
-    """With approximated points the range reaches from blend to blend [TRG-02, TRG-10, TRG-11]."""
-    blended(driver, place)
-    assert driver.time(event, motion) == driver.time("place", 3, 1)
-
-
 def test_millimetres_along_a_blend(driver: Driver) -> None:
     """On a blend, PATH counts the way that the tool really takes."""
     blended(driver, Place(1, "PATH", -15.0), Place(2, "PATH", 15.0))
