@@ -163,19 +163,19 @@ def baseline_place(baseline: Path) -> Callable[[str], str]:
 
 def _text(key: str, value: object) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{key} is a text")
+        raise ValueError(f"{key} must be a text")
     return value
 
 
 def _truth(key: str, value: object) -> bool:
     if not isinstance(value, bool):
-        raise ValueError(f"{key} is true or false")
+        raise ValueError(f"{key} must be true or false")
     return value
 
 
 def _texts(key: str, value: object) -> tuple[str, ...]:
     if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
-        raise ValueError(f"{key} is a list of texts")
+        raise ValueError(f"{key} must be a list of texts")
     return tuple(value)
 
 
@@ -194,7 +194,7 @@ def _severity(key: str, value: object) -> dict[str, _Level]:
         (prefix,) = _codes(key, [code]) or ("",)
         known = next((one for one in get_args(_Level) if one == level), None)
         if known is None:
-            raise ValueError(f"{key}: {code} is one of {', '.join(get_args(_Level))}")
+            raise ValueError(f"{key}: {code} must be one of {', '.join(get_args(_Level))}")
         found[prefix] = known
     return found
 
@@ -205,7 +205,7 @@ def _ignored_in(key: str, value: object) -> dict[str, tuple[str, ...]]:
 
 def _table(key: str, value: object) -> Mapping[str, object]:
     if not isinstance(value, dict):
-        raise ValueError(f"{key} is a table")
+        raise ValueError(f"{key} must be a table")
     return value
 
 

@@ -238,12 +238,12 @@ def from_data(data: Mapping[str, object]) -> Edit:
         wanted = {"at": list, "count": int, "alternative": int}.get(known.name, str)
         numbers = value if isinstance(value, list) else []
         if not isinstance(value, wanted) or not all(isinstance(n, int) for n in numbers):
-            raise GrammarError(f"edit {data['edit']}: {known.name} is not as it should be")
+            raise GrammarError(f"edit {data['edit']}: {known.name} is not valid")
         values[known.name] = tuple(value) if isinstance(value, list) else value
     try:
         return cls(**values)  # type: ignore[arg-type]  # as looked at above
     except TypeError:
-        raise GrammarError(f"edit {data['edit']}: something is missing") from None
+        raise GrammarError(f"edit {data['edit']}: a field is missing") from None
 
 
 def describe(grammar: Grammar, edit: Edit) -> str:

@@ -143,7 +143,7 @@ def _command(node: Tree[Token]) -> str:
     parts: list[Any] = list(node.children)
     name, argument = parts
     if (name, argument is None) not in (("skip", True), ("channel", False)):
-        raise GrammarError(f"the command {name} is not of our style")
+        raise GrammarError(f"the command {name} is not supported")
     return str(name) if argument is None else f"{name}({argument})"
 
 
@@ -191,7 +191,7 @@ def _element(node: Tree[Token], offset: int, depth: int) -> Element:
                 case "?" | "*" | "+" as operator:
                     return Repeat(_element(item, offset, depth), operator, span)
                 case other:
-                    raise GrammarError(f"non-greedy {other!r} is not of our style")
+                    raise GrammarError(f"non-greedy {other!r} is not supported")
 
 
 _ESCAPES = {"n": "\n", "r": "\r", "t": "\t", "b": "\b", "f": "\f"}

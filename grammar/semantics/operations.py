@@ -52,7 +52,7 @@ def unary(operator: str, operand: Type) -> Typed:
             return _typed(BOOL, _not(BOOL, operator, operand, "ARI-11"))
         case "B_NOT":
             return _typed(INT, _no_bits(operator, operand))
-    raise ValueError(f"{operator!r} is no operator of one operand")
+    raise ValueError(f"{operator!r} is not a unary operator")
 
 
 def binary(operator: str, left: Type, right: Type) -> Typed:
@@ -69,7 +69,7 @@ def binary(operator: str, left: Type, right: Type) -> Typed:
         return _typed(INT, _first(_no_bits(operator, left), _no_bits(operator, right)))
     if operator == ":":
         return _typed(right, _first(_not_pose(left), _not_pose(right)), "ARI-08")
-    raise ValueError(f"{operator!r} is no operator of two operands")
+    raise ValueError(f"{operator!r} is not a binary operator")
 
 
 def _first(*bad: Verdict | None) -> Verdict | None:

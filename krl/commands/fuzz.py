@@ -74,12 +74,12 @@ def _chosen(wanted: list[str]) -> list[str]:
     there = available()
     for name in wanted:
         if name not in EXECUTORS:
-            raise InputError(f"{name}: the executor is one of {', '.join(EXECUTORS)}")
+            raise InputError(f"{name}: the executor must be one of {', '.join(EXECUTORS)}")
         if not is_available(name):
             raise InputError(f"{name}: this executor is not available here")
     names = list(dict.fromkeys(wanted or there))
     if len(names) < 2:
-        raise InputError("name two executors at least: one alone cannot be compared")
+        raise InputError("name two executors at least to compare")
     return names
 
 

@@ -34,9 +34,9 @@ class Connection:
             try:
                 message = json.loads(data)
             except (ValueError, RecursionError) as error:
-                raise InputError(f"a message that is no JSON: {error}") from None
+                raise InputError(f"a message that is not JSON: {error}") from None
             if not isinstance(message, dict) or not isinstance(message.get("command"), str):
-                raise InputError("a message that is no request")
+                raise InputError("a message that is not a request")
             yield message
 
     def respond(self, request: Json, body: Json | None, refusal: str = "") -> None:
@@ -68,7 +68,7 @@ class Connection:
                 digits = value.strip()
                 length = int(digits) if digits.isdigit() and len(digits) < 10 else -1
         if length is None or not 0 <= length <= _LARGEST:
-            raise InputError("a message without a length, or with one that cannot be")
+            raise InputError("a message without a valid length")
         return length
 
     def _send(self, message: Json) -> None:

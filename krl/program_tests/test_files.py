@@ -408,7 +408,7 @@ def _statement(name: str, value: object) -> str:
             return f"{name} = {value}"
         case str() if "\n" not in value:
             return f"{name} = {value}"
-    raise ValueError(f"{name} is given no number, true, false, or KRL as a text")
+    raise ValueError(f"{name} must be a number, true, false, or KRL as a text")
 
 
 def _bodies(name: str, value: object) -> tuple[tuple[str, ...], ...]:
@@ -418,7 +418,9 @@ def _bodies(name: str, value: object) -> tuple[tuple[str, ...], ...]:
     bodies = [[body] if isinstance(body, str) else body for body in calls]
     if all(isinstance(body, list) and all(isinstance(one, str) for one in body) for body in bodies):
         return tuple(tuple(body) for body in bodies)
-    raise ValueError(f"{name} is a statement of KRL, a list of them, or such a list for each call")
+    raise ValueError(
+        f"{name} must be a statement of KRL, a list of them, or such a list for each call"
+    )
 
 
 def _merged(shared: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:

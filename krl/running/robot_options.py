@@ -37,7 +37,7 @@ def robot_options(
     if len(named) > 1:
         raise InputError("--machine, --urdf and --mjcf: only one of them can be the arm")
     if scene is not None and not has_robot:
-        raise InputError("--scene: the robot none is nowhere; say --robot kinematic or mujoco")
+        raise InputError("--scene: the robot none has no position; say --robot kinematic or mujoco")
     made = OwnRobot()
     if machine is not None:
         made = OwnRobot(machine=_with_torques_beside(read_machine_file(machine), machine))

@@ -28,7 +28,7 @@ def check_files(*targets: Path | None) -> None:
         if target is None:
             continue
         if target == Path("-"):
-            raise InputError("-: what is written goes to a file; name one")
+            raise InputError("-: output cannot go to standard output; name a file")
         if target.is_dir():
             raise InputError(f"{target}: a folder, not a file")
         above = next((folder for folder in target.parents if folder.exists()), None)

@@ -228,7 +228,7 @@ def _source(listed: Path, entry: object, files: Mapping[str, tuple[KrlFile, ...]
     if not isinstance(entry, dict) or set(entry) != set(names):
         raise SourceListError(f"{listed}: a source has exactly {', '.join(names)}")
     if not all(isinstance(value, str) and value for value in entry.values()):
-        raise SourceListError(f"{listed}: {entry['repository']}: every value is a text")
+        raise SourceListError(f"{listed}: {entry['repository']}: every value must be a text")
     repository = entry["repository"]
     if not _REPOSITORY.fullmatch(repository):
         raise SourceListError(f"{listed}: {repository} is not OWNER/NAME")
@@ -248,7 +248,7 @@ def _read_checksums(table: Path) -> dict[str, tuple[KrlFile, ...]]:
         with io.StringIO(read_bytes(table).decode("utf-8"), newline="") as lines:
             rows = csv.reader(lines, delimiter="\t", quoting=csv.QUOTE_NONE)
             if next(rows, None) != _COLUMNS:
-                raise SourceListError(f"{table}: the columns are {' '.join(_COLUMNS)}")
+                raise SourceListError(f"{table}: the columns must be {' '.join(_COLUMNS)}")
             for row in rows:
                 where = f"{table}:{rows.line_num}"
                 if len(row) != len(_COLUMNS):

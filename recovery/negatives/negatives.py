@@ -73,12 +73,12 @@ def _read(path: Path) -> Negative:
         if key not in matter:
             raise NegativeError(f"{path}:1: the front matter has no {key}")
     if matter["phase"] not in get_args(Phase):
-        raise NegativeError(f"{path}: phase {matter['phase']!r} is none of parse, check and run")
+        raise NegativeError(f"{path}: phase {matter['phase']!r} is not parse, check or run")
     number = matter.get("line")
     if number is not None and not (
         number.isdecimal() and size < int(number) <= len(text.splitlines())
     ):
-        raise NegativeError(f"{path}: line {number!r} is no line of the program")
+        raise NegativeError(f"{path}: line {number!r} is not a line of the program")
     return Negative(
         path=path,
         text=text,

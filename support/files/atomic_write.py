@@ -143,7 +143,7 @@ def finish(journal: Path) -> list[Path]:
         raise JournalError(f"{journal}: {error}") from None
     home = journal.resolve().parent.parent
     if not isinstance(wanted, dict) or not all(_is_below(home, name) for name in wanted):
-        raise JournalError(f"{journal}: not what an acceptance wrote that was broken off here")
+        raise JournalError(f"{journal}: not the journal of an acceptance that was interrupted here")
     done = []
     for name, digest in wanted.items():
         path = Path(name)

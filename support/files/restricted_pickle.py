@@ -71,7 +71,7 @@ class _Reader(pickle.Unpickler):
         """Return a dataclass or an enumeration of an allowed package; raises `UnpicklingError`."""
         found = _class(module, name) if module.partition(".")[0] in self._packages else None
         if found is None:
-            raise pickle.UnpicklingError(f"{module}.{name} is not to be read")
+            raise pickle.UnpicklingError(f"{module}.{name} must not be loaded")
         return found
 
 

@@ -60,10 +60,10 @@ def read_text(file: Path, encoding: str = "utf-8") -> str:
 def toml_of(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text; raises `DocumentError`."""
     if len(text) > MOST_TOML:
-        raise DocumentError(f"not TOML that is read: longer than {MOST_TOML:,} characters")
+        raise DocumentError(f"TOML is too long: more than {MOST_TOML:,} characters")
     for number, line in enumerate(text.splitlines(), 1):
         if line.count(".") > MOST_DOTS:
-            raise DocumentError(f"not TOML that is read: more than {MOST_DOTS} dots, line {number}")
+            raise DocumentError(f"TOML has more than {MOST_DOTS} dots in line {number}")
     try:
         return tomllib.loads(text)
     except RecursionError:

@@ -152,4 +152,4 @@ def _perform(release: str, function: Callable[..., _T], task: tuple[object, ...]
 def _check_release(release: str) -> None:
     """Raise `WorkersError` if this worker has other code than the submitting process."""
     if release != code_digest(*_PACKAGES):
-        raise WorkersError(f"a worker on {platform.node()} has another release of krl than this")
+        raise WorkersError(f"a worker on {platform.node()} has a different release of krl")

@@ -107,7 +107,7 @@ def _next(
             continue
     workers.restart()
     if lost is None:
-        raise WorkersError("workers die again and again over the same work (out of memory?)")
+        raise WorkersError("workers repeatedly die on the same work (out of memory?)")
     return lost(*task)
 
 

@@ -297,5 +297,5 @@ def test_workers_of_another_release_are_refused(
 ) -> None:
     """What other code finds is not mixed with ours."""
     monkeypatch.setattr(dask_cluster, "code_digest", lambda *_: "another")
-    with pytest.raises(WorkersError, match="has another release of krl than this"):
+    with pytest.raises(WorkersError, match="has a different release of krl"):
         check_scheduler(cluster.address)

@@ -68,8 +68,8 @@ def test_unconfirmed_case_leaves_status_0(tmp_path: Path) -> None:
     ("arguments", "part"),
     [
         (["nowhere/nothing"], "no case, suite, rule or phase"),
-        (["control/exit_for", "--executor", "cobol"], "the executor is one of"),
-        (["control/exit_for", "--robot", "marvin"], "the robot is one of"),
+        (["control/exit_for", "--executor", "cobol"], "the executor must be one of"),
+        (["control/exit_for", "--robot", "marvin"], "the robot must be one of"),
         (["import"], "takes one file"),
         (["import", "nowhere.json"], "cannot be read"),
         (["--lint", "nowhere"], "no such folder"),

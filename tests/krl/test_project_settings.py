@@ -78,10 +78,10 @@ def test_the_command_line_stands_above_the_settings(cell: Path, codes: Codes) ->
     ("settings", "said"),
     [
         ("ignor = []", "no setting is called ignor; ignore?"),
-        ("ignore = 3", "ignore is a list of texts"),
+        ("ignore = 3", "ignore must be a list of texts"),
         ('ignore = ["KRX"]', "ignore: no code begins with KRX"),
-        ('[severity]\nKRL1 = "bad"', "severity: KRL1 is one of error, warning, note, off"),
-        ("complete = 1", "complete is true or false"),
+        ('[severity]\nKRL1 = "bad"', "severity: KRL1 must be one of error, warning, note, off"),
+        ("complete = 1", "complete must be true or false"),
         ("= 1", "Invalid"),
         ("\x00", "Invalid"),
     ],

@@ -506,7 +506,11 @@ def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
 def test_output_needs_a_file(run: Run) -> None:
     """A dash is no place to write to, and nothing runs."""
     status, out, err = run("HALT\n", "--trace", "-")
-    assert (2, "", "krl: -: what is written goes to a file; name one\n") == (status, out, err)
+    assert (2, "", "krl: -: output cannot go to standard output; name a file\n") == (
+        status,
+        out,
+        err,
+    )
 
 
 def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:

@@ -139,7 +139,7 @@ def _urdf(effort: float) -> str:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--scene", "@s.toml"), "krl: --scene: the robot none is nowhere"),
+        (("--scene", "@s.toml"), "krl: --scene: the robot none has no position"),
         (("--machine", "@s.toml", "--urdf", "@s.toml"), "krl: --machine, --urdf and --mjcf: only"),
         (("--machine", "@s.toml"), "krl: s.toml: not machine data"),
         (("--machine", "@no.dat"), "krl: no.dat: No such file"),

@@ -237,7 +237,7 @@ def _chosen(wanted: list[str] | None, what: str) -> list[str]:
         known = (*known, COMPILED)
     for name in wanted:
         if name not in known:
-            raise InputError(f"{name}: the {what} is one of {', '.join(known)}")
+            raise InputError(f"{name}: the {what} must be one of {', '.join(known)}")
     return list(dict.fromkeys(wanted))
 
 

@@ -36,7 +36,7 @@ def _mutant(words: str) -> Iterator[str]:
     on_line = of_line(file, int(line)) if file.endswith(".py") and line.isdigit() else []
     if len(on_line) > 1:
         choices = "; ".join(f"{one.name}: {one.was} becomes {one.now}" for one in on_line)
-        raise InputError(f"--fault {words}: which one? {choices}")
+        raise InputError(f"--fault {words}: ambiguous; it may be {choices}")
     try:
         mutant = on_line[0] if on_line else named(words)
         with put_in_place(mutant):
@@ -58,8 +58,8 @@ def _chosen(words: str) -> "Fault":
         return (exact or fitting)[0]
     if not fitting:
         raise InputError(
-            f"--fault {words}: there is none; 'krl bench conform --json' names them all"
+            f"--fault {words}: no such fault; 'krl bench conform --json' names them all"
         )
     choices = "; ".join(one.words for one in fitting[:_SHOWN])
     more = f"; and {len(fitting) - _SHOWN} more" if len(fitting) > _SHOWN else ""
-    raise InputError(f"--fault {words}: which one? {choices}{more}")
+    raise InputError(f"--fault {words}: ambiguous; it may be {choices}{more}")

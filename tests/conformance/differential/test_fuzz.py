@@ -268,7 +268,7 @@ def test_command_with_differences(
     ("arguments", "text"),
     [
         (["--executor", "tree"], "name two executors at least"),
-        (["--executor", "nobody", "--executor", "tree"], "the executor is one of"),
+        (["--executor", "nobody", "--executor", "tree"], "the executor must be one of"),
         (["--json", "."], "a folder, not a file"),
     ],
 )

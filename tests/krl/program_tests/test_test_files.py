@@ -28,8 +28,8 @@ WRONG = [
     (GOOD + "seconds = 0\n", "4: seconds are 0, which cannot be"),
     (GOOD + "seconds = true\n", "4: seconds is not a number"),
     (GOOD + "program = 'gone.src'\n", "4: gone.src: no such file"),
-    (GOOD + "set.a = [1]\n", "4: a is given no number"),
-    (GOOD + "stand_ins.f = [['a'], 'b', 3]\n", "4: f is a statement of KRL"),
+    (GOOD + "set.a = [1]\n", "4: a must be a number"),
+    (GOOD + "stand_ins.f = [['a'], 'b', 3]\n", "4: f must be a statement of KRL"),
     ("[[test]]\nname = \n", "2: not TOML"),
 ]
 

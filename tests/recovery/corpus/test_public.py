@@ -258,7 +258,7 @@ def test_unsafe_path_is_refused(path: str, why: str, tmp_path: Path) -> None:
         (ENTRY | {"commit": "main"}, [ROW], "not a full hash"),
         (ENTRY | {"repository": "../cell"}, [ROW], "not OWNER/NAME"),
         (ENTRY | {"branch": "main"}, [ROW], "a source has exactly"),
-        (ENTRY | {"note": ""}, [ROW], "every value is a text"),
+        (ENTRY | {"note": ""}, [ROW], "every value must be a text"),
         (ENTRY, [], "no files of it"),
         (ENTRY, [ROW, ["other/cell", *ROW[1:]]], "no source for the files of other/cell"),
         (ENTRY, [ROW, [ROW[0], "r1/MAIN.src", *ROW[2:]]], "listed twice"),

@@ -43,7 +43,7 @@ def _deadly(number: int) -> int:
 
 def test_work_that_kills_every_process_is_given_up() -> None:
     """A task that kills each process it is given to ends with one clear line."""
-    with pytest.raises(WorkersError, match="workers die again and again over the same work"):
+    with pytest.raises(WorkersError, match="workers repeatedly die on the same work"):
         list(ordered_map(_deadly, [(4,)], jobs=2))
 
 
