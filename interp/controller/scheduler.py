@@ -26,6 +26,7 @@ from interp.controller.requests.waits import Waits
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
+from interp.port.executor import Unhurried
 from interp.port.requests import At, Crash, End, Fail, Poll, Request, Slice, StopAdvance, Wait
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
@@ -88,6 +89,11 @@ class Scheduler:
     _ticked: int = -1
     _limit: int = 0
     _answered: int = 0
+    _free_until: int = 0
+
+    def __post_init__(self) -> None:
+        if isinstance(executor := self._robot.executor, Unhurried):
+            executor.free_slices = self._free_slices
 
     def run(self, until: int) -> RunOutcome:
         """Run until the program ends, or halts without a later start, or until a time in µs.
@@ -116,29 +122,39 @@ class Scheduler:
             states["robot"] = "P_ACTIVE"
         if len(self.tasks) > 1 and states["submit"] == "P_FREE":  # [SUB-02]
             states["submit"] = "P_ACTIVE"
+        self._begin()
         while True:
-            self.quiet.begin_tick(self._robot)
             self._settle()
             if self._outcome is not None:
                 return self._outcome
             then = self._next_time()
-            if then is not None and then < limit and not self._needs_every_tick:
-                then = max(then, self.quiet.end(self.tasks, then, limit))
             if then is None or then > limit:
                 self._go_to(max(limit, clock.now))
                 self._outcome = RunOutcome("time", clock.now, self._robot.at)
                 return self._outcome
-            self._go_to(then)
+            self._pass(then)
 
     # ----------------------------------------------------------------------------------- time
 
-    def _settle(self) -> None:
-        """Do all that happens at this time."""
+    def _pass(self, then: int) -> None:
+        """Go on to the next time at which anything can happen, and beyond what is quiet."""
+        if then < self._limit and not self._needs_every_tick:
+            then = max(then, self.quiet.end(self.tasks, then, self._limit))
+        self._go_to(then)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Do what happens at this time before the programs run."""
         clock = self.state.clock
+        self.quiet.begin_tick(self._robot)
         self._collect()
         if clock.is_tick and self._ticked != clock.now:
             self._ticked = clock.now
             self._tick()
+
+    def _settle(self) -> None:
+        """Do all that happens at this time."""
+        clock = self.state.clock
         before = -1
         while before != (now := self._answered + self.queue.count) and self._outcome is None:
             before = now
@@ -221,8 +237,6 @@ class Scheduler:
                     answer = blocked.finish()
                     if self._changes != changes:
                         self.waits.acted(task, blocked.request, has_changed=True)
-                    if answer is None and isinstance(blocked.request, Slice):
-                        answer = self._free_slices(task)
                 else:
                     return
             except RuntimeFailure as error:  # of an interrupt, a trigger, a condition
@@ -231,15 +245,32 @@ class Scheduler:
             self._answered += 1
             task.blocked = answer if isinstance(answer, Blocked) else None
             task.reply = None if isinstance(answer, Blocked) else answer
+            free_until, self._free_until = self._free_until, 0
+            if free_until and (then := self._wake(task)) is not None and then < free_until:
+                self._pass(then)
 
-    def _free_slices(self, task: Task) -> int:
-        """The slices that may pass from now on: nothing can happen before the last one begins."""
+    @staticmethod
+    def _wake(task: Task) -> int | None:
+        """When the slices of a program are over that have passed, if it waits for that."""
+        blocked = task.blocked
+        return blocked.wake if blocked and isinstance(blocked.request, Slice) else None
+
+    def _free_slices(self, begins: bool) -> int:
+        """The slices of the robot's program in which nothing can happen before the last begins.
+
+        The first one ``begins`` now, as all is done for this time, or at the next tick.
+        """
+        robot, *others = self.tasks
+        is_busy = bool(self.queue.pending) or not all(task.is_over for task in others)
+        if robot.levels or (is_busy and not begins):
+            return int(begins)
         clock = self.state.clock
-        if task is not self._robot or task.levels:
-            return 1
         times = [self._limit + 1, self._next_time()]
         end = min(time for time in times if time is not None)
-        return max(-(-(end - clock.now) // clock.cycle), 1)
+        if not begins:
+            self._free_until = end
+        first = clock.now if begins else clock.next_tick
+        return max(-(-(end - first) // clock.cycle), int(begins))
 
     def _answer(self, task: Task, request: Request) -> Answer:
         """The answer to a request; one too many in a slice waits for the next slice."""

@@ -80,6 +80,15 @@ class Counting(Protocol):
 
 
 @runtime_checkable
+class Unhurried(Protocol):
+    """An executor that asks how many slices may pass before it makes a `Slice` for each."""
+
+    #: How many may pass without a request: with ``True`` where a `Slice` was just answered, the one
+    #: that begins included, so at least 1; with ``False`` behind the one that ends.
+    free_slices: Callable[[bool], int]
+
+
+@runtime_checkable
 class Recurrent(Counting, Protocol):
     """An executor that can detect that its state recurs, so that idle loops can be skipped."""
 

@@ -143,9 +143,8 @@ class Continue(Asking):
 class Slice(Asking):
     """The executor has run a full slice of statements without another request: time must pass.
 
-    If the reply is a number, that many slices may pass before the executor makes this request
-    again, unless it makes another one first; it may also ask sooner. ``count`` is the number of
-    slices that have passed since the previous request.
+    ``count`` is the number of slices that have passed since the previous request; see
+    `interp.port.executor.Unhurried`.
     """
 
     count: int = 1

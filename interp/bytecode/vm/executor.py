@@ -134,6 +134,15 @@ class Machine:
     # ----------------------------------------------------------------------- the port
 
     @property
+    def free_slices(self) -> Callable[[bool], int]:
+        """See `interp.port.executor.Unhurried`."""
+        return self._services.free_slices
+
+    @free_slices.setter
+    def free_slices(self, asked: Callable[[bool], int]) -> None:
+        self._services.free_slices = asked
+
+    @property
     def depth(self) -> int:
         """How many calls deep the program is; 0 in the routine it began with."""
         return self._services.depth

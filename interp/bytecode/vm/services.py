@@ -62,6 +62,7 @@ class Services:
         self.entered = 0
         self.leave_action: Operation = lambda: None
         self.finish: Operation = lambda: None
+        self.free_slices: Callable[[bool], int] = int
 
     # ----------------------------------------------------------------------- places
 
@@ -104,20 +105,28 @@ class Services:
         """Do what has to be done before a statement begins."""
         counter, state = self.counter, self._state
 
-        def completion(reply: object) -> Operation:
-            slices = reply if isinstance(reply, int) else None
-            counter.begin(slices if self._tells_nothing else None)  # else events come too early
+        def completion(_reply: object) -> Operation:
+            counter.free(self._free(begins=True))
+            counter.begin()
             return begin
 
         match counter.pause():
             case Pause.EXHAUSTED:
                 raise self._limits.exhausted()
             case Pause.SLICE if state.reader is None:
-                counter.asked()
-                state.request = Slice(self.at(), counter.passed() + 1)
-                state.completion, state.site = completion, begin
-                return None
-        return completion(None)
+                if counter.is_asking and (more := self._free(begins=False)):
+                    counter.free(more + 1)
+                else:
+                    counter.asked()
+                    state.request = Slice(self.at(), counter.passed() + 1)
+                    state.completion, state.site = completion, begin
+                    return None
+        counter.begin()
+        return begin
+
+    def _free(self, *, begins: bool) -> int:
+        """How many slices may pass; no more where events would come too early."""
+        return self.free_slices(begins) if self._tells_nothing else int(begins)
 
     def other_line(self, place: int, after: Operation) -> Operation:
         """What `AT` does."""

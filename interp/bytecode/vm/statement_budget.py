@@ -146,13 +146,20 @@ class Counter:
             return Pause.EXHAUSTED
         return Pause.SLICE if self._begun >= self._due else Pause.NOTHING
 
-    def begin(self, slices: int | None = None) -> None:
-        """The statement begins, after whatever came before it; so many slices may pass from it."""
-        if slices is not None:
-            self._due += (slices - 1) * self._limits.per_slice
-            self._slices = slices
+    def begin(self) -> None:
+        """The statement begins, after whatever came before it."""
         self._begun += 1
         self._refill()
+
+    @property
+    def is_asking(self) -> bool:
+        """Whether the last request came just before the slice that has ended."""
+        return self._slices == 1 and not self._passed and not self._stopped
+
+    def free(self, slices: int) -> None:
+        """So many slices may pass, the one that is used up or begins now being the first."""
+        self._due += (slices - 1) * self._limits.per_slice
+        self._slices = slices
 
     def _settle(self, begins: int = 0) -> None:
         """Count what has begun but what ``begins`` now, and the `StopAdvance` that have passed."""

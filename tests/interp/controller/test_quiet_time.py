@@ -201,3 +201,28 @@ def test_few_slices_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     program = load([Source(text, "main.src")], "main.src")
     run_program(program, RunSetup(executor=available()[-1], is_traced=False))
     assert (100, True) == (sum(asked), len(asked) < 5)
+
+
+@pytest.mark.parametrize("executor", [name for name in available() if name != "tree"])
+def test_computing_between_requests(monkeypatch: pytest.MonkeyPatch, executor: str) -> None:
+    """What passes between two requests of a program that runs alone is asked for once."""
+    asked: list[int] = []
+    slice_ = Waits.slice
+
+    def counted(self: Waits, task: Any, request: Any) -> Any:
+        asked.append(request.count)
+        return slice_(self, task, request)
+
+    monkeypatch.setattr(Waits, "slice", counted)
+    computes = "FOR K=1 TO 7000\nENDFOR\n$OUT[1]=NOT $OUT[1]\n"
+    text = f"DEF main ( )\nINT I,K\nFOR I=1 TO 20\n{computes}ENDFOR\nEND\n"
+    program = load([Source(text, "main.src")], "main.src", strict=False)
+    setup = RunSetup(executor=executor)
+    told = run_program(program, setup)
+    assert (140, 140) == (sum(asked), len(asked))
+    asked.clear()
+    quick = run_program(program, replace(setup, is_traced=False))
+    assert [7] * 20 == asked
+    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
+    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
+    assert 20 == sum(one.kind == "out" for one in kept)
