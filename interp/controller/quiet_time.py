@@ -20,7 +20,7 @@ from interp.controller.inputs.automatic_inputs import AutomaticInputs
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.requests.waits import IDLE_AFTER
 from interp.controller.state.state import ControllerState
-from interp.controller.state.tasks import Task
+from interp.controller.state.tasks import Blocked, Task
 from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
 
 #: Requests that leave nothing in a trace, apart from the effects of their writes.
@@ -147,12 +147,16 @@ def _begun(task: Task) -> int | None:
 
 
 def _is_timed(task: Task) -> bool:
-    return task.blocked is not None and isinstance(task.blocked.request, Wait)
+    return task.blocked is not None and _is_one_of(task.blocked, Wait)
 
 
 def _waits(task: Task, *kinds: type[Request]) -> bool:
     """Return whether a program has ended, or only waits with one of these requests."""
     blocked = task.blocked
     return task.is_over or (
-        blocked is not None and not task.signals and isinstance(blocked.request, kinds)
+        blocked is not None and not task.signals and _is_one_of(blocked, *kinds)
     )
+
+
+def _is_one_of(blocked: Blocked, *kinds: type[Request]) -> bool:
+    return isinstance(blocked.request, kinds) and not blocked.is_postponed

@@ -261,8 +261,8 @@ class Scheduler:
         The first one ``begins`` now, as all is done for this time, or at the next tick.
         """
         robot, *others = self.tasks
-        is_busy = bool(self.queue.pending) or not all(task.is_over for task in others)
-        if robot.levels or (is_busy and not begins):
+        is_alone = not self.queue.pending and all(task.is_over for task in others)
+        if robot.levels or not (begins or (is_alone and not self.waits.is_spent(robot))):
             return int(begins)
         clock = self.state.clock
         times = [self._limit + 1, self._next_time()]
@@ -295,7 +295,9 @@ class Scheduler:
                 task.slice_end, task.spent = last, 0
             task.spent += request.count if isinstance(request, StopAdvance) else 1
             if task.spent > self.waits.requests_left(task, most):
-                return self.waits.until(request, last, lambda: self._answer(task, request))
+                late = self.waits.until(request, last, lambda: self._answer(task, request))
+                late.is_postponed = True
+                return late
         exempt = task.exempt_line
         if exempt is not None and (request.at.file, request.at.line) != exempt:
             task.exempt_line = None

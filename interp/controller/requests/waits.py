@@ -108,6 +108,11 @@ class Waits:
         is_idle = self._state.clock.now - task.busy_at >= IDLE_AFTER and task.level is None
         return min(most, _IDLE_REQUESTS) if is_idle else most
 
+    def is_spent(self, task: Task) -> bool:
+        """Return whether the robot's program has no request left in this slice."""
+        left = self.requests_left(task, self._state.profile.requests)
+        return task.slice_end == self.next_slice(task) and task.spent >= left
+
     def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
         """Note that a request was answered, which may have changed something."""
         if has_changed or not isinstance(request, (*_LOOKS, Write)):

@@ -33,7 +33,8 @@ class Blocked:
     Once ``is_ready`` is true, ``finish`` returns the reply, or what to wait for next. ``wake`` is a
     time in µs at which to check; without it, check whenever something has happened. ``is_open`` is
     set if the executor waits for the reply. It is not set after a RESUME, nor for a routine that
-    has ended before its motions.
+    has ended before its motions. ``is_postponed`` is set if it has not been handled, being one too
+    many for its slice.
     """
 
     request: Request
@@ -41,6 +42,7 @@ class Blocked:
     finish: Callable[[], Answer]
     wake: int | None = None
     is_open: bool = True
+    is_postponed: bool = False
 
 
 #: The answer to a request: a reply, a `Fault` to be raised in the program, or a wait.

@@ -10,6 +10,7 @@ from interp.controller.inputs.automatic_inputs import OPERATOR
 from interp.controller.inputs.input_script import Script
 from interp.controller.quiet_time import QuietTime
 from interp.controller.requests.waits import Waits
+from interp.controller.state.profile import Profile
 from interp.program.load import load
 from interp.session import RunResult, RunSetup, available, run_program
 
@@ -40,6 +41,12 @@ def _run(text: str, executor: str = "tree", script: str = "", until: int = 90) -
         executor=executor, script=script_read, is_traced=False, until=until * 1_000_000
     )
     return run_program(program, setup)
+
+
+def _assert_same(told: RunResult, quick: RunResult) -> None:
+    """A run without a trace, whose slices pass at once, does all that a run with one does."""
+    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
+    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
 
 
 #: A condition that calls a function that changes something; a timer, and a script between ticks.
@@ -170,8 +177,7 @@ def test_slices_at_once(executor: str, io: str) -> None:
     program = load([Source(COMPUTES, "main.src")], "main.src", strict=False)
     setup = RunSetup(executor=executor, script=Script.read(io), until=5_000_000)
     told, quick = run_program(program, setup), run_program(program, replace(setup, is_traced=False))
-    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
-    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
+    _assert_same(told, quick)
 
 
 def test_computing_between_looks_at_inputs() -> None:
@@ -182,9 +188,29 @@ def test_computing_between_looks_at_inputs() -> None:
     program = load([Source(text, "main.src")], "main.src", strict=False)
     setup = RunSetup(executor=available()[-1], script=Script.read(OPERATOR), until=5_000_000)
     told, quick = run_program(program, setup), run_program(program, replace(setup, is_traced=False))
-    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
-    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
+    _assert_same(told, quick)
     assert 1 == quick.controller.automatic_inputs.count == told.controller.automatic_inputs.count
+
+
+#: Requests behind computing: a WAIT FOR, outputs, inputs that are looked at in a loop.
+REQUESTS = (
+    "WAIT FOR $IN[1]==(I<2)\nWAIT FOR $IN[7] OR (K<0)\n",
+    "$OUT[1]=NOT $OUT[1]\n$OUT[2]=NOT $OUT[1]\n$OUT[3]=$IN[3]\n",
+    "REPEAT\nFOR K=1 TO 335\nENDFOR\nUNTIL $IN[7] OR $IN[8]\n",
+)
+
+
+@pytest.mark.parametrize("requests", REQUESTS)
+@pytest.mark.parametrize("most", [1, 2, 3, 9])
+def test_few_requests_a_slice(requests: str, most: int) -> None:
+    """Where a slice has too few requests for what comes, that waits as it does slice by slice."""
+    text = f"DEF main ( )\nINT I,K\nFOR I=1 TO 9\nFOR K=1 TO 335\nENDFOR\n{requests}ENDFOR\nEND\n"
+    program = load([Source(text, "main.src")], "main.src", strict=False)
+    profile = replace(Profile.load(), statements=100, requests=most)
+    script = Script.read("t=0.9 press STOP\nt=1 press START\nfulfil waits after 0.024\n")
+    setup = RunSetup(executor="vm", script=script, profile=profile, until=4_000_000)
+    told, quick = run_program(program, setup), run_program(program, replace(setup, is_traced=False))
+    _assert_same(told, quick)
 
 
 def test_few_slices_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -223,6 +249,5 @@ def test_computing_between_requests(monkeypatch: pytest.MonkeyPatch, executor: s
     asked.clear()
     quick = run_program(program, replace(setup, is_traced=False))
     assert [7] * 20 == asked
-    kept = [one for one in told.events if one.kind not in ("call", "return", "branch")]
-    assert (str(told.outcome), kept) == (str(quick.outcome), quick.events)
-    assert 20 == sum(one.kind == "out" for one in kept)
+    _assert_same(told, quick)
+    assert 20 == sum(one.kind == "out" for one in quick.events)
