@@ -151,15 +151,15 @@ def _text_defects(case: Case) -> Iterator[str]:
 
 
 def _expectation_defects(case: Case) -> Iterator[str]:
-    said = set()
+    stated = set()
     for one in case.expectations:
         if case.phase not in KINDS[one.kind].phases:
             yield f"line {one.line}: {one.kind} cannot be seen in phase {case.phase}"
         if one.line == 0:
             yield f"{one.text!r} stands beside no line"
-        if (one.file, one.line, one.text) in said:
+        if (one.file, one.line, one.text) in stated:
             yield f"line {one.line}: {one.text!r} stands twice"
-        said.add((one.file, one.line, one.text))
+        stated.add((one.file, one.line, one.text))
     marks = {one.arguments[0] for one in case.expectations if one.kind == "mark"}
     for one in case.expectations:
         anchors = [one.when.first, one.when.last] if one.when else []

@@ -54,7 +54,7 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
     """Return the checks of a case in the order of its lines, then those of every case."""
     is_run = case.phase == "run"
     found = evaluate_run(case.expectations, seen) if is_run else _check_findings(case, seen)
-    said = [
+    expected = [
         replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
         for check, one in zip(found, case.expectations, strict=True)
     ]
@@ -63,7 +63,7 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
         chain(_unexpected_outputs(case, seen), ended) if is_run else _unexpected_errors(case, seen)
     )
     return [
-        *said,
+        *expected,
         *(replace(one, is_sure=case.may_fail or seen.ending == "crash") for one in every),
         *_law_violations(case, seen),
     ]
@@ -173,28 +173,30 @@ def _listed(findings: list[Finding] | tuple[Finding, ...]) -> str:
 
 def _unexpected_errors(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield a check for each error that is not expected."""
-    said = {(one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")}
-    if case.phase == "parse" and said:
+    expected = {
+        (one.file, one.line) for one in case.expectations if one.kind in ("error", "syntax")
+    }
+    if case.phase == "parse" and expected:
         return  # only the first syntax error is specified
     if seen.watched is not None:
-        said |= {(file, line + 1) for file, line in said}
+        expected |= {(file, line + 1) for file, line in expected}
     for found in seen.findings:
-        if found.severity == "error" and (found.file, found.line) not in said:
+        if found.severity == "error" and (found.file, found.line) not in expected:
             text = "no error but those expected"
             yield Check(found.file, found.line, text, "unmet", f"{found.code} {found.message}")
 
 
 def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield a check for each unexpected change of an output that has expected changes."""
-    said = {
+    expected = {
         (*one.arguments, one.file, one.line)
         for one in case.expectations
         if one.kind == "out" and "never" not in one.arguments
     }
-    watched = {number for number, *_ in said}
+    watched = {number for number, *_ in expected}
     for event in seen.of_kind("out"):
         number, value = str(event.fields.get("number")), str(event.fields.get("value")).upper()
-        if number in watched and (number, value, event.file, event.line) not in said:
+        if number in watched and (number, value, event.file, event.line) not in expected:
             text = f"output {number} changes only as it is said"
             yield Check(event.file, event.line, text, "unmet", f"{value} at {event.time} us")
 

@@ -134,9 +134,9 @@ def _wrong_posture(one: EndedMotion) -> Iterator[Violation]:
     axes = one.ends[1].tolist()
     status = target.get("S")
     if status is not None and machine.own_chain is None and _has_six(machine):
-        behind = _wrist_ahead(machine, axes[:ROBOT_AXES])
+        ahead = _wrist_ahead(machine, axes[:ROBOT_AXES])
         for bit, rule, value in (
-            (1, "POS-03", -behind),
+            (1, "POS-03", -ahead),
             (2, "POS-04", axes[2] - machine.elbow),
             (4, "POS-05", -axes[4]),
         ):

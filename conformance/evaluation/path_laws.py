@@ -61,11 +61,11 @@ def _limit_violations(seen: Observation, path: PathRecord) -> Iterator[Violation
             yield _violation(seen, int(path.times[row]), _LIMITS, actual, rule)
     for column, one in enumerate(axes):
         places = path.axes[:, column]
-        beyond = ~(
+        outside = ~(
             (places >= one.lower - TOLERANCE_DEGREES) & (places <= one.upper + TOLERANCE_DEGREES)
         )
-        if beyond.any():
-            first = int(np.argmax(beyond))
+        if outside.any():
+            first = int(np.argmax(outside))
             actual = f"{one.name} stands at {places[first]:.3f}"
             yield _violation(seen, int(path.times[first]), _LIMITS, actual, "MOT-15")
             return

@@ -51,7 +51,7 @@ class _ProgrammedPath:
         """The path length up to the middle of the parameter in mm."""
         return float(np.interp(_HALF, np.linspace(0.0, 1.0, len(self.sums)), self.sums))
 
-    def gone(self, point: Array) -> float:
+    def length_to(self, point: Array) -> float:
         """Return the path length in mm up to the place that is nearest to a point."""
         starts, along = self.points[:-1], np.diff(self.points, axis=0)
         squares = np.maximum((along**2).sum(axis=1), 1e-12)
@@ -69,17 +69,17 @@ def blend_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
             continue
         is_path, leads_on = (not each.motion.kind.endswith("PTP") for each in (one, other))
         main, *second = one.motion.criteria
-        behind = main
+        second_criterion = main
         if is_path is not leads_on:
-            behind = second[0] if second else "C_DIS" if leads_on else "C_PTP"
+            second_criterion = second[0] if second else "C_DIS" if leads_on else "C_PTP"
         off = [
             _excess(one, way, main, one, at_end=True),
-            _excess(other, further, behind, one, at_end=False),
+            _excess(other, further, second_criterion, one, at_end=False),
         ]
         known = [each for each in off if each is not None]
         if max(known, default=0.0) > 1.0 or (len(known) == 2 and max(known) < -1.0):
-            apart = " and ".join("?" if each is None else f"{each:.1f}" for each in off)
-            yield one.broken(law, f"{apart} tolerances beyond them, before and behind the point")
+            excesses = " and ".join("?" if each is None else f"{each:.1f}" for each in off)
+            yield one.broken(law, f"{excesses} tolerances beyond them, before and behind the point")
 
 
 def _excess(
@@ -101,8 +101,12 @@ def _excess(
     found = []
     place = one.ends[int(at_end)]
     if criterion in ("C_DIS", "C_SPL") or is_both:
-        gone, middle, whole = way.gone(one.poses(place[None])[0, :3, 3]), way.middle, way.sums[-1]
-        taken, most = (whole - gone, whole - middle) if at_end else (gone, middle)
+        length, middle, whole = (
+            way.length_to(one.poses(place[None])[0, :3, 3]),
+            way.middle,
+            way.sums[-1],
+        )
+        taken, most = (whole - length, whole - middle) if at_end else (length, middle)
         found.append((taken - min(cdis, most)) / _NEAR_MM)
     if way.axes is not None and (criterion == "C_PTP" or one.motion.kind == "SPTP"):
         travel = np.abs(way.axes[-1] - way.axes[0])

@@ -76,13 +76,13 @@ def _with_goto(program: Program, _random: Random) -> Program | None:
         if not isinstance(node, ast.While | ast.Repeat | ast.Loop) or _has_labels(node.body):
             return node
         number = next(numbers)
-        again, behind = name(f"AGAIN{number}_"), name(f"BEHIND{number}_")
-        body = tuple(_without_exit(one, behind) for one in node.body)
-        back = ast.Goto(MADE, again)
-        top, bottom = ast.Label(MADE, again), ast.Label(MADE, behind)
+        start_label, end_label = name(f"AGAIN{number}_"), name(f"BEHIND{number}_")
+        body = tuple(_without_exit(one, end_label) for one in node.body)
+        back = ast.Goto(MADE, start_label)
+        top, bottom = ast.Label(MADE, start_label), ast.Label(MADE, end_label)
         match node:
             case ast.While():
-                leave = _if(negated(node.condition), ast.Goto(MADE, behind))
+                leave = _if(negated(node.condition), ast.Goto(MADE, end_label))
                 return (top, leave, *body, back, bottom)
             case ast.Repeat():
                 return (top, *body, _if(negated(node.condition), back), bottom)

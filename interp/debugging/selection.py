@@ -16,9 +16,9 @@ def reason_against(routine: Routine, here: int, line: int) -> str:
     way = way_to(routine, line)
     if not way:
         return f"no statement of {routine.name} begins in line {line}"
-    around = way_to(routine, here)[:-1]
+    open_blocks = way_to(routine, here)[:-1]
     for block in way[:-1]:
-        if isinstance(block, ast.For) and block not in around:
+        if isinstance(block, ast.For) and block not in open_blocks:
             first = routine.unit.line(block)
             return f"line {line} is inside the FOR of line {first}, which has not begun"
     return ""

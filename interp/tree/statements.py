@@ -127,8 +127,8 @@ class Statements(Motions):
     # ----------------------------------------------------------------------- blocks
 
     def _block(self, body: tuple[ast.Statement, ...]) -> Steps[None]:
-        around = self._blocks
-        self._blocks = (*around, body)
+        outer = self._blocks
+        self._blocks = (*outer, body)
         place, last = max(self._place_on_way(body), 0), None
         try:
             while place < len(body):
@@ -146,7 +146,7 @@ class Statements(Motions):
                     if place < 0:
                         raise
         finally:
-            self._blocks = around
+            self._blocks = outer
 
     def _place_on_way(self, body: tuple[ast.Statement, ...]) -> int:
         """Return the index of the statement that leads to the selected one, or -1."""

@@ -226,19 +226,19 @@ class Transaction:
         Each command must occur once, and must be started by the load or by an event that can
         happen. A link must not start a command of another transaction.
         """
-        mine = set(self.commands)
-        if len(mine) < len(self.commands):
+        own = set(self.commands)
+        if len(own) < len(self.commands):
             raise CommandError(f"{self}: a command occurs in it twice")
         starts = [link for link in self.links if link.effect == "start"]
         for link in starts:
-            if link.command not in mine:
+            if link.command not in own:
                 raise CommandError(f"{link}: {link.command} is not of this transaction")
         reached = set(self.unlinked())
         while (
             further := {
                 link.command
                 for link in starts
-                if link.event.command in reached or link.event.command not in mine
+                if link.event.command in reached or link.event.command not in own
             }
             - reached
         ):

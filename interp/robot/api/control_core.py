@@ -189,7 +189,7 @@ class ControlCore:
 
     def _check(self, transaction: Transaction) -> None:
         transaction.check()
-        mine = frozenset(transaction.commands)
+        own = frozenset(transaction.commands)
         number = self._last_number
         for command in transaction.commands:
             if command.state is not CommandState.CREATED:
@@ -199,11 +199,11 @@ class ControlCore:
                     raise CommandError(f"{command}: its number is not above {number}")
                 number = command.motion.number
         for link in transaction.links:
-            self._check_link(link, mine)
+            self._check_link(link, own)
 
-    def _check_link(self, link: Link, mine: frozenset[Command]) -> None:
+    def _check_link(self, link: Link, own: frozenset[Command]) -> None:
         for command in (link.event.command, link.command):
-            if command not in mine and command.state is CommandState.CREATED:
+            if command not in own and command.state is CommandState.CREATED:
                 raise CommandError(f"{link}: {command} is not loaded")
         cause = link.event.command
         is_past = cause.state is CommandState.ACTIVE and link.event.what == "started"
@@ -376,8 +376,8 @@ class ControlCore:
 
     def _drop(self, command: Command, but: frozenset[str] = frozenset()) -> None:
         """Remove links from the events of a command that can no longer happen, except ``but``."""
-        mine = [event for event in self._links if event.command is command]
-        for event in [event for event in mine if event.what not in but]:
+        own = [event for event in self._links if event.command is command]
+        for event in [event for event in own if event.what not in but]:
             for link in self._links.pop(event):
                 if link.effect == "start":
                     self._drop_start_link(link.command, is_taken=False)

@@ -89,10 +89,10 @@ def check_path(axes: Sequence[Axis], path: Array) -> None:
     axes = [axis.unlimited() for axis in axes]
     lower = np.array([axis.lower for axis in axes]) - _LIMIT
     upper = np.array([axis.upper for axis in axes]) + _LIMIT
-    beyond = np.argwhere((path < lower) | (path > upper))
-    if len(beyond):
+    outside = np.argwhere((path < lower) | (path > upper))
+    if len(outside):
         check_limits(axes, path[-1].tolist())
-        row, column = beyond[0]
+        row, column = outside[0]
         where = _limit_text(axes[column], float(path[row, column]))
         text = f"the path leads onto a software limit switch: {where}"
         raise Fault("software_limit", text, number=1211, rules=("MOT-15",))

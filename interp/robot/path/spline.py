@@ -177,8 +177,8 @@ def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
         while last < len(chain) and not chain[last].is_exact:
             last += 1
         before = chain[place - 1] if place else None
-        behind = chain[last] if last < len(chain) else None
-        ends, spans = _run(chain[place:last], before, behind)
+        following = chain[last] if last < len(chain) else None
+        ends, spans = _run(chain[place:last], before, following)
         shapes += [
             Free(ends[number : number + 2], span, still) for number, span in enumerate(spans)
         ]
@@ -201,7 +201,7 @@ def _is_corner(before: Segment, segment: Segment) -> bool:
 
 
 def _run(
-    run: Sequence[Segment], before: Segment | None, behind: Segment | None
+    run: Sequence[Segment], before: Segment | None, following: Segment | None
 ) -> tuple[Array, Array]:
     """Return position, first and second derivative at the points of a run of SPL, and its spans."""
     points = np.array([run[0].start.position, *(segment.end.position for segment in run)])
@@ -214,15 +214,15 @@ def _run(
         points,
         bc_type=(
             (1, before.tangent(1.0)) if before else free,
-            (1, behind.tangent(0.0)) if behind else free,
+            (1, following.tangent(0.0)) if following else free,
         ),
     )
     knots = spline.x
     ends = np.stack((points, spline(knots, 1), spline(knots, 2)), axis=1)
     if before:
         ends[0, 2] = before.curvature(1.0)
-    if behind:
-        ends[-1, 2] = behind.curvature(0.0)
+    if following:
+        ends[-1, 2] = following.curvature(0.0)
     return ends, spans
 
 
