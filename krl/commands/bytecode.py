@@ -37,8 +37,8 @@ def compile_file(
     """Compile a program with its whole project to bytecode, verify it, and write its image.
 
     The image can start with any routine of the file without parameters, or of a submit program.
-    What would end a run is reported on stderr with exit status 1, such as a routine that is in no
-    file or a variable of unknown type; the image is still written.
+    Causes that would end a run are reported on stderr with exit status 1, such as a missing routine
+    or a variable of unknown type; the image is still written.
     """
     from interp.values.faults import LinkError
 

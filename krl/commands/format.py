@@ -43,9 +43,9 @@ def format_programs(
 ) -> int:
     """Format programs: indentation, spaces, keywords in upper case.
 
-    Comments, folds, headers, lines and their ends, encoding, and what a program says stay as they
-    are. Exit status 1 where a file has syntax errors and was left alone, and where one would change
-    but may not be written: with --check, and in archives.
+    Comments, folds, headers, line breaks, line ends, encoding and the meaning of a program do not
+    change. Exit status 1 if a file has syntax errors, which is then left alone, or if one would
+    change but is not written: with --check, and in archives.
     """
     from support.files.discovery import IngestError, discover
 

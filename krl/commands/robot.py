@@ -35,9 +35,9 @@ def status_turn(
         Path,
         typer.Argument(
             metavar="POINTS.json",
-            help='A list of {"id","x","y","z","a","b","c","s"} in mm and degrees, each with "tool" '
-            'and "base" of its own if it has any. "t" may stand with them: it chooses among whole '
-            "turns of an axis.",
+            help='A list of {"id","x","y","z","a","b","c","s"} in mm and degrees. Each may have '
+            'a "tool" and a "base" of its own, and "t", which selects among whole turns of an '
+            "axis.",
         ),
     ],
     machine: Annotated[
@@ -53,9 +53,9 @@ def status_turn(
     """Print joint angles and Turn of taught points, for the solution that their Status names.
 
     Prints a JSON list of {"id","reachable","joints","s","t"}, the joints in degrees within the
-    software limits. Where an axis can reach the point in several whole turns, that of the Turn is
-    taken if the point has one ("agrees" says whether it fits), else the one nearest to 0. Points
-    out of reach have no joints, and "message" is what the controller would say.
+    software limits. If an axis can reach the point in several whole turns, that of the point's Turn
+    is taken ("agrees" says whether it fits), or without a Turn the one nearest to 0. Points out of
+    reach have no joints, and "message" is that of the controller.
     """
     default_tool, default_base = _listed("--tool", tool), _listed("--base", base)
     arm = _arm(machine)

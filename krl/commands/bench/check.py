@@ -42,8 +42,8 @@ def check(
         str,
         typer.Option(
             metavar="WHAT",
-            help="Leave files out: a share by chance, 'dat' for all data lists, 'others' for all "
-            "but each one; 'cut' lets three of ten end early.",
+            help="Leave files out: a random share, 'dat' for all data lists, 'others' for all but "
+            "the checked one; 'cut' truncates three of ten.",
             callback=_missing,
         ),
     ] = "0",

@@ -40,7 +40,7 @@ def conform(
             "--most-cases",
             min=1,
             metavar="N",
-            help="Try so many cases that may fail on a mutant, where more run its lines.",
+            help="Try at most N of the cases that run a mutant's lines and may fail.",
         ),
     ] = 1000,
     survivors: Annotated[
@@ -72,9 +72,9 @@ def conform(
 ) -> int:
     """Mutation testing of the cases: change the semantics in one place, and see if a case fails.
 
-    Mutants are drawn by chance from the code of values, tree interpreter, controller and robot:
-    comparisons, arithmetic, connectives, conditions, constants, statements left out. Planted faults
-    are those that no such change makes. Cases a second are those of all cases, with the tree
+    Mutants are drawn at random from the code of values, tree interpreter, controller and robot:
+    comparisons, arithmetic, connectives, conditions, constants, omitted statements. Planted faults
+    are those that no such change makes. The cases per second are those of all cases, with the tree
     interpreter and no robot, in one process.
     """
     check_files(json_file, survivors)

@@ -23,8 +23,8 @@ def fuzz(
 ) -> int:
     """Mutation testing of the fuzzer: change the machine in Python, and see if programs detect it.
 
-    The changes are drawn by chance, as `krl bench conform` draws those of interpreter, controller
-    and robot. Some of them no program can show.
+    The changes are drawn at random, like those of `krl bench conform`. Some of them cannot be
+    detected by any program.
     """
     from conformance.sensitivity.fuzzed_mutants import examine_mutants, record_of
 

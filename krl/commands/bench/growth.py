@@ -223,10 +223,11 @@ def growth(
 ) -> int:
     """Measure how CPU time and memory of each command grow with its input.
 
-    Inputs of each shape have the sizes n, 2n and 4n, where n is what takes a fifth of a second, and
-    twice what an empty input takes. A slope is the exponent: 1 is linear, 2 quadratic, 0 nothing.
-    Each is measured in a process of its own. All of them take hours: --entry and --shape choose
-    some, and with --minutes what FILE has is not measured again.
+    Inputs of each shape have the sizes n, 2n and 4n, where n is the size at which a command takes a
+    fifth of a second, and twice as long as for an empty input. A slope is the exponent: 1 is
+    linear, 2 quadratic, 0 constant. Each measurement runs in a process of its own. All of them take
+    hours: --entry and --shape select some, and with --minutes the results in FILE are not measured
+    again.
     """
     check_files(json_file)
     begun = time.monotonic()

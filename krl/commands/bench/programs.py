@@ -102,8 +102,8 @@ def programs(
     part: Annotated[
         Part,
         typer.Option(
-            help="What there is of a backup: all, its users' modules, no data lists, or each .src "
-            "alone."
+            help="How much of a backup to use: all, its users' modules, no data lists, or each "
+            ".src alone."
         ),
     ] = Part.WHOLE,
     damage: Annotated[
@@ -112,8 +112,8 @@ def programs(
             metavar="KIND,…",
             callback=_kinds,
             help="Run all once more with three of ten files damaged: files (lost), lists (data "
-            "lists lost), cut, lines (lost), names (misspelt), characters (exchanged), latin (read "
-            "so), or all of these.",
+            "lists lost), cut, lines (lost), names (misspelt), characters (exchanged), latin "
+            "(wrong encoding), or all of these.",
         ),
     ] = "",
     sample: Annotated[

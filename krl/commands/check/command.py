@@ -110,7 +110,7 @@ def check(
 ) -> int:
     """Check programs: syntax, names, types, control flow, misplaced statements.
 
-    Exit status 1 where there are errors or warnings, which --fail-on changes; notes alone leave it
+    Exit status 1 if there are errors or warnings, unless --fail-on says otherwise; notes alone give
     0. A comment '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl
     explain CODE' says what a code means.
     """

@@ -81,9 +81,9 @@ def accept(
 ) -> int:
     """Add constructs to the grammar, all of them or none.
 
-    Each is evaluated at its place, also one that was accepted before. If there is no objection to
-    any, the ledger, grammar/KRL.g4 and the generated parser are written, and a file from elsewhere
-    moves to grammar/constructs. Exit status 1 if one is refused.
+    Each is evaluated at its place, even if it was accepted before. If none is refused, the ledger,
+    grammar/KRL.g4 and the generated parser are written, and a file from elsewhere moves to
+    grammar/constructs. Exit status 1 if one is refused.
     """
     from grammar.notation.g4 import read_file
     from recovery.ledger.acceptance import AcceptanceRefused, write

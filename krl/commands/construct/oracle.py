@@ -39,7 +39,10 @@ def oracle(
     ] = None,
     name: Annotated[
         str | None,
-        typer.Option(metavar="TEXT", help="What the command asks, and when; kept with the answer."),
+        typer.Option(
+            metavar="TEXT",
+            help="The implementation that is asked, and the date; stored with the answer.",
+        ),
     ] = None,
     timeout: Annotated[
         float, typer.Option(min=0.1, metavar="S", help="Time limit for each program.")
