@@ -324,13 +324,6 @@ MOST_SAMPLES = 64
 #: them unbounded, and some 100 of 1,000 sentences were rejected for that.
 SHORT_LIST_EXAMPLES = 12
 ITEMS_BEHIND_THE_FIRST = 2
-#: Places without a part, each kind of line of a file once, that show that it is never there.
-#: Measured: from 13 grown grammars 20 takes one part more, and 200 the same parts; neither loses a
-#: held-out file.
-NEVER_THERE_EXAMPLES = 50
-#: Origins of the files that show it. Measured: with 1, 2 and 3 two of three parts that are
-#: not there occur in files of others.
-NEVER_THERE_ORIGINS = 4
 #: Elements in a row that may be missing together. Not measured.
 MISSING_RUN = 3
 #: The part of the kinds of line of one word that another has too, for one form to read both. Not

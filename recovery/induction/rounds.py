@@ -100,6 +100,7 @@ class Induction:
         self._lossy: set[tuple[Edit, ...]] = set()  # folds that lose lines of some file
         self._review: EditReview | None = None
         self._held_read = Reading(0, 0, 0)
+        self._had = {grammar.sha256}
         self._explained: set[LinePattern] = set()  # lines that known forms may grow to read
 
     def rounds(self, most: int = 60) -> Iterator[Round]:
@@ -132,7 +133,12 @@ class Induction:
             taken, refused = self._folded(review, failures, is_last=least == (1, 1))
         else:
             taken, refused = self._inferred(review, finder, failures, least, inner=step == "inner")
-        self.grammar = apply(self.grammar, joined(taken))
+        grammar = apply(self.grammar, joined(taken))
+        if taken and grammar.sha256 in self._had:  # folds may undo each other
+            refused += [Refused(s.title, s.edits, 0.0, "has been so before") for s in taken]
+            taken, grammar = [], self.grammar
+        self.grammar = grammar
+        self._had.add(grammar.sha256)
         return Round(reading(failures), self._held_read, tuple(taken), tuple(refused))
 
     # ----------------------------------------------------------------------------------- inference
@@ -327,12 +333,11 @@ class Induction:
             if not taken:
                 return self._folded(before, failures, is_last=is_last)
         if is_last and not taken:
-            read = [file for file, wrong in zip(files, failures, strict=True) if not wrong]
-            texts = (file.text for file in read)
-            origins = len(frozenset[str]().union(*(file.origins for file in read)))
+            read = zip(files, failures, strict=True)
+            texts = (file.text for file, wrong in read if not wrong)
             bounds = [
                 Taken(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
-                for bounded in bounded_lists(recognizer, self._start, texts, origins)
+                for bounded in bounded_lists(recognizer, self._start, texts)
                 if bounded.edits not in self.struck
             ]
             taken, lost = self.shown.kept(self.grammar, bounds, self._names)

@@ -28,7 +28,7 @@ from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import Evidence, Inferred, Refused, Taken
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -383,6 +383,21 @@ def test_damaged_lines_are_an_objection(toy: Grammar, most: int, is_taken: bool)
     assert is_taken == (not review.objection(toy, edits, edits, most_damaged=most))
 
 
+def test_folds_that_undo_each_other_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A round that would lead back to an earlier grammar takes nothing."""
+
+    def folded(self: Induction, *_: object, **_more: object) -> tuple[list[Taken], list[Refused]]:
+        there = len(self.grammar.by_name["halt"].alternatives)
+        edit = RemoveAlternative("halt", 2) if there > 1 else AddAlternative("halt", "NAME")
+        return [Taken("back and forth", (edit,), Evidence(0, 0, 0, ()))], []
+
+    monkeypatch.setattr(Induction, "_folded", folded)
+    files = (CorpusFile("a.toy", "HALT\n", frozenset({"a"})),)
+    induction = Induction(toy, files, (), NegativeSet(()))
+    taken = [step for done in induction.rounds() for step in done.taken]
+    assert (1, True) == (len(taken), induction.is_finished)
+
+
 def test_a_step_is_struck_out(growth: Growth) -> None:
     """A step that is struck out goes, with those that need it; the others stay in order."""
     block = next(c for c in growth.constructs if "REPEATN" in c.title)
@@ -469,7 +484,7 @@ import json, sys
 from grammar.notation.g4 import read
 from recovery.language import CorpusFile
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import Evidence, Inferred, Refused, Taken
 from recovery.negatives.negatives import NegativeSet
 start, files = json.load(sys.stdin)
 shown = [CorpusFile(path, text, frozenset(origins)) for path, text, origins in files]
