@@ -30,7 +30,7 @@ def gc_paused(many: int = _MANY) -> Iterator[None]:
     try:
         yield
     finally:
-        if gc.get_count()[0] >= many:  # less those that are gone; counted while it is off too
+        if gc.get_count()[0] >= many:  # also counted while it is off; freed objects are subtracted
             gc.collect()
         if was_enabled:
             gc.enable()

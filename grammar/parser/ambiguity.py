@@ -55,7 +55,7 @@ def is_ambiguous(recognizer: Recognizer, state: State, kinds: Sequence[int]) -> 
                 reached.add(shifted)
         layer = reached
         if len(before) > _MOST_NODES:
-            return True  # no text with one reading needs so many nodes
+            return True  # an unambiguous text never has so many nodes
     alive = set(layer)
     todo = list(layer)
     while todo:

@@ -84,7 +84,7 @@ class _Rules:
     def __init__(self, grammar: Grammar, lexer: Lexer) -> None:
         self._kind_of = lexer.kind_of
         self._entry: dict[str, int] = {}
-        moves: list[tuple[str, list[_Move]]] = []  # of each position, with the rule it lies in
+        moves: list[tuple[str, list[_Move]]] = []  # of each position, with its rule
         for rule in grammar.rules:
             if not rule.is_lexer:
                 base = self._entry[rule.name] = len(moves)

@@ -236,7 +236,7 @@ def pattern_of(automaton: CharAutomaton) -> str | None:
         ordered = sorted(automaton.edges[state].items(), key=lambda e: -_size(e[1]))
         for target, ranges in ordered:
             if target == state:
-                # possessive: what follows never begins with a character of the loop
+                # possessive, because no character of the loop can follow it
                 loop = f"{class_of(ranges)}*+"
                 continue
             rest = of(target, may_stop=target in automaton.accepting)

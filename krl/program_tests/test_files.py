@@ -34,7 +34,7 @@ _ZONE_WORDS: Final = ("box", "sphere")
 class TestFileError(ValueError):
     """A test file is invalid; the message is one line with file and line."""
 
-    __test__ = False  # no class of tests, whatever its name says
+    __test__ = False  # pytest must not collect it because of its name
 
 
 @dataclass(frozen=True, slots=True)
@@ -394,7 +394,7 @@ class _Span:
 
 
 _T = TypeVar("_T")
-#: An expectation, its line, and file and line of the code it stands beside.
+#: An expectation, its line, and file and line of the code beside it.
 _Stated = tuple[str, int, tuple[str, int] | None]
 _Entry = tuple[_Span, Mapping[str, Any], Sequence[_Stated]]
 

@@ -21,9 +21,9 @@ _ENDINGS = frozenset({".src", ".dat", ".sub"})
 #: Of a larger project only the files that the program refers to are read: 16 MB take some 20 s.
 _MOST_FILES, _MOST_BYTES = 20_000, 1 << 24
 _MOST_SHOWN = 5
-#: So many files at most are looked at to find out whether a folder holds mostly KRL.
+#: The most files that are examined to find out whether a folder has mostly KRL.
 _MOST_BELOW = 2_000
-#: Behind a name in a comment nothing is called, but that does not matter here.
+#: Also matches names in comments, which does no harm here.
 _CALL = re.compile(r"\b([A-Z_]\w*)[ \t]*\(", re.IGNORECASE | re.ASCII)
 
 _T = TypeVar("_T")

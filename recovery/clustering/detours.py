@@ -258,7 +258,7 @@ class DetourReader:
             state = recognizer.settled(opened)
             if state is not opened:  # more detours may begin at the frames taken back
                 todo.append((state, number))
-            # a state on the path itself fails where the path does
+            # a state that is on the path fails at the same token as the path
             while (state, number) not in met and path.states[number : number + 1] != [state]:
                 met.add((state, number))
                 following = recognizer.step(state, kinds[number])

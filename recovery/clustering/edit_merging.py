@@ -55,7 +55,7 @@ def are_one_change(profile: GrammarProfile, first: Sequence[Edit], second: Seque
         return True
     unused = profile.unused_in(one.text), profile.unused_in(other.text)
     if one.rule == other.rule and isinstance(one, AddAlternative) and type(one) is type(other):
-        # what gathered several rules is gone, or what had several forms without a word of its own
+        # a rule that gathered others was removed, or one with several forms but no word of its own
         return all(unused) or bool(profile.operands(one.text) & profile.operands(other.text))
     return bool(unused[0] & unused[1])
 

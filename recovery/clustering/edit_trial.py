@@ -129,7 +129,7 @@ class EditTrial:
         rule_of = recognizer.network.rule
         state = recognizer.restore(form.before)
         rules = {rule_of[p] for p, _ in recognizer.sites(state)}
-        if not form.index:  # the line end before it may be what would be read in another way
+        if not form.index:  # the preceding line end may be read differently
             rules |= {rule_of[p] for frames in form.before for p in frames}
         for kind in form.kinds[: form.index]:
             following = recognizer.step(state, kind)

@@ -101,7 +101,7 @@ class FileTrial:
             length += len(text)
             if length > MOST_REREAD_TEXT or wider.size > MOST_CORES:
                 break
-            # the file is gone since the survey, or cannot change the result any more
+            # the file was removed after the survey, or cannot change the result any more
             if not text or left.issuperset(line for _, line in wanted[place]):
                 continue
             failing = {failure.line for failure in finder.find(text)}

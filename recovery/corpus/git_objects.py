@@ -198,7 +198,7 @@ def _reason(said: str) -> str:
 def _environment() -> dict[str, str]:
     kept = {name: value for name, value in os.environ.items() if name not in _REPOSITORY_VARIABLES}
     return kept | {
-        "GIT_ALLOW_PROTOCOL": "https:file",  # also where a server redirects to; file: own mirrors
+        "GIT_ALLOW_PROTOCOL": "https:file",  # also for redirects; file is for local mirrors
         "GIT_NO_LAZY_FETCH": "1",  # a partial mirror must not go out to the network
         "GIT_TERMINAL_PROMPT": "0",
         "LC_ALL": "C",  # refusals are recognised by their English words

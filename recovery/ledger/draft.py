@@ -37,7 +37,7 @@ def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) 
         raise LedgerError(f"{chosen['id']} has {len(proposals)} proposals; there is no {number}")
     construct = _construct(record, chosen, proposals[number - 1])
     text, name = text_of(construct), construct.name
-    parse(text, folder / f"{name}.toml")  # what is written can be read
+    parse(text, folder / f"{name}.toml")  # raises an error if the file could not be read back
     folder.mkdir(parents=True, exist_ok=True)
     taken = [int(p.name[:4]) for p in folder.glob("[0-9][0-9][0-9][0-9]-*.toml")]
     at = max(taken, default=0) + 1

@@ -115,7 +115,7 @@ def programs_of(construct: Construct) -> tuple[ExampleProgram, ...]:
     """Return the examples of a construct as modules, ``C0012_1`` and so on, accept ones first."""
     out = []
     for place, text in enumerate((*construct.accept, *construct.reject), 1):
-        name = f"C{construct.number or 0:04}_{place}"  # does not show what is expected
+        name = f"C{construct.number or 0:04}_{place}"  # must not reveal the expectation
         digest = hashlib.sha256(text.encode()).hexdigest()
         is_accept = place <= len(construct.accept)
         out.append(ExampleProgram(name, _renamed(text, name), digest, construct.id, is_accept))
@@ -172,7 +172,7 @@ def reason_to_ask(construct: Construct) -> str:
     evidence = construct.evidence
     if construct.state == REJECTED or evidence.verdict or evidence.origins >= 2:
         return ""
-    if not construct.accept:  # there is nothing to ask about
+    if not construct.accept:  # there is no program to ask about
         return ""
     shown = "one origin" if evidence.origins else "no origin"
     if evidence.grounds:

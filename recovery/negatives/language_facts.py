@@ -202,7 +202,7 @@ def _routine(line: SourceLine) -> str | None:
     if "(" not in line.kinds or line.kinds[-1] != ")":
         return "the head of a routine ends with its parentheses"
     depth = 0
-    parameters = []  # without what their indices hold
+    parameters = []  # without the content of their indices
     for kind in line.kinds[line.kinds.index("(") + 1 : -1]:
         depth -= kind == "]"
         if not depth and kind != "]":

@@ -65,7 +65,7 @@ class GrammarProfile:
     def _closed(self) -> frozenset[str]:
         """Rules whose alternatives end with a line end that they write themselves."""
         found: set[str] = set()
-        for _ in range(2):  # that a rule is another rule goes no deeper
+        for _ in range(2):  # a rule that is only another rule is at most one level deep
             for rule in self.grammar.rules:
                 ends = [
                     end

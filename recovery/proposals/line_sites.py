@@ -53,7 +53,7 @@ class LineSiteFinder:
                 rank += 2 * UNLIKELY_COST  # it would put lines in an order that no text asks for
             for place in places_of(self.recognizer, site):
                 if rule != self.grammar.start and profile.is_at_start(rule, place):
-                    continue  # what comes before a rule belongs to the rule that calls it
+                    continue  # text before a rule belongs to the calling rule
                 if blank:
                     yield rank, (Insert(rule, place, f"{recognizer.lexer.line_end}*"),)
                     continue

@@ -59,7 +59,7 @@ class Similarity:
         if self.gathers(rule):
             if not self._is_single(symbols):
                 if self.vocabulary.words_of(rule):
-                    return STRONGEST_SIMILARITY_STEPS  # each is a word, and this is none
+                    return STRONGEST_SIMILARITY_STEPS  # unlike its alternatives, no word
                 return (
                     STRONG_SIMILARITY_STEPS
                     if self._is_known_by(rule, symbols[0])

@@ -197,14 +197,14 @@ class EditSiteFinder:
         for place in sorted(automaton.places[position - base]):
             number = place[-1]
             sequence = self.profile.sequence(rule, place[:-1])
-            # inserting what is missing, to continue where we are
+            # insert the missing tokens and continue at the same place
             is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
             begins_loop = number == 1 and len(place) > 2
             gathers = self.similarity.gathers(rule)
             for end in ends:
                 comes_next = words[end][0] in self.profile.first(sequence, number)
-                # behind all that may be left out, but for what the line has behind it; before the
-                # first element of a rule only where that element itself comes next
+                # after all optional elements, except those that the line has next; before the first
+                # element of a rule only if that element itself comes next
                 is_prefix = position != base or (not gathers and end - start <= LONGEST_PREFIX)
                 is_suffix = is_last and position != base and not begins_loop
                 if (comes_next and is_prefix) or (
@@ -339,12 +339,12 @@ class EditSiteFinder:
         if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls
         if place[-1] == 1 and len(place) == 2 and len(words) > LONGEST_PREFIX:
-            return  # another beginning as long as that is another thing
+            return  # so long another beginning is a different construct
         rank = profile.width(rule) + (WIDEN_FIRST_WORD_COST if leading else WIDEN_COST)
         if leading and len(elements) < SHARED_ELEMENTS:
-            rank += 2 * UNLIKELY_COST  # there is hardly anything that the two words have in common
+            rank += 2 * UNLIKELY_COST  # the two words have hardly anything in common
         if isinstance(element, Repeat):
-            rank += UNLIKELY_COST  # one more thing in a loop made for something else
+            rank += UNLIKELY_COST  # one more kind of item in a loop that is for others
         if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
             rank += UNLIKELY_COST
         yield EditSite("widen", rule, place, tuple(words), rank)

@@ -133,7 +133,7 @@ class Reducer:
                     continue
                 body, end = read
                 way = ways_out.completion(wider.frames(end))[:-1]
-                if body[-1:] != tokens[-1:]:  # the line has an end of its own
+                if body[-1:] != tokens[-1:]:  # the line ends with its own line end
                     cut = next((i for i, k in enumerate(way, 1) if k == line_kind), len(way))
                     body = body + self._spelling.frame(way[:cut], wider, name="end of line")
                     way = way[cut:]

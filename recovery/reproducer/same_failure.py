@@ -98,7 +98,7 @@ class SameFailure:
         if failure_mode(recognizer, kinds[first:end], meant, index - first, context) != self._way:
             return False
         if any(t.name == FRAME and t.kind != recognizer.line_kind for t in tokens[index + 1 : end]):
-            return False  # the next line is one of its own
+            return False  # the completion must not be a line of its own
         if wider is not None:
             if wider.run(wider.start, [*kinds_in(wider, tokens), EOF])[1] is not None:
                 return False

@@ -44,7 +44,7 @@ class _Writer(pickle.Pickler):
     def reducer_override(self, value: Any) -> Any:
         """Return how to rebuild a value; `NotImplemented` leaves it to pickle."""
         kind: Callable[..., Any] = type(value)
-        if isinstance(value, Enum):  # some Pythons look it up by getattr, which is not to be read
+        if isinstance(value, Enum):  # some Pythons pickle it by getattr, which must not be loaded
             return kind, (value.value,)
         names = _fields(kind)
         if names is None:

@@ -40,7 +40,7 @@ class ResultStore:
                 self._base = self._opened(file)
             except _DAMAGE as error:
                 code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT)
-                if code & 0xFF in _DAMAGED:  # what it is more exactly stands above
+                if code & 0xFF in _DAMAGED:  # the low byte is the primary code
                     with contextlib.suppress(OSError):
                         file.replace(file.with_suffix(".damaged"))
                     self._base = self._opened(file)

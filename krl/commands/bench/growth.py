@@ -39,7 +39,7 @@ _ONE_TEST: Final = '[[test]]\nname = "one"\nexpect = [\n'
 _A_TEST: Final = _ONE_TEST + '"ends before 1"]\n'
 _CASE: Final = ";@ rule: ADV-03\n;@ title: A case\n;@ phase: run\nDEF a()\n"
 
-#: Writes what a command reads, of about so many characters, into a folder.
+#: Writes an input of about the given number of characters into a folder, and returns its path.
 _Writer = Callable[[Path, int], Path]
 
 
@@ -300,7 +300,7 @@ def _measure(entry: str, shape: str, largest: int) -> Growth | None:
 
     chosen = _ENTRIES[entry]
     with tempfile.TemporaryDirectory() as place, Path(os.devnull).open("w") as nowhere:
-        for stream in (1, 2):  # also what is written below Python
+        for stream in (1, 2):  # also output that bypasses Python
             os.dup2(nowhere.fileno(), stream)
         root = Path(place)
         numbers = count()

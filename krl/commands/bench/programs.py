@@ -42,9 +42,9 @@ _RESULTS = {
     "crash": "a defect of ours",
 }
 
-#: Lines with faults of their own that are shown of an origin; the record has all.
+#: The most lines with different faults that are printed for an origin; the record has all.
 _MOST_FAULTS = 5
-#: What a program does that has nothing left to do.
+#: Endings of programs that have nothing left to do.
 _SERVED = ("end", "halt", "waits", "goes on")
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
-#: Codes of notes about why the robot stops, which are no faults.
+#: Codes of notes about why the robot stops; they are not faults.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
 
 
