@@ -187,17 +187,23 @@ def _unexpected_errors(case: Case, seen: Observation) -> Iterator[Check]:
 
 
 def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
-    """Yield a check for each unexpected change of an output that has expected changes."""
+    """Yield a check for each unexpected change of an output that has expected changes.
+
+    The values of analog outputs are what their expectations are about, within a tolerance.
+    """
     expected = {
-        (*one.arguments, one.file, one.line)
+        (one.kind, *one.arguments[: 2 if one.kind == "out" else 1], one.file, one.line)
         for one in case.expectations
-        if one.kind == "out" and "never" not in one.arguments
+        if one.kind in ("out", "anout") and "never" not in one.arguments
     }
-    watched = {number for number, *_ in expected}
-    for event in seen.of_kind("out"):
+    watched = {(kind, number) for kind, number, *_ in expected}
+    for event in seen.of_kind("out", "anout"):
         number, value = str(event.fields.get("number")), str(event.fields.get("value")).upper()
-        if number in watched and (number, value, event.file, event.line) not in expected:
-            text = f"output {number} changes only as it is said"
+        changed = (value,) if event.kind == "out" else ()
+        what = (event.kind, number, *changed, event.file, event.line)
+        if (event.kind, number) in watched and what not in expected:
+            which = "analog output" if event.kind == "anout" else "output"
+            text = f"{which} {number} changes only as it is said"
             yield Check(event.file, event.line, text, "unmet", f"{value} at {event.time} us")
 
 

@@ -16,16 +16,22 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations, product
 from pathlib import Path
 from random import Random
+from shutil import copyfile
 from tempfile import TemporaryDirectory
 from typing import Final
 
 from conformance.suite.case import CASES, Case, find_cases
 
 FOLDER: Final = CASES / "interaction"
+#: An arm with external axes.
+_MACHINE: Final = CASES / "motion" / "$machine.dat"
 Row = Mapping[str, str]
 
 FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
-    "path": ("lin", "lin_blend", "circ", "circ_blend", "spline", "ptp", "ptp_blend", "rel"),
+    "path": (
+        *("lin", "lin_blend", "circ", "circ_blend", "spline", "ptp", "ptp_blend", "rel"),
+        *("circ_rel", "external_blend"),
+    ),
     "act": (
         "run",
         "brake",
@@ -38,6 +44,7 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
         "resume",
         "resume_deep",
         "operator",
+        "dialogue",
     ),
     "when": ("0.15", "0.42"),
     "trigger": ("none", "end", "path", "call"),
@@ -50,7 +57,7 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
 #: More values, whose effects no rule states completely; `drawn` uses them too.
 _MORE: Final[Mapping[str, tuple[str, ...]]] = {
     "path": (
-        *("chain_blend", "circ_rel", "circ_long", "ori_blend", "vel_blend", "slin", "scirc"),
+        *("chain_blend", "circ_long", "ori_blend", "vel_blend", "slin", "scirc"),
         *("ptp_spline", "spline_blend", "turn_blend"),
     ),
     "act": ("brake_moves", "anout", "switch", "timer"),
@@ -107,7 +114,20 @@ _PATHS: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
         ("LIN {X 490} C_DIS", "LIN {Y 40} C_DIS", "LIN {X 545} C_DIS", "PTP {A1 10}"),
         "",
     ),
-    "circ_rel": (("CIRC_REL {X 50, Y 50}, {X 100, Y 0}",), ""),
+    "circ_rel": (
+        (
+            "CIRC_REL {X 50, Y 50}, {X 100, Y 0}",
+            ";> path circle 445 0 810 by 495 50 810 to 545 0 810 [MOT-20]",
+        ),
+        "545 0 810",
+    ),
+    "external_blend": (
+        (
+            "LIN {X 545, E1 30} C_DIS ;> misses 545 0 810 by 20 within 19.9 [BLD-08]",
+            "LIN {Y 100, E1 60, E2 20} ;> limits [MOT-06]",
+        ),
+        "545 100 810",
+    ),
     "circ_long": (("CIRC {X 495, Y 50}, {X 545, Y 0}, CA 220",), ""),
     "ori_blend": (("LIN {X 545, A 160} C_ORI", "LIN {Y 100}"), ""),
     "vel_blend": (("LIN {X 545} C_VEL", "LIN {Y 100}"), ""),
@@ -147,6 +167,17 @@ _ROUTINES: Final[Mapping[str, tuple[str, ...]]] = {
         "A[2] = $ERR.NUMBER ;> value A[2] 1444 [TYP-13]",
         "ERR_CLEAR($ERR)",
         "$OUT[3] = TRUE ;> out 3 TRUE at in 1 [TYP-13]",
+    ),
+    "dialogue": (
+        *("DECL KRLMSG_T M", "DECL KRLMSGPAR_T P[3]", "DECL KRLMSGDLGSK_T K[7]"),
+        *("DECL INT ANSWER, H, I", "DECL BOOL IS_OPEN"),
+        'M = {MODUL[] "CASE", NR 9, MSG_TXT[] "Which?"}',
+        *("FOR I = 1 TO 3", "  P[I] = {PAR_TYPE #EMPTY}", "ENDFOR"),
+        *("FOR I = 1 TO 7", '  K[I] = {SK_TYPE #VALUE, SK_TXT[] "A"}', "ENDFOR"),
+        *("ANSWER = 0", "H = SET_KRLDLG(M, ANSWER, P[], K[]) ;> message 9 [FCT-10]"),
+        *("REPEAT", "  WAIT SEC 0.1", "  IS_OPEN = EXISTS_KRLDLG(H, ANSWER)", "UNTIL NOT IS_OPEN"),
+        "I = ANSWER ;> value I 2 [FCT-10]",
+        "$OUT[3] = TRUE ;> out 3 TRUE after in 1 + 0.3 [FCT-10]",
     ),
     "brake_moves": ("BRAKE", "PTP_REL {A6 10}", "$OUT[3] = TRUE"),
     "anout": ("$ANOUT[1] = 0.25", "$OUT[3] = TRUE"),
@@ -224,6 +255,7 @@ def cases() -> Iterator[tuple[str, str]]:
         name = f"pair_{number:03}"
         yield f"{name}.src", "\n".join([*_front(row), *_main(name, row), ""])
     yield "beside.sub", _BESIDE
+    yield "$machine.dat", _MACHINE.read_text(encoding="utf-8")
 
 
 def drawn(seed: int) -> list[Case]:
@@ -242,6 +274,7 @@ def drawn(seed: int) -> list[Case]:
         folder = Path(place, "pairs")
         folder.mkdir()
         (folder / "beside.sub").write_text(_BESIDE, encoding="utf-8")
+        copyfile(_MACHINE, folder / _MACHINE.name)
         for number, row in enumerate(rows, 1):
             name = f"drawn_{number:03}"
             head = [one for one in _front(row) if not one.startswith((";@ rule", ";@ title"))]
@@ -270,10 +303,15 @@ def _front(row: Row) -> Iterator[str]:
     yield f";@ io: on OUT[1]=TRUE after {row['when']} {act}"
     if row["act"] == "operator":
         yield f";@ io: on OUT[1]=TRUE after {float(row['when']) + 1:g} press START"
+    if row["act"] == "dialogue":
+        yield f";@ io: on OUT[1]=TRUE after {float(row['when']) + 0.3:g} answer 2"
     if row["act"] == "halt":
         yield ";@ io: on HALT after 0.5 press START"
-    if row["beside"] == "submit":
-        yield ";@ with: beside.sub"
+    beside = ["beside.sub"] if row["beside"] == "submit" else []
+    if row["path"] == "external_blend":
+        beside.insert(0, "$machine.dat")
+    if beside:
+        yield f";@ with: {', '.join(beside)}"
 
 
 def _places(text: str) -> Iterator[int]:
@@ -342,7 +380,7 @@ def _way(row: Row, *, is_left: bool) -> Iterator[str]:
     for text in _BEHIND[row["behind"]]:
         shown = text.replace("LAST", last)
         if row["act"] == "halt":  # it halts for half a second, and the arm continues
-            shown = shown.replace(" at end", " after end")
+            shown = shown.replace(" at end", " after end").replace(f" before end {last}", "")
         yield f"  {text.partition(' ;>')[0] if is_left else shown}"
     if is_left:
         yield "  WAIT SEC 0"

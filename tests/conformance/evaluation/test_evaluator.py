@@ -227,3 +227,7 @@ def test_watched_outputs_change_only_as_it_is_said() -> None:
     elsewhere = event("out", number=2, value=True, line=4)
     assert ["met", "unmet", "unmet"] == states(asked, right, elsewhere)
     assert ["met", "unmet"] == states(asked, right, event("out", number=2, value=False))
+    analog = case("anout 2 0.5")
+    right = event("anout", number=2, value=0.5)
+    assert ["met"] == states(analog, right, event("anout", number=3, value=0.1, line=4))
+    assert ["met", "unmet"] == states(analog, right, event("anout", number=2, value=0.1, line=4))

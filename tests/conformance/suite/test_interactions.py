@@ -7,7 +7,7 @@ from conformance.suite.interactions import FEATURES, FOLDER, cases, covering, dr
 
 def test_cases_are_up_to_date() -> None:
     """What is in the folder is what the features make."""
-    there = {path.name: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.s*")}
+    there = {path.name: path.read_text(encoding="utf-8") for path in FOLDER.iterdir()}
     assert there == dict(cases())
 
 
@@ -17,7 +17,7 @@ def test_each_pair_of_values_stands_together() -> None:
     for one, other in combinations(FEATURES, 2):
         wanted = set(product(FEATURES[one], FEATURES[other]))
         assert wanted == {(row[one], row[other]) for row in rows}
-    assert len(rows) < 100
+    assert len(rows) < 130
 
 
 def test_drawn_programs_follow_from_the_seed() -> None:
