@@ -195,21 +195,6 @@ def test_forgetting_the_rest(moving: Driver, is_braked: bool) -> None:
     moving.check_limits()
 
 
-def test_circ_behind_an_abort_is_lin(moving: Driver) -> None:
-    """The first motion behind RESUME is a line where a circle was programmed [INT-14]."""
-    moving.play(until=moving.now + 300_000)
-    moving.arm.discard(moving.now)
-    moving.play()
-    stood, begin = moving.tool(moving.now), moving.now
-    moving.move("CIRC", {"X": 450.0, "Z": 650.0}, auxiliary={"X": 450.0, "Y": 150.0})
-    moving.play()
-    middle = moving.tool((begin + moving.now) // 2)
-    end = moving.tool(moving.now)
-    assert 0.0 == pytest.approx(
-        float(np.linalg.norm(np.cross(middle - stood, end - stood))), abs=1e-3
-    )
-
-
 @pytest.mark.parametrize("after", APART)
 @pytest.mark.parametrize("percents", [(30, 100), (0, 100), (100, 1, 60), (50, 0, 0, 75)])
 def test_the_override_changes_on_the_way(
@@ -225,16 +210,6 @@ def test_the_override_changes_on_the_way(
     assert moving.time("motion_end", 4)
     assert distance(geometry(moving, begin), path) < 0.01
     moving.check_limits()
-
-
-def test_override_zero_stands(moving: Driver) -> None:
-    """At 0 per cent the arm stands, and no event lies ahead."""
-    moving.play(until=moving.now + 300_000)
-    moving.arm.override(moving.now, 0.0)
-    moving.play()
-    moving.now += 1_000_000
-    assert 0.0 == moving.arm.speed(moving.now)
-    assert 3 == moving.arm.pending()
 
 
 @pytest.mark.parametrize("percent", [0.0, 5.0, 40.0])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from interp.port.requests import SplineRange
-from interp.robot.arm import Approximation, Place, Settings, SplinePart
+from interp.robot.arm import Approximation, Place, SplinePart
 from interp.robot.path.pose_path import Arc, StraightLine
 from interp.robot.path.spline import Free
 from interp.values.faults import Fault
@@ -87,43 +87,6 @@ def test_tangent_and_curvature_go_on(driver: Driver) -> None:
         assert np.allclose(before.at(np.ones(1))[1], behind.at(np.zeros(1))[1], atol=1e-9)
 
 
-def test_corners_are_exact_stops(driver: Driver) -> None:
-    """Where two lines meet at an angle the arm stands, since the point has to be passed."""
-    sections = run(driver, (SplinePart("SLIN", at(450, 0)), SplinePart("SLIN", at(350, 0))))
-    assert [0.0, 0.0] == [section.gear for section in sections]
-
-
-def test_a_block_keeps_its_speed(driver: Driver) -> None:
-    """Along a smooth block the programmed speed is kept from point to point."""
-    run(driver, tuple(SplinePart("SPL", at(450, y)) for y in (-50, 0, 20, 100, 150)), velocity=0.1)
-    places = np.linspace(driver.time("motion_start", 2), driver.now, 50).astype(int)[10:-10]
-    assert np.allclose([driver.arm.speed(int(time)) for time in places], 0.1, rtol=1e-4)
-
-
-@pytest.mark.parametrize("others", [{"velocity": 1.0}, {"acceleration": 0.5}])
-def test_the_path_is_always_the_same(driver: Driver, others: dict[str, float]) -> None:
-    """The geometry depends on neither speed nor acceleration [SPL-03, BLD-09]."""
-    u = np.linspace(0, 1, 9)
-    one = [section.curve.axes(u) for section in run(driver, MIXED)]
-    driver.move("PTP", START)
-    driver.move("SPLINE", parts=MIXED, speed_type="#VAR_ALL", **others)
-    sections = {
-        leg.section.key: leg.section for leg in driver.arm.path() if leg.section.number == 4
-    }
-    other = [section.curve.axes(u) for section in sections.values()]
-    assert np.allclose(one, other, atol=1e-8)
-
-
-def test_speeds_by_segment(driver: Driver) -> None:
-    """A segment may have a speed of its own [SPL-08]."""
-    slow = Settings(velocity=0.05)
-    run(driver, (SplinePart("SPL", at(450, 0)), SplinePart("SPL", at(450, 150), settings=slow)))
-    times = range(driver.time("motion_start", 2), driver.now, 10_000)
-    speeds = [driver.arm.speed(time) for time in times]
-    assert 0.3 == pytest.approx(max(speeds), rel=1e-3)
-    assert 0.05 == pytest.approx(driver.arm.speed(driver.now - 1_000_000), rel=1e-3)
-
-
 def test_external_axes_pass_their_points_smoothly(driver: Driver) -> None:
     """External axes are a spline of their own over the same path."""
     sections = run(
@@ -164,18 +127,6 @@ def test_swinging_beyond_a_software_limit(driver: Driver, kind: str) -> None:
     assert 1211 == caught.value.number
 
 
-def test_single_spline_motions(driver: Driver) -> None:
-    """SLIN, SCIRC and SPTP exist as motions of their own, and can be blended [SPL-02]."""
-    near = {"criteria": ("C_SPL",), "approximation": Approximation(cdis=20.0, cptp=10)}
-    driver.move("SPTP", START, **near)
-    driver.move("SLIN", at(450, 0), **near)
-    driver.move("SCIRC", at(380, 60), auxiliary=at(430, 50), **near)
-    driver.move("SPTP", {"A1": 0.0}, **near)
-    driver.play()
-    assert 3 == sum(event.kind == "blend_apex" for event in driver.events)
-    driver.check_limits()
-
-
 def test_blending_into_and_out_of_a_block(driver: Driver) -> None:
     """A block is blended like any other motion, with its first and its last segment."""
     near = {"criteria": ("C_DIS",), "approximation": Approximation(cdis=15.0), "velocity": 0.3}
@@ -187,18 +138,6 @@ def test_blending_into_and_out_of_a_block(driver: Driver) -> None:
     driver.play()
     assert 2 == sum(event.kind == "blend_apex" for event in driver.events)
     driver.check_limits()
-
-
-def test_places_in_a_block(driver: Driver) -> None:
-    """A trigger counts from the end of the segment behind it, or from its start."""
-    parts = (
-        SplinePart("SPL", at(450, 0), places=(Place(1, "PATH", 0.0),)),
-        SplinePart("SPL", at(450, 100), places=(Place(2, "PATH", 10.0, on_start=True),)),
-        SplinePart("SPL", at(450, 150), places=(Place(3, "PATH", -20.0),)),
-    )
-    run(driver, parts)
-    passed = [driver.tool(driver.time("place", 2, key))[1] for key in (1, 2, 3)]
-    assert [0.0, 10.0, 130.0] == pytest.approx(passed, abs=1e-3)
 
 
 def test_stopping_at_a_place(driver: Driver) -> None:
@@ -230,21 +169,6 @@ def line(*ranges: tuple[int, SplineRange], ends: tuple[float, ...] = (-50, 0, 10
     return {"parts": tuple(parts), "ranges": behind}
 
 
-def test_constant_speed(driver: Driver) -> None:
-    """In its range the speed is the programmed one, all along [SPL-05]."""
-    start = SplineRange("CONST_VEL", "START", 0.0, True)
-    end = SplineRange("CONST_VEL", "END", 20.0, True)
-    block = line((1, start), (3, end))
-    driver.move("PTP", START)
-    driver.play()
-    driver.move("SPLINE", velocity=0.2, **block)
-    begin = driver.now
-    driver.play()
-    times = range(begin, driver.now, 4000)
-    inside = [time for time in times if -50.0 <= driver.tool(time)[1] <= 120.0]
-    assert np.allclose([driver.arm.speed(time) for time in inside], 0.2, rtol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("parts", "values", "number"),
     [
@@ -273,37 +197,4 @@ def test_speeds_that_cannot_be_kept(
     driver.move("PTP", START)
     with pytest.raises(Fault) as caught:
         driver.move("SPLINE", speed_type="#VAR_ALL", **values, **parts)
-    assert number == caught.value.number
-
-
-def test_durations(driver: Driver) -> None:
-    """The parts of a TIME_BLOCK take their shares of its duration [SPL-10]."""
-    ranges = (
-        (1, SplineRange("TIME_BLOCK", "START", None, False)),
-        (2, SplineRange("TIME_BLOCK", "PART", 30.0, False)),
-        (4, SplineRange("TIME_BLOCK", "PART", 70.0, False)),
-        (4, SplineRange("TIME_BLOCK", "END", 4.0, False)),
-    )
-    run(driver, **line(*ranges))
-    ends = {leg.section.part: leg.ends for leg in driver.arm.path() if leg.section.number == 2}
-    assert (1.2, 2.8) == pytest.approx((ends[1] - ends[0], ends[3] - ends[1]), rel=1e-5)
-
-
-def test_both_kinds_of_range(driver: Driver) -> None:
-    """CONST_VEL and TIME_BLOCK exclude each other in a block [SPL-10]."""
-    ranges = (
-        (1, SplineRange("TIME_BLOCK", "START", None, False)),
-        (2, SplineRange("CONST_VEL", "START", 0.0, False)),
-    )
-    with pytest.raises(Fault, match="exclude each other"):
-        run(driver, **line(*ranges))
-
-
-@pytest.mark.parametrize(
-    ("kind", "part", "number"), [("SPLINE", "SPTP", 2359), ("PTP_SPLINE", "SLIN", 2380)]
-)
-def test_segments_of_the_other_type(driver: Driver, kind: str, part: str, number: int) -> None:
-    """A block has segments of its own type only [SPL-04]."""
-    with pytest.raises(Fault) as caught:
-        run(driver, (SplinePart(part, at(450, 0)),), kind=kind)
     assert number == caught.value.number

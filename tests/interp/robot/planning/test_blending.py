@@ -87,15 +87,6 @@ def test_the_point_is_not_passed(driver: Driver, velocity: float, away: float) -
     )
 
 
-def test_not_more_than_half_of_either_path(driver: Driver) -> None:
-    """A zone larger than half of a path is reduced to it, on each side by itself [BLD-07]."""
-    corner(driver, ("C_DIS",), cdis=800.0)
-    points = corners(blend(driver))
-    assert np.allclose([(500, 50, 600), (500, -100, 600), (450, -100, 600)], points, atol=1e-9)
-    driver.play()
-    driver.check_limits()
-
-
 def test_events_of_a_blend(driver: Driver) -> None:
     """The first motion ends and the second begins at the apex, between start and end."""
     corner(driver, ("C_DIS",), cdis=40.0)
@@ -152,38 +143,6 @@ def test_ptp_blends_in_the_space_of_axes(driver: Driver) -> None:
     assert (np.diff(axes, axis=0) > -1e-12).all()
     driver.play()
     driver.check_limits()
-
-
-@pytest.mark.parametrize(("first", "second"), [(100, 50), (50, 100), (20, 20)])
-def test_cptp_counts_for_each_side(driver: Driver, first: float, second: float) -> None:
-    """The first motion's CPTP says where the blend starts, the second's where it ends [BLD-04]."""
-    driver.move("PTP", {"A1": 160.0}, criteria=("C_PTP",), approximation=Approximation(cptp=first))
-    driver.move("PTP", {"A1": -20.0}, approximation=Approximation(cptp=second))
-    curve = blend(driver).curve
-    assert isinstance(curve, BlendedAxes)
-    wanted = (min(first * 0.9, 80.0), min(second * 0.9, 90.0))
-    assert wanted == pytest.approx(
-        (curve.transition.before * 160.0, curve.transition.after * 180.0)
-    )
-
-
-def test_cdis_of_a_ptp_counts_for_both_sides(driver: Driver) -> None:
-    """With C_DIS it is the way of the tool, and the first motion's value for both [BLD-05]."""
-    driver.move("PTP", FIRST)
-    driver.play()
-    driver.move("PTP", CORNER, criteria=("C_DIS",), approximation=Approximation(cdis=25.0))
-    driver.move("PTP", LAST, approximation=Approximation(cdis=1.0))
-    section = blend(driver)
-    assert isinstance(section.curve, BlendedAxes)
-    one, other = section.curve.first, section.curve.second
-    points = np.array([CORNER[name] for name in "XYZ"])
-    for curve, u in (
-        (one, 1.0 - section.curve.transition.before),
-        (other, section.curve.transition.after),
-    ):
-        (axes,) = curve.axes(np.array([u]))
-        place = curve.arm.forward(axes[:6])[:3, 3]
-        assert 25.0 == pytest.approx(float(np.linalg.norm(place - points)), rel=0.02)
 
 
 @pytest.mark.parametrize("kinds", [("PTP", "LIN"), ("LIN", "PTP")])
@@ -254,19 +213,6 @@ def test_line_into_circle(driver: Driver, others: dict[str, str]) -> None:
     driver.check_limits()
 
 
-def test_c_vel_keeps_the_speed(driver: Driver) -> None:
-    """C_VEL goes round a corner as fast as along the lines, where the arm can [BLD-12]."""
-    near = Approximation(cvel=100.0)
-    driver.move("PTP", FIRST)
-    driver.play()
-    for target, criteria in ((CORNER, ("C_VEL",)), (LAST, ())):
-        settings: dict[str, Any] = {"velocity": 0.2, "acceleration": 0.5, "approximation": near}
-        driver.move("LIN", target, criteria=criteria, **settings)
-    begin, end = ahead(driver)
-    speeds = [driver.arm.speed(time) for time in range(begin, end, 2000)]
-    assert [0.2] * len(speeds) == pytest.approx(speeds, rel=0.01)
-
-
 @pytest.mark.parametrize("way", [(-49, -50, -14), (46, -39, 34), (43, 25, 49), (-21, -28, 17)])
 def test_c_vel_where_the_hand_turns_on_a_line(driver: Driver, way: tuple[int, int, int]) -> None:
     """Between lines in one direction too, whatever rounding makes of the angle between them."""
@@ -279,13 +225,6 @@ def test_c_vel_where_the_hand_turns_on_a_line(driver: Driver, way: tuple[int, in
         driver.move("LIN", target, criteria=criteria, velocity=0.3, approximation=near)
     driver.play()
     assert isinstance(blend(driver).curve.pose_path, Blend)
-
-
-def test_c_dis_slows_down(driver: Driver) -> None:
-    """C_DIS does not promise that, and takes less acceleration [BLD-12]."""
-    corner(driver, ("C_DIS",), 0.2, cdis=40.0)
-    begin, end = ahead(driver)
-    assert 0.15 > driver.arm.speed((begin + end) // 2)
 
 
 def test_points_on_a_line_cost_nothing(driver: Driver) -> None:
@@ -302,14 +241,6 @@ def test_points_on_a_line_cost_nothing(driver: Driver) -> None:
         driver.play()
         durations.append(driver.now - begin)
     assert durations[0] == pytest.approx(durations[1], rel=1e-3)
-
-
-def test_the_path_does_not_depend_on_the_speed(driver: Driver) -> None:
-    """The blend is where it is under any override."""
-    corner(driver, ("C_DIS",), cdis=40.0)
-    whole = blend(driver).curve.axes(np.linspace(0, 1, 20))
-    driver.arm.override(driver.now, 10.0)
-    assert np.array_equal(whole, blend(driver).curve.axes(np.linspace(0, 1, 20)))
 
 
 def test_a_motion_that_comes_too_late(driver: Driver) -> None:
@@ -346,25 +277,6 @@ def test_appended_on_the_way(driver: Driver) -> None:
     driver.play()
     assert driver.time("blend_apex", 2) < driver.time("blend_end", 3)
     driver.check_limits()
-
-
-@pytest.mark.parametrize(("criteria", "cdis"), [((), 40.0), (("C_DIS",), 0.0)])
-def test_no_blend_is_wanted(driver: Driver, criteria: tuple[str, ...], cdis: float) -> None:
-    """Without a criterion, or with a zone of nothing, an exact stop is what was asked for."""
-    corner(driver, criteria, cdis=cdis)
-    driver.play()
-    ends = [e for e in driver.events if e.kind == "motion_end" and e.motion == 2]
-    assert [False] == [e.is_exact_unwanted for e in ends]
-    assert tuple(CORNER[name] for name in "XYZ") == pytest.approx(driver.tool(ends[0].time))
-
-
-def test_identical_points_prevent_blending(driver: Driver) -> None:
-    """A motion of length zero is not blended into [BLD-14]."""
-    corner(driver, (), cdis=40.0)
-    driver.move("LIN", {}, criteria=("C_DIS",), approximation=Approximation(cdis=10.0))
-    driver.move("LIN", FIRST)
-    driver.play()
-    assert "blend_start" not in {event.kind for event in driver.events}
 
 
 def test_blends_that_use_up_a_motion(driver: Driver) -> None:
