@@ -78,6 +78,10 @@ def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
             return _leave_quietly()
         return _refuse(_about(error))
     except Exception as error:  # a defect of ours, and still one line
+        from concurrent.futures import BrokenExecutor  # only here, as it takes 3 ms
+
+        if isinstance(error, BrokenExecutor):
+            return _refuse("a process of krl was ended from outside; the memory may have run out")
         if os.environ.get("KRL_TRACEBACK"):
             raise
         return _refuse(

@@ -78,10 +78,13 @@ class Typos:
                 for shorter in _shortened(key):
                     self._keys.setdefault(shorter, []).append(key)
 
-    def meant(self, name: str, *, has_slipped: bool = False) -> tuple[str, ...]:
+    def meant(
+        self, name: str, *, has_slipped: bool = False, has_plurals: bool = True
+    ) -> tuple[str, ...]:
         """Return the names of which ``name`` may be a misspelling, in alphabetical order.
 
-        ``has_slipped`` says that no other name has its `small_prefix`.
+        ``has_slipped`` says that no other name has its `small_prefix`, ``has_plurals`` that a name
+        with an S more may be another name: PART and PARTS, as data are called.
         """
         wrong = name.upper()
         if not self._shortest <= len(wrong) + 1 <= _LONGEST:
@@ -90,7 +93,7 @@ class Typos:
             right
             for shorter in _shortened(wrong)
             for right in (*self._keys.get(shorter, ()), *self._known.get(shorter, ()))
-            if right != wrong and _is_slip(name, *self._names[right], has_slipped)
+            if right != wrong and _is_slip(name, *self._names[right], has_slipped, has_plurals)
         }
         return tuple(self._names[right][0] for right in sorted(near))
 
@@ -107,7 +110,9 @@ def small_prefix(name: str) -> str:
     return found[0] if found else ""
 
 
-def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> bool:
+def _is_slip(
+    misspelt: str, name: str, series: Series, has_slipped: bool, has_plurals: bool
+) -> bool:
     """Return whether two names with a common key are one slip apart and not in a series."""
     has_slipped = has_slipped and bool(small_prefix(name))
     wrong, right = misspelt.upper(), name.upper()
@@ -127,7 +132,8 @@ def _is_slip(misspelt: str, name: str, series: Series, has_slipped: bool) -> boo
             and {letter} != set(_word(longer, start))
         ):
             return True  # a letter was doubled, or one of two equal letters lost
-        if longer is wrong and letter == "S" and start == len(shorter) and name[0] != "$":
+        is_plural = longer is wrong and letter == "S" and start == len(shorter)
+        if has_plurals and is_plural and name[0] != "$":
             return False  # singular and plural
         if start == 0:
             return has_slipped or (longer is right and _loses_its_first(name, series))

@@ -70,7 +70,8 @@ def _interrupts_held() -> Iterator[None]:
 def _begin(prepare: Callable[..., object] | None, arguments: tuple[object, ...]) -> None:
     """Initialise a process of a pool."""
     # Ctrl-C reaches all processes of a terminal; the parent reports it
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as a script runs `krl … &`
+        signal.signal(signal.SIGINT, lambda *_: os._exit(130))
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,10 @@ def test_status_is_what_the_command_returns(result: int | None, status: int) -> 
         (PermissionError(), "krl: PermissionError"),
         (errors.InputError("two\n  lines\x1b[2J"), "krl: two lines\\x1b[2J"),
         (errors.InputError("x" * 9_000), f"krl: {'x' * 2_000} …"),
+        (
+            BrokenProcessPool("terminated abruptly"),
+            "krl: a process of krl was ended from outside; the memory may have run out",
+        ),
     ],
 )
 def test_expected_error_is_one_line(

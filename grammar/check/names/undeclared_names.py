@@ -265,7 +265,7 @@ def loose_constants(context: Context) -> Iterator[LooseConstant]:
             continue
         to = context.enumerations.get(first)
         known = _system_constants().values() if to is None else to.constants
-        near = _constant_typos(tuple(known)).meant(first.name.text)
+        near = _constant_typos(tuple(known)).meant(first.name.text, has_plurals=False)
         yield LooseConstant(first.name.text, context.source.path, region, len(some), near)
 
 
@@ -277,7 +277,7 @@ def _parts(context: Context) -> Iterator[UnresolvedName]:
             mark, known = "#", type_.constants
         else:
             mark, known = ".", tuple(one.name for one in type_.members)
-        near = Typos(known, 3, series=Series.DIGITS).meant(name)
+        near = Typos(known, 3, series=Series.DIGITS).meant(name, has_plurals=False)
         yield UnresolvedName(
             Space.TYPE,
             f"{type_.name}{mark}{name}",
@@ -317,7 +317,7 @@ def _members(context: Context) -> Iterator[UnresolvedName]:
     for places, known in ((unknown.values(), None), (open_, _open_components())):
         for some in filter(None, places):
             first = some[0]
-            near = known.meant(first.text) if known else ()
+            near = known.meant(first.text, has_plurals=False) if known else ()
             region = Region.of(context.source, first.span)
             yield UnresolvedName(None, first.text, path, region, len(some), False, near)
 
@@ -408,9 +408,11 @@ def _near(
         return meant
     small, everywhere = small_prefix(name), context.project.typos[space]
     has_slipped = small not in prefixes and small not in everywhere.prefixes
-    return own(space).meant(name, has_slipped=has_slipped) or everywhere.meant(
-        name, has_slipped=has_slipped
-    )
+    has_plurals = space is Space.VALUE
+    for known in (own(space), everywhere):
+        if meant := known.meant(name, has_slipped=has_slipped, has_plurals=has_plurals):
+            return meant
+    return ()
 
 
 def _prefixes(context: Context) -> frozenset[str]:

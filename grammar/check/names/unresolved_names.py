@@ -208,7 +208,7 @@ def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[
         (space, name): some[0].near
         or tuple(
             near
-            for near in seen[space].meant(some[0].name)
+            for near in seen[space].meant(some[0].name, has_plurals=space is Space.VALUE)
             if _is_usual(ranks[space, near.upper()], ranks[space, name], near, name, spelling)
         )
         for (space, name), some in uses.items()
@@ -259,7 +259,7 @@ def of_constants(
             continue
         near = some[0].near or tuple(
             one
-            for one in typos.meant(some[0].name)
+            for one in typos.meant(some[0].name, has_plurals=False)
             if one.upper() in names or counts[one.upper()] > counts[key]
         )
         for one in some if 0 < len(near) < _SERIES else ():

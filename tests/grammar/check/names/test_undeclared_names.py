@@ -408,6 +408,23 @@ END"""
     agrees({"cell.src": f"DEF CELL()\n{told}\nEND"}, is_complete=None)
 
 
+def test_an_s_too_many(agrees: Agrees) -> None:
+    """It is a slip in all names but those of data, of which there may be one and several."""
+    cell = """DEF CELL()
+  DECL STATIONS TODO ;> KRL103?
+  DECL STATION DONE
+  FETCHS() ;> KRL102?
+  FETCH()
+  GRIPPED = 1
+  GRIPPEDS = 1 ;> KRL701-
+  MOVE_TO(#PLACES) ;> KSS2296? KRL701-
+END
+DEF FETCH()
+END"""
+    data = DATA.replace("DECL", "ENUM STATION PICK, PLACE\nDECL", 1)
+    agrees({"cell.dat": data, "cell.src": cell}, is_complete=None)
+
+
 def test_each_list_has_its_own_slips(agrees: Agrees) -> None:
     """What one list declares is not what other programs call alike."""
     files: dict[str, str] = {}
