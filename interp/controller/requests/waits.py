@@ -16,6 +16,7 @@ from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import (
     BrakeArm,
     Confirm,
+    Continue,
     Halt,
     Invoke,
     Poll,
@@ -33,7 +34,7 @@ from interp.values.json_form import to_json
 IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
 #: Requests that change nothing, and those that always do something.
-_LOOKS: Final = (Read, Slice)
+_LOOKS: Final = (Read, Slice, Continue)
 _ACTS: Final = (Invoke, Halt, Confirm, BrakeArm, Resume)
 
 

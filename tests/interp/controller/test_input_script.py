@@ -173,6 +173,7 @@ def test_waits_are_fulfilled(go: Go, condition: str, changes: list[tuple[int, bo
         ("WHILE NOT $IN[5]\nWAIT SEC 0.4\nENDWHILE\n", 2.448),
         ("REPEAT\n$OUT[3]=FALSE\n$OV_PRO=100\nUNTIL $IN[5]\n", 2.0),
         (f"LOOP\n{HOME}IF $IN[5] THEN\nEXIT\nENDIF\nENDLOOP\n", 2.0),
+        ("REPEAT\nCONTINUE\nUNTIL $IN[5]\n", 2.0),
         ("WAIT FOR NOT $IN[7]\nWHILE NOT $IN[5]\nENDWHILE\n", 2.0),
         ("WAIT FOR $IN[7]\nWHILE NOT $IN[5] OR NOT $IN[7]\nENDWHILE\n", 3.06),
         ("WAIT FOR look ( )\n", 1.0),
@@ -188,6 +189,16 @@ def test_loops_that_look_at_inputs_wait_too(body: str, seconds: float) -> None:
     assert "end" == first.outcome.ending
     assert seconds == pytest.approx(first.outcome.time / 1e6, abs=0.05)
     assert all(first.events == other.events for other in others)
+
+
+@pytest.mark.parametrize("body", ["CONTINUE\n", "$OUT[3]=FALSE\n", "$BASE=$NULLFRAME\n"])
+def test_loops_that_change_nothing_are_given_few_requests(body: str) -> None:
+    """From the second second on five in each cycle, as those that only read variables."""
+    text = f"DEF main ( )\nREPEAT\n{body}UNTIL $IN[5]\nEND\n"
+    program = load([Source(text, "main.src")], "main.src")
+    run = run_program(program, RunSetup(executor=EXECUTORS[-1], until=2_000_000))
+    rounds = sum(one.kind == "branch" and one.time > 1_100_000 for one in run.events)
+    assert 75 <= rounds <= 5 * 76
 
 
 def test_loop_that_does_something_is_no_wait(go: Go) -> None:
