@@ -8,6 +8,12 @@ from grammar.generation import control_flow, motions, statements
 from grammar.generation.choices import Choices, Weighted
 from grammar.generation.closed.formatted_texts import format_text, scan_text
 from grammar.generation.closed.types import COLOUR, MODE, POINT, RECORD
+from grammar.generation.closed.unstated_effects import (
+    count_beyond_range,
+    failing_block,
+    order_of_evaluation,
+    own_text,
+)
 from grammar.generation.closed.values import assigned_value
 from grammar.generation.code import Code, Spelling, StatementRule, Style
 from grammar.generation.expressions import (
@@ -249,6 +255,10 @@ CLOSED: Final = Style(
         (3, line("ANIN OFF $ANIN[<1-4>]", "ANOUT OFF $ANOUT[<1-4>]", "DIGIN OFF $DIGIN1")),
         (12, format_text),
         (8, scan_text),
+        (6, own_text),
+        (6, order_of_evaluation),
+        (4, count_beyond_range),
+        (6, failing_block),
         (20, motions.motion),
         (14, _course),
         (8, motions.spline_motion),

@@ -1,0 +1,132 @@
+"""Statements whose effect no rule of KRL states: executors must agree on them all the same."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.generation.closed.types import STATE
+from grammar.generation.code import Code
+from grammar.generation.expressions import array, constant, read, target
+from grammar.generation.literals import TEXT
+from grammar.generation.statements import assignment
+from grammar.semantics.types import INT
+
+#: First value, last value and step of a FOR whose counter leaves the range of INT.
+_BEYOND: Final = (
+    ("2147483646", "2147483647", ""),
+    ("2147483645", "2147483647", " STEP 3"),
+    ("-2147483647", "-2147483647-1", " STEP -1"),
+    ("-2147483646", "-2147483647-1", " STEP -5"),
+)
+#: Lines that begin and end a block, with ``?`` where an expression fails.
+_FAILING: Final = (
+    ("IF ?==1 THEN", "ENDIF"),
+    ("SWITCH ?\nCASE 0,1", "DEFAULT\nENDSWITCH"),
+    ("SWITCH 1\nCASE 2,1", "ENDSWITCH"),
+    ("FOR %=1 TO ?", "ENDFOR"),
+    ("FOR %=? TO 2", "ENDFOR"),
+    ("FOR %=1 TO 2 STEP ?", "ENDFOR"),
+    ("WHILE ?>0", "ENDWHILE"),
+    ("REPEAT", "UNTIL ?>0"),
+)
+
+
+def order_of_evaluation(code: Code) -> bool:
+    """A sum, an index or arguments whose parts change what the others read."""
+    place, text = target(code, INT), array(code, TEXT)
+    if place is None or not text:
+        return False
+    choices = code.choices
+    parts = [f"STRLEN({text})", f"STRADD({text}, {constant(code, TEXT)})", f"STRLEN({text})"]
+    changing = [
+        one
+        for one in code.scope.callable(INT, code.left() - 2)
+        if len(one.parameters) == 1 and one.parameters[0].is_out and one.parameters[0].type == INT
+    ]
+    if changing:
+        code.spend(changing[0].cost)
+        parts += [code.spelling.call(changing[0].name, [place]), place]
+    drawn = [choices.pick(parts) for _ in range(choices.between(2, 3))]
+    code.spend()
+    match choices.below(3):
+        case 0:
+            return code.set(place, code.spelling.gap.join("+" + one for one in drawn)[1:])
+        case 1:
+            return code.set(place, f"STRFIND({drawn[0]}, {text}, {text}, #CASE_SENS)-{drawn[1]}")
+    row = read(code, INT)
+    if row is None or "[" not in row:
+        return code.set(place, f"({drawn[0]}) B_EXOR ({drawn[1]})")
+    name, _, rest = row.partition("[")
+    _, *others = rest.partition("]")[0].split(",")
+    indices = [f"(({one}) B_AND 1)+1" for one in drawn[: len(others) + 1]]
+    indices += others[len(indices) - 1 :]
+    return code.set(f"{name}[{','.join(indices)}]{rest.partition(']')[2]}", drawn[-1])
+
+
+def count_beyond_range(code: Code) -> bool:
+    """FOR to the greatest or least INT, left after a few passes."""
+    used = {one.name for one in code.counters}
+    spare = [name for name in code.passes if name not in used]
+    if not code.risk or len(spare) < 2 or code.left() < 24:
+        return False
+    counter, passes = spare[0], spare[1]
+    first, last, step = code.choices.pick(_BEYOND)
+    if code.choices.chance(30):
+        code.line("ON_ERROR_PROCEED")
+    code.spend(22)
+    code.set(passes, "0")
+    with code.block(f"FOR {counter}={first} TO {last}{step}", "ENDFOR"):
+        code.set(passes, f"{passes}+1")
+        code.guarded(f"{passes}>4", "EXIT")
+        if code.choices.chance(20):
+            code.line("ON_ERROR_PROCEED")
+    place = target(code, INT)
+    return place is None or code.set(place, f"{counter} B_EXOR {passes}")
+
+
+def failing_block(code: Code) -> bool:
+    """ON_ERROR_PROCEED before a block whose condition, selector or limit fails."""
+    place = target(code, INT)
+    used = {one.name for one in code.counters}
+    spare = [name for name in code.passes if name not in used]
+    if not code.risk or place is None or not spare or code.left() < 24:
+        return False
+    choices, counter = code.choices, spare[0]
+    opener, closer = choices.pick(_FAILING)
+    failing = choices.pick((f"1/(0*{counter})", f"2147483647+1+0*{counter}", "SQRT(0.5-1)"))
+    if "SWITCH" in opener:  # it needs an INT
+        failing = f"1/(0*{counter})"
+    code.spend(20)
+    code.line("ON_ERROR_PROCEED")
+    for line in opener.split("\n"):
+        code.line(line.replace("?", failing).replace("%", counter))
+    with code.indented():
+        code.set(counter, f"{counter}+1") if "%" not in opener else assignment(code)
+        if choices.chance(50):
+            code.set(place, "$ERR.NUMBER")
+    for line in closer.split("\n"):
+        code.line(line.replace("?", failing))
+    return code.set(place, f"$ERR.NUMBER+{counter}")
+
+
+def own_text(code: Code) -> bool:
+    """A text that is read and written by the same statement."""
+    text, state, offset = array(code, TEXT), target(code, STATE), target(code, INT)
+    if not text or state is None or offset is None:
+        return False
+    code.spend(3)
+    pick = code.choices.pick
+    code.set(offset, pick(("0", "1", "3", f"STRLEN({text})")))
+    other = pick((text, text, f'"<", {text}'))
+    form = pick(("%s", "%s%s", "-%5s", "%.2s|"))
+    return code.line(
+        pick(
+            (
+                f'SWRITE({text}, {state}, {offset}, "{form}", {other})',
+                f'SREAD({text}, {state}, {offset}, "{pick(("%s", "%3s"))}", {text})',
+                f"{offset}=STRADD({text}, {text})+STRLEN({text})",
+                f"$FLAG[1]=STRCOPY({text}, {text})",
+                f"{offset}=STRADD({text}, {text})",
+            )
+        )
+    )
