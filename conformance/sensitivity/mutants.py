@@ -83,9 +83,8 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.controller.motion.motions._load",
             *(
                 f"interp.controller.requests.predefined_routines.PredefinedRoutines.{name}"
-                for name in ("_fine", "_no", "_no_message", "_unsupported", "_zero")
+                for name in ("_no", "_receive_mailbox", "_sync", "_system_state", "_unsupported")
             ),
-            "interp.controller.requests.waits.Waits.idle_time",
             "interp.controller.state.profile",
             "interp.controller.inputs.script_player",
             "interp.controller.state.state.ControllerState.skip",
@@ -115,6 +114,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                 for name in (
                     *("link", "run_out", "apply", "_act", "_end_path", "_first_deadlocked"),
                     *("_check", "_check_link", "_settle", "_cancel_deadlocked", "_drop_behind"),
+                    "_drop_start_link",
                 )
             ),
             "interp.robot.kinematics.*._check_*",

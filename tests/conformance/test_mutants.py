@@ -1,7 +1,9 @@
 """Mutants: which changes there are, that they are put in place and taken out, who notices them."""
 
 import ast
+import fnmatch
 import re
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
@@ -21,6 +23,7 @@ from conformance.sensitivity.mutant_trial import (
     try_mutants,
 )
 from conformance.sensitivity.mutants import (
+    PACKAGES,
     Mutant,
     all_mutants,
     around,
@@ -188,6 +191,30 @@ def test_modules_decide_semantics() -> None:
     left = {one for at, one in enumerate(functions) if f"{module}:{at}" not in names}
     of_debuggers = ("ask_at", "break_at", "frames", "look", "put", "select")
     assert {f"TreeExecutor.{one}" for one in of_debuggers} == left
+
+
+def _functions(root: Path, path: Path) -> Iterator[str]:
+    """Yield all functions and classes of a file with their modules, and the module itself."""
+    module = ".".join(path.with_suffix("").parts)
+    yield module
+    left: list[tuple[str, ast.AST]] = [
+        (module, ast.parse((root / path).read_text(encoding="utf-8")))
+    ]
+    while left:
+        around, node = left.pop()
+        for one in ast.iter_child_nodes(node):
+            if isinstance(one, ast.FunctionDef | ast.ClassDef):
+                yield f"{around}.{one.name}"
+                left.append((f"{around}.{one.name}", one))
+
+
+def test_what_is_left_out_exists() -> None:
+    """A function that has another name now is not left out by its old one."""
+    root = Path(str(import_module("interp").__file__)).parents[1]
+    files = (path.relative_to(root) for path in (root / "interp").rglob("*.py"))
+    there = [name for path in files for name in _functions(root, path)]
+    left = [one for _, names in PACKAGES.values() for one in names if one != "*.__eq__"]
+    assert [] == [one for one in left if not fnmatch.filter(there, one)]
 
 
 def test_lines_that_a_case_runs() -> None:
