@@ -439,7 +439,7 @@ def test_operators_of_one_operand(operator: str, operand: Type, result: Type | N
 
 def test_what_is_no_operator_is_a_mistake_of_ours() -> None:
     """An operator that KRL does not have is refused."""
-    with pytest.raises(ValueError, match="two operands"):
+    with pytest.raises(ValueError, match="not a binary operator"):
         binary("MOD", INT, INT)
     with pytest.raises(ValueError, match="one operand"):
         unary("*", INT)
