@@ -52,6 +52,10 @@ def atomic_path(target: Path) -> Iterator[Path]:
         if target.exists() and (mode := target.stat().st_mode) != part.stat().st_mode:
             part.chmod(stat.S_IMODE(mode))
         part.replace(target)
+    except OSError as error:
+        if error.filename == str(part):  # it cannot be created, as in a folder that is read-only
+            error.filename = str(target)
+        raise
     finally:
         with contextlib.suppress(OSError):  # it was moved, or never created
             part.unlink()

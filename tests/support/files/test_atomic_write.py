@@ -48,6 +48,14 @@ def test_permissions_stay(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes in folders here")
+def test_an_error_names_the_file_that_was_asked_for(tmp_path: Path) -> None:
+    """Where nothing can be created, the name of the part beside the target is not shown."""
+    target = tmp_path / ("x" * 250)  # the name of the part is too long for any system
+    with pytest.raises(OSError, match="too long") as raised:
+        write_atomic(target, "new")
+    assert str(target) == raised.value.filename
+
+
 def test_a_pipe_is_written_to_and_stays(tmp_path: Path) -> None:
     """What is no file, as a pipe, gets the content and is not replaced by a file."""
     pipe = tmp_path / "pipe"
