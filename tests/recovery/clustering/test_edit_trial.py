@@ -286,6 +286,7 @@ def test_large_recognisers_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> Non
     edits = [[AddAlternative("simpleStatement", " ".join(["INTEGER"] * n))] for n in range(1, 4)]
     first = trial.wider(edits[0])
     assert first is not None
+    assert first.start is not None, "one that is used has configurations"
     assert first is trial.wider(edits[0])
     assert trial.wider(edits[1]) is not None
     assert first is trial.wider(edits[0])
