@@ -67,13 +67,15 @@ class ProgramTestFile(pytest.File):
         return read_tests(self.path)
 
     def collect(self) -> Iterator[ProgramTestItem]:
-        """Yield the items; raises `pytest.Collector.CollectError` if the file is invalid."""
-        from krl.errors import one_line
+        """Yield the items; raises `pytest.Collector.CollectError` if that is impossible."""
+        from krl.errors import InputError, one_line
+        from krl.extras import ARM, need
         from krl.program_tests.test_files import TestFileError
 
         try:
+            need(*ARM)
             tests = self.tests
-        except TestFileError as error:
+        except (InputError, TestFileError) as error:
             raise self.CollectError(one_line(str(error))) from error
         for test in tests:
             yield ProgramTestItem.from_parent(self, name=one_line(test.name), test=test)

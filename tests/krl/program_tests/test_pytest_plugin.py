@@ -45,6 +45,19 @@ def test_the_cell_of_the_tutorial_passes_as_documented(pytester: pytest.Pytester
 
 
 @pytest.mark.usefixtures("no_other_plugins")
+def test_without_the_packages_of_the_arm_one_line_names_the_extra(
+    pytester: pytest.Pytester,
+) -> None:
+    """The plug-in comes with every installation, and not all have the arm."""
+    Path("test_work.toml").write_text("[[test]]\nname = 'x'\n", encoding="utf-8")
+    pytester.makeconftest("import krl.extras\nkrl.extras.find_spec = lambda name: None\n")
+    result = pytester.runpytest_subprocess(*OPTIONS)
+    result.assert_outcomes(errors=1)
+    result.stdout.re_match_lines([r"this needs scipy, which is not installed: .*\[arm\]"])
+    assert "ModuleNotFoundError" not in result.stdout.str()
+
+
+@pytest.mark.usefixtures("no_other_plugins")
 def test_failures_and_errors_have_no_traceback(pytester: pytest.Pytester) -> None:
     """A failure says what was expected and seen, a file that cannot be used its one line."""
     Path("work.src").write_text("DEF work()\n$OUT[1]=TRUE\nEND\n", encoding="utf-8")
