@@ -30,8 +30,8 @@ _OPERATORS = "disjunction exclusion conjunction factor"
 class Words:
     """The words of each colour, sorted, and the patterns of some tokens by name.
 
-    ``contextual`` are keywords that can also be names: before ``=``, ``[``, ``.`` or ``(``, and
-    after a dot.
+    ``contextual`` are keywords that can also be names: before ``[``, ``.`` or ``(``, after a dot,
+    and before ``=`` where a statement, a declaration or a loop assigns to them.
     """
 
     keywords: tuple[str, ...]
@@ -42,6 +42,12 @@ class Words:
     operators: tuple[str, ...]
     functions: tuple[str, ...]
     patterns: dict[str, str]
+
+    @property
+    def behind_statement(self) -> str:
+        """A lookbehind that tells ``DELAY=`` of a TRIGGER from an assignment to ``DELAY``."""
+        assigned = "".join(rf"(?<!\b{word}[ \t])" for word in (*self.types, "DO", "FOR"))
+        return rf"(?<=[\w)\]][ \t]){assigned}"
 
 
 @cache
@@ -112,6 +118,10 @@ def _textmate() -> str:
         {"name": "constant.language.krl", "match": one_of(known.constants)},
         {"name": "keyword.operator.word.krl", "match": one_of(known.operators)},
         {"name": "keyword.control.krl", "match": one_of(known.keywords)},
+        {
+            "name": "keyword.other.krl",
+            "match": rf"(?i){known.behind_statement}(?:{'|'.join(known.contextual)})(?=\s*=[^=])",
+        },
         {
             "name": "keyword.other.krl",
             "match": one_of(known.contextual) + r"(?!\s*(?:[\[.(]|=[^=]))",

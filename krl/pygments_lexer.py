@@ -14,8 +14,11 @@ def _rules() -> list[Any]:
     known = words()
     pattern = known.patterns
 
-    def rule(listed: tuple[str, ...], type_: Any, after: str = "") -> tuple[Any, Any]:
-        return any_of(listed, prefix=r"(?<![\w$.])", suffix=rf"(?![\w$]){after}"), type_
+    def rule(
+        listed: tuple[str, ...], type_: Any, after: str = "", before: str = ""
+    ) -> tuple[Any, Any]:
+        prefix, suffix = rf"(?<![\w$.]){before}", rf"(?![\w$]){after}"
+        return any_of(listed, prefix=prefix, suffix=suffix), type_
 
     return [
         (rf"^{pattern['HEADER']}", token.Comment.Preproc),
@@ -31,6 +34,7 @@ def _rules() -> list[Any]:
         rule(known.constants, token.Keyword.Constant),
         rule(known.operators, token.Operator.Word),
         rule(known.motions + known.keywords, token.Keyword),
+        rule(known.contextual, token.Keyword, r"(?=\s*=[^=])", known.behind_statement),
         rule(known.contextual, token.Keyword, r"(?!\s*(?:[\[.(]|=[^=]))"),
         rule(known.functions, token.Name.Builtin, r"(?=\s*\()"),
         (rf"{pattern['NAME']}(?=\s*\()", token.Name.Function),

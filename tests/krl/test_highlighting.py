@@ -55,10 +55,25 @@ def test_no_text_stops_the_colours(text: str) -> None:
     assert text == "".join(part for _, part in found)
 
 
-def test_a_word_that_can_be_a_name_is_one_where_it_is() -> None:
-    """PART is a name before `=`, and SEC a keyword behind WAIT."""
-    found = {part: kind for kind, part in KrlLexer().get_tokens("PART=1\nWAIT SEC 0.5\n")}
-    assert (token.Name, token.Keyword) == (found["PART"], found["SEC"])
+@pytest.mark.parametrize(
+    ("line", "word", "kind"),
+    [
+        ("PART=1", "PART", token.Name),
+        ("  DELAY = 1", "DELAY", token.Name),
+        ("DECL INT DELAY=1", "DELAY", token.Name),
+        ("FOR STEP=1 TO 3", "STEP", token.Name),
+        ("TRIGGER WHEN DISTANCE=0 DELAY=1 DO PART=TRUE", "PART", token.Name),
+        ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO=-1", "PATH", token.Keyword),
+        ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO=-1", "DELAY", token.Keyword),
+        ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO = -1", "PRIO", token.Keyword),
+        ("TIME_BLOCK PART=30", "PART", token.Keyword),
+        ("WAIT SEC 0.5", "SEC", token.Keyword),
+    ],
+)
+def test_a_word_that_can_be_a_name_is_one_where_it_is(line: str, word: str, kind: object) -> None:
+    """It is one where a value is assigned to it, and a keyword as an argument of a statement."""
+    found = {part: kind for kind, part in KrlLexer().get_tokens(f"END\n{line}\n")}
+    assert kind == found[word]
 
 
 @pytest.mark.parametrize("name", SNIPPETS)
