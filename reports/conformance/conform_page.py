@@ -25,6 +25,7 @@ _WITHOUT: Json = {
     "findings": [],
     "divergence": None,
     "reason": "",
+    "events_total": 0,
 }
 _SCRIPTS = (
     "vendor/uPlot.iife.min",
@@ -113,13 +114,13 @@ def _case(case: Record, *, has_details: bool) -> Json:
 
 
 def _result(result: Record) -> Json:
+    """Return a result as the page's script reads it; the script completes what is empty."""
     path = nested(result, "path")
-    return {
+    whole = {
         "executor": shown(text(result, "executor"), 40),
         "robot": shown(text(result, "robot"), 40),
         "verdict": shown(text(result, "verdict"), 20),
         "reason": shown(text(result, "reason"), 600),
-        "seconds": number(result, "seconds"),
         "ending": shown(text(result, "ending"), 60),
         "checks": [
             {name: plain(check.get(name)) for name in _CHECK} for check in records(result, "checks")
@@ -134,6 +135,7 @@ def _result(result: Record) -> Json:
             if name in path
         },
     }
+    return {name: value for name, value in whole.items() if value}
 
 
 def _rule(rule: Record) -> Json:

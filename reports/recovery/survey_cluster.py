@@ -26,25 +26,27 @@ Json = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Detail:
-    """The limits of a cluster: examples, context lines, files, characters per line, words."""
+    """The limits of a cluster: examples, context lines, files, characters per line, words.
+
+    ``proposals`` limits their number, ``text`` the characters of a diff and of the reproducer.
+    """
 
     examples: int
     context: int
     files: int
     line: int
     words: int
+    proposals: int = 12
+    text: int = 4000
 
 
 # The most detailed first; the page uses the first one that fits its maximum size.
 DETAILS = (
     Detail(examples=6, context=11, files=400, line=1000, words=400),
     Detail(examples=3, context=7, files=100, line=400, words=200),
-    Detail(examples=1, context=5, files=20, line=200, words=60),
-    Detail(examples=1, context=1, files=5, line=120, words=20),
+    Detail(examples=1, context=5, files=20, line=200, words=60, proposals=6, text=2000),
+    Detail(examples=1, context=1, files=5, line=120, words=20, proposals=2, text=400),
 )
-_MAX_PROPOSALS = 12
-_MAX_DIFF = 4000
-_MAX_REPRODUCER = 4000
 
 
 @dataclass(slots=True)
@@ -129,8 +131,10 @@ def _cluster(cluster: Record, strings: Strings, detail: Detail) -> Json:
         "originNames": strings.numbers(clip(text(o, "origin"), 200) for o in by_origin),
         "byOrigin": _files_by_origin(by_origin, strings, detail),
         "filesMore": count(cluster, "more"),
-        "reproducer": _reproducer(cluster),
-        "proposals": [_proposal(p) for p in records(cluster, "proposals")[:_MAX_PROPOSALS]],
+        "reproducer": _reproducer(cluster, detail),
+        "proposals": [
+            _proposal(one, detail) for one in records(cluster, "proposals")[: detail.proposals]
+        ],
     }
 
 
@@ -189,21 +193,21 @@ def _files_by_origin(by_origin: list[Record], strings: Strings, detail: Detail) 
     return result
 
 
-def _reproducer(cluster: Record) -> Json | None:
+def _reproducer(cluster: Record, detail: Detail) -> Json | None:
     given = cluster.get("reproducer")
     whole: Record = {"text": given} if isinstance(given, str) else nested(cluster, "reproducer")
     source = text(whole, "text")
     if not source:
         return None
     return {
-        "text": source[:_MAX_REPRODUCER],
+        "text": source[: detail.text],
         "line": count(whole, "line"),
         "column": count(whole, "column"),
         "tokens": optional_count(whole, "tokens"),
     }
 
 
-def _proposal(proposal: Record) -> Json:
+def _proposal(proposal: Record, detail: Detail) -> Json:
     edit = proposal.get("edit")
     return {
         "edit": clip(edit if isinstance(edit, str) else _spelled(edit), 400),
@@ -212,7 +216,7 @@ def _proposal(proposal: Record) -> Json:
         "breaks": optional_count(proposal, "breaks"),
         "negatives": optional_count(proposal, "accepts_negatives"),
         "ambiguities": optional_count(proposal, "ambiguities"),
-        "diff": clip(text(proposal, "diff"), _MAX_DIFF),
+        "diff": clip(text(proposal, "diff"), detail.text),
     }
 
 

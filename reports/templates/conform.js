@@ -3,6 +3,8 @@
 function settle() { /* sheets settle by themselves: their pictures are drawn when they are open */ }
 
 const { cases } = page;
+const EMPTY = { executor: "", robot: "", verdict: "", reason: "", ending: "", checks: [], events: [], findings: [], path: {} };
+for (const one of cases) one.results = one.results.map((result) => ({ ...EMPTY, ...result }));
 const body = byId("rows");
 const state = { q: "", suite: "", verdict: "", case: "" };
 const rows = cases.map((one, i) => {

@@ -95,8 +95,8 @@ def test_first_finding_is_on_the_line_of_the_negative() -> None:
         ("N = (1 + 2", ") is missing", "N = (1 + 2)"),
         ("$OUT[1 = TRUE", None, None),
         ("// a comment", "a comment begins with a semicolon", "; a comment"),
-        ("X = -.5", "a number begins with a digit", "X = -0.5"),
-        ("E = # OPEN", "a constant follows its # without a blank", "E = #OPEN"),
+        ("X = -.5", "a number needs a digit before its point", "X = -0.5"),
+        ("E = # OPEN", "no blank may stand between # and the constant", "E = #OPEN"),
         ("GLOBAL DECL INT N", "GLOBAL stands behind DECL", "DECL GLOBAL INT N"),
         ("PART_T LAST", "DECL is missing before PART_T", "DECL PART_T LAST"),
         ("ELSEIF $IN[2] THEN", "KRL has no ELSEIF", None),
@@ -170,7 +170,7 @@ def test_a_block_that_is_not_closed_is_named(opener: str, closer: str) -> None:
         ("IF N == 1 TEN", "TEN is not a word of KRL", "IF N == 1 THEN"),
         ("GLOBAL INTERUPT DECL 3 WHEN N == 1 DO F()", "INTERUPT is not a word of KRL",
          "GLOBAL INTERRUPT DECL 3 WHEN N == 1 DO F()"),
-        ("PTP {A1 0., A2 0}", "a number ends with a digit", "PTP {A1 0.0, A2 0}"),
+        ("PTP {A1 0., A2 0}", "a number needs a digit behind its point", "PTP {A1 0.0, A2 0}"),
     ],
 )  # fmt: skip
 def test_the_token_that_mends_a_line_is_reported(wrong: str, message: str, right: str) -> None:
@@ -199,7 +199,7 @@ def test_the_token_that_mends_a_line_is_reported(wrong: str, message: str, right
         ("INT", "a name is missing behind INT"),
         ("N = A B", "an operator is missing between A and B"),
         ("FOR N = 1 10", "TO is missing before 10"),
-        ("WAIT SEC 0,5", "a number has a decimal point"),
+        ("WAIT SEC 0,5", "a number has a decimal point and no comma"),
         ("HALT 5", "5 is too much on this line"),
     ],
 )
@@ -243,7 +243,7 @@ def test_expected_is_reported_in_words() -> None:
     ("line", "code", "message"),
     [
         ("N = M + 1", "KSS2039", "M is no constant"),
-        ("N[2] = 1 + 2", "KSS2039", '"+" is not worked out here'),
+        ("N[2] = 1 + 2", "KSS2039", 'a data list cannot calculate: "+"'),
         ("INT N = M", "KRL001", "M is no constant"),
         ("REAL N = SQRT(2)", "KRL001", "SQRT is no constant"),
         ("FRAME F = {X M,Y 0}", "KRL001", "M is no constant"),

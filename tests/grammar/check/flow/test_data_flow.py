@@ -141,10 +141,16 @@ def test_waits(agrees: Agrees) -> None:
             "WAIT FOR TRUE",
             "WAIT FOR B OR $IN[2]",
             "WAIT FOR $FLAG[1]",
-            "WAIT FOR $FLAG[2] AND $IN[1]",
+            "WAIT FOR $FLAG[2] AND $IN[1] ;> KRL413-",
+            "WAIT FOR $IN[1] AND $FLAG[2] AND $IN[2] ;> KRL413-",
+            "WAIT FOR $IN[1] OR $FLAG[2]",
+            "WAIT FOR $IN[1] EXOR $FLAG[2]",
+            "WAIT FOR $CYCFLAG[2] ;> KRL413-",
+            "WAIT FOR $CYCFLAG[1]",
             "WAIT FOR $FLAG[2] == TRUE ;> KRL413-",
             "WAIT FOR NOT $FLAG[2]",
             "$FLAG[1] = TRUE",
+            "$CYCFLAG[1] = $IN[1]",
         )
     )
 
@@ -179,6 +185,8 @@ def test_interrupts_of_a_project(agrees: Agrees, switch: str) -> None:
         ("$OUT[$ADVANCE] = FALSE", ""),
         ("$OUT[6] = FALSE", ";> KRL515-"),
         ("PULSE($OUT[5], TRUE, 0.5)", ""),
+        ("TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[5] = FALSE", ""),
+        ("TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[5] = TRUE ;> KRL515-", ";> KRL515-"),
     ],
 )
 def test_outputs_of_a_project(agrees: Agrees, other: str, mark: str) -> None:

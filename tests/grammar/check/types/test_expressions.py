@@ -96,6 +96,10 @@ def program(*lines: str) -> str:
         ("ARI-11", "LIST[B] = 1 ;> KRL211"),
         ("ARI-11", "$ADVANCE = 6 ;> KSS1422"),
         ("ARI-11", "$ADVANCE = 5"),
+        ("MOT-02", "$VEL.CP = 250 ;> KSS1422?"),
+        ("MOT-02", "$VEL = {CP 0.25, ORI1 200.0}"),
+        ("MOT-02", "$VEL = {ORI1 200.0, CP 250} ;> KSS1422?"),
+        ("MOT-02", "$APO = {CPTP 101, CDIS 5.0} ;> KSS1422?"),
     ],
 )
 def test_expression(agrees: Agrees, rule: str, line: str) -> None:
