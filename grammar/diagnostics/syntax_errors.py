@@ -306,7 +306,7 @@ def _signs(site: ErrorSite) -> _Mistake | None:
         return _Mistake("' begins a binary or hexadecimal number, and none follows", fix)
     if text == "#" and place > 0 and site.word(place + 1)[:1].isalpha():
         fix = site.swap(f"#{site.tokens[place + 1][0]}", place, place + 1)
-        return _Mistake("a constant follows its # without a blank", fix, is_unconfirmed=True)
+        return _Mistake("no blank may stand between # and the constant", fix, is_unconfirmed=True)
     if text in ("@", "`", "\\", "?", "~", "!", "§"):
         return _Mistake(f"{text} is not a sign of KRL")
     return None
@@ -318,14 +318,16 @@ def _decimal_points(site: ErrorSite) -> _Mistake | None:
     if site.word(at) == "," and site.word(at - 1).isdigit() and site.word(at + 1).isdigit():
         number = f"{site.word(at - 1)}.{site.word(at + 1)}"
         if number.replace(".", ",") in site.code:
-            return _Mistake("a number has a decimal point", site.swap(number, at - 1, at + 1))
+            return _Mistake(
+                "a number has a decimal point and no comma", site.swap(number, at - 1, at + 1)
+            )
     if site.text != ".":
         return None
     if site.word(site.place + 1)[:1].isdigit() and site.expects("INTEGER"):
         fix = site.swap("0.", site.place)
-        return _Mistake("a number begins with a digit", fix, is_unconfirmed=True)
+        return _Mistake("a number needs a digit before its point", fix, is_unconfirmed=True)
     if site.word(site.place - 1).isdigit():
-        return _Mistake("a number ends with a digit", site.swap(".0", site.place))
+        return _Mistake("a number needs a digit behind its point", site.swap(".0", site.place))
     return None
 
 
@@ -399,7 +401,7 @@ def _declarations(site: ErrorSite) -> _Mistake | None:
         return _Mistake(f"the type {_shown(site)} stands before the name", fix)
     is_instruction = lead(site.code) in statements() or text == "("
     if is_data and is_instruction and rule in ("dataList", "initialisation"):
-        message = f"{site.tokens[0][0]} in a data list"
+        message = f"{site.tokens[0][0]} is an instruction, and a data list has none"
         return _Mistake(message, slug="misplaced-instruction", region=site.region(0))
     return None
 
@@ -411,7 +413,7 @@ def _constants(site: ErrorSite) -> _Mistake | None:
     if _is_name(site, site.place) and site.expects("INTEGER"):
         message = f"{_shown(site)} is no constant"
     elif site.text in ("+", "-", "*", "/"):
-        message = f"{_shown(site)} is not worked out here"
+        message = f"a data list cannot calculate: {_shown(site)}"
     else:
         return None
     reason = "the values in a data list are numbers, texts, TRUE, FALSE, #… and {…} of these"

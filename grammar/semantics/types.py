@@ -268,7 +268,9 @@ FINE = Verdict(True)
 
 def without_index(array: Array) -> Verdict:
     """Return the verdict on an array where one of its elements is needed [TYP-20]."""
-    return Verdict(False, ("TYP-20", "MSG-21"), f"{array} needs an index here", 2052)
+    return Verdict(
+        False, ("TYP-20", "MSG-21"), f"the index is missing: this is an array, {array}", 2052
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -201,6 +201,7 @@ def test_a_page_of_5000_cases_is_bounded(
     """Below 5 MB: cases that pass are without their source and say so; a list is short at first."""
     record = conform_record()
     right, wrong = record["cases"]
+    right["results"] = (right["results"] * 8)[:8]  # as of four executors with two robots
     record["cases"] = [right | {"name": f"trigger/right_{n}"} for n in range(4_999)] + [wrong]
     page = write_conformance_page(record, tmp_path)
     assert page.stat().st_size < 5_000_000

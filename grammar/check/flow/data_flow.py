@@ -379,7 +379,8 @@ def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
         for one in (node.target, value)
     ]
     if is_plain and not has_call and shown[0] == shown[1]:
-        yield context.finding("self-assignment", node, f"{root.name.text} is assigned to itself")
+        written = context.source.text[slice(*node.target.span)]
+        yield context.finding("self-assignment", node, f"{written} is assigned to itself")
 
 
 def _real_equality(context: Context) -> Iterator[Diagnostic]:

@@ -91,8 +91,12 @@ _OPERATORS: Mapping[str, Callable[[bool, bool], bool]] = {
     "<>": operator.ne,
 }
 
+#: The operand that decides a result, whatever the other one is.
+_DECIDING: Mapping[str, bool] = {"AND": False, "OR": True}
+
+_FLAGS = frozenset({"$FLAG", "$CYCFLAG"})
 #: Nothing but programs changes these.
-_PROGRAMS_OWN = frozenset({"$FLAG", "$OUT"})
+_PROGRAMS_OWN = _FLAGS | {"$OUT"}
 
 
 def effects(context: Context) -> Effects:
@@ -103,7 +107,7 @@ def effects(context: Context) -> Effects:
 def effects_of_unread(words: frozenset[str]) -> Effects:
     """What text that cannot be read may do, given its words in upper case; `REST` may do it all."""
     if REST in words:
-        words |= {"INTERRUPT", "$OUT", "$FLAG"}
+        words |= {"INTERRUPT"} | _PROGRAMS_OWN
     switched_on = frozenset({""} if "INTERRUPT" in words else ())
     return Effects(switched_on=switched_on, reset=words, changed=words)
 
@@ -168,8 +172,6 @@ class _Collector:
     def trigger(self, node: ast.Trigger) -> None:
         """What the action of a trigger does, and may do later."""
         self._later(node)
-        if isinstance(node.action, ast.Assignment):
-            self._assigned(node.action)
 
     def switch(self, node: ast.InterruptSwitch) -> None:
         """Which interrupts are switched on."""
@@ -197,8 +199,10 @@ class _Collector:
         for access in accesses(self._context, node):
             key = self._key(access.place) if access.place is not None else access.name.key
             self._changed.add(key)
-            self._reset.add(key)
+            if not isinstance(node.action, ast.Assignment):
+                self._reset.add(key)
         if isinstance(node.action, ast.Assignment):
+            self._assigned(node.action)
             self._literal(node.action.target, node.action.value)
 
     def _literal(self, variable: ast.Expression, value: ast.Expression) -> None:
@@ -262,8 +266,10 @@ class _Collector:
                 return value
             case ast.Subscript() as place:
                 key = self._key(place)
+                if key.partition("[")[0] not in _FLAGS or not key.endswith("]"):
+                    return None
                 keys.add(key)
-                return False if key.startswith("$FLAG[") else None
+                return False
             case ast.Unary(operator="NOT", operand=operand):
                 inner = self._with_flags_off(operand, keys)
                 return None if inner is None else not inner
@@ -272,9 +278,13 @@ class _Collector:
                 left = self._with_flags_off(chain[0].left, keys)
                 for each in chain:
                     right = self._with_flags_off(each.right, keys)
-                    if left is None or right is None or each.operator not in _OPERATORS:
-                        return None
-                    left = _OPERATORS[each.operator](left, right)
+                    deciding = _DECIDING.get(each.operator)
+                    if deciding is not None and deciding in (left, right):
+                        left = deciding
+                    elif left is None or right is None or each.operator not in _OPERATORS:
+                        left = None
+                    else:
+                        left = _OPERATORS[each.operator](left, right)
                 return left
         return None
 
@@ -352,7 +362,7 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
         if "$OUT" not in reset:
             yield from _never_reset(one.outputs, reset)
         for place, keys in one.waits:
-            if "$FLAG" not in changed and not keys & changed:
+            if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"
                 yield diagnose("never-fulfilled", place.path, place.region, message)
         for call in one.left_out:

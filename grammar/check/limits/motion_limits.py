@@ -25,20 +25,32 @@ _PERCENT_OF = frozenset({("$APO", "CPTP"), ("$APO", "CVEL")})
 
 def check_motion_limit(checker: TypeChecker, node: ast.Assignment) -> None:
     """Judge a value that is known before the program runs."""
-    value = constant(checker.context, node.value)
-    if isinstance(value, bool | str) or value is None:
-        return
-    limits = _limits(checker, node.target)
-    if limits is None:
+    shown = checker.context.source.text[slice(*node.target.span)]
+    value = without_parentheses(node.value)
+    if isinstance(node.target, ast.Variable) and isinstance(value, ast.Aggregate):
+        for part in value.components:
+            limits = _limits_of_part(checker, node.target.name.key, part.name.key)
+            _judge(checker, part.value, f"{shown}.{part.name.text}", limits)
+    else:
+        _judge(checker, node.value, shown, _limits(checker, node.target))
+
+
+def _judge(
+    checker: TypeChecker,
+    node: ast.Expression,
+    shown: str,
+    limits: tuple[float, float, str] | None,
+) -> None:
+    value = None if limits is None else constant(checker.context, node)
+    if limits is None or isinstance(value, bool | str) or value is None:
         return
     low, high, reason = limits
     if not low <= value <= high:
-        shown = checker.context.source.text[slice(*node.target.span)]
         message = f"{shown} must be between {low:g} and {high:g}"
         rules = ("MOT-02", "MOT-04", "ARI-11")
         checker.report(
             "invalid-system-value",
-            node.value,
+            node,
             message,
             reason=reason,
             rules=rules,
@@ -54,14 +66,21 @@ def _limits(checker: TypeChecker, node: ast.Expression) -> tuple[float, float, s
         case ast.Subscript(base=ast.Variable(name=name)) if name.key == "$ANOUT":
             return -1, 1, "1 stands for 10 V"
         case ast.Member(base=ast.Variable(name=name), name=part):
-            place = name.key, part.key
-            if place in _PERCENT_OF:
-                return 0, 100, "it is a percentage"
-            most = _most(checker, *place)
-            if most is not None:
-                return 0, most, f"so says {_MAXIMA[name.key]} in the machine data"
-            if place in _FASTEST:
-                return 0, _FASTEST[place], "its unit is based on metres"
+            return _limits_of_part(checker, name.key, part.key)
+    return None
+
+
+def _limits_of_part(
+    checker: TypeChecker, variable: str, part: str
+) -> tuple[float, float, str] | None:
+    place = variable, part
+    if place in _PERCENT_OF:
+        return 0, 100, "it is a percentage"
+    most = _most(checker, variable, part)
+    if most is not None:
+        return 0, most, f"so says {_MAXIMA[variable]} in the machine data"
+    if place in _FASTEST:
+        return 0, _FASTEST[place], "its unit is based on metres"
     return None
 
 

@@ -138,7 +138,7 @@ def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool
             message = f"an array has at least one element and not {value}"
             checker.report("wrong-size", size, message)
         elif value is None and kind != UNKNOWN:
-            message = "the size of an array is a constant"
+            message = "the size of an array must be a constant"
             checker.report("wrong-size", size, message, is_unconfirmed=True)
 
 

@@ -104,7 +104,7 @@ class _Values:
             message = "the elements of an array get their initial values in ascending order"
             self.checker.report("initial-order", target, message)
         elif self._is_gap(root.name, before if name == root.name.key else (), here):
-            message = f"an element of {root.name.text} before this one gets no value"
+            message = f"the letter before this one has no value in {root.name.text}"
             self.checker.report("initial-gap", target, message)
         self.last = root.name.key, here
 
@@ -112,9 +112,9 @@ class _Values:
         """Whether a letter of a text is left out, so that what it is follows from nothing."""
         found = self.checker.context.found(name)
         type_ = self.checker.type_of(found) if found else None
-        if len(here) != 1 or not isinstance(type_, Array) or type_.element != CHAR:
+        if not here or not isinstance(type_, Array) or type_.element != CHAR:
             return False
-        return here[0] > (before[0] if before else 0) + 1
+        return here[-1] > (before[-1] if before and before[:-1] == here[:-1] else 0) + 1
 
 
 def _has_blank_line(between: str) -> bool:
