@@ -41,14 +41,14 @@ def test_any_ends_of_lines_are_those_of_a_text(tmp_path: Path) -> None:
     [
         ("a = " + "[" * 50_000, "nested too deeply"),
         ("a = " + "9" * 6_000, "digits"),
-        ("a = 1\n" + "a" + ".a" * 20_000 + " = 1", "dots, line 2"),
-        ("#" * 1_000_001, "characters"),
+        ("a = 1\n" + "a" + ".a" * 20_000 + " = 1", "100 dots in line 2"),
+        ("#" * 1_000_001, "is too long"),
         ("a = ", "at end of document"),
     ],
 )
 def test_toml_that_asks_too_much_is_not_toml(text: str, reason: str) -> None:
     """Depth, numbers beyond all measure and mistakes end in the same way."""
-    with pytest.raises(DocumentError, match=f"^not TOML.*: .*{reason}"):
+    with pytest.raises(DocumentError, match=rf"TOML\b.*{reason}"):
         toml_of(text)
 
 
