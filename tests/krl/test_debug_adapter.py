@@ -399,16 +399,19 @@ def test_a_program_that_runs_can_be_paused_and_ended(client: Client, tmp_path: P
 def test_over_a_port(project: Path) -> None:
     """Clients are served one after the other; what is no message ends a session, not the server."""
     command = [sys.executable, "-m", "krl", "debug", "--dap", "--port", "0"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    with (
+        subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process,
+        contextlib.ExitStack() as at_end,
+    ):
+        at_end.callback(process.terminate)
         assert process.stderr is not None
         port = int(process.stderr.readline().rpartition(":")[2])
         with socket.create_connection(("127.0.0.1", port)) as rude:
             rude.sendall(b"GET / HTTP/1.1\r\n\r\n")
-            assert b"without a length" in rude.makefile("rb").read()
+            assert b"without a valid length" in rude.makefile("rb").read()
         with socket.create_connection(("127.0.0.1", port)) as polite:
             stream = cast(BinaryIO, polite.makefile("rwb"))
             client = Client(stream, stream)
             begun(client, project, {"line": 8})
             assert "breakpoint" == client.wait("stopped")["reason"]
             client.do("disconnect")
-        process.terminate()
