@@ -34,6 +34,7 @@ from grammar.semantics.types import CHAR, SCALARS, Array, Enumeration, Structure
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
+from grammar.syntax.walk import walk
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
@@ -258,6 +259,7 @@ def loose_constants(context: Context) -> Iterator[LooseConstant]:
             if to is None or to.is_open:
                 loose.setdefault(node.name.key, []).append(node)
     found = {finding.region for _, _, finding in context.lacking}
+    unknown = _of_unknown_types(context) if loose else frozenset[ast.Node]()
     for some in loose.values():
         first = some[0]
         region = Region.of(context.source, first.span)
@@ -266,7 +268,23 @@ def loose_constants(context: Context) -> Iterator[LooseConstant]:
         to = context.enumerations.get(first)
         known = _system_constants().values() if to is None else to.constants
         near = _constant_typos(tuple(known)).meant(first.name.text, has_plurals=False)
-        yield LooseConstant(first.name.text, context.source.path, region, len(some), near)
+        has_unknown_type = not unknown.isdisjoint(some)
+        yield LooseConstant(
+            first.name.text, context.source.path, region, len(some), near, has_unknown_type
+        )
+
+
+def _of_unknown_types(context: Context) -> Set[ast.Node]:
+    """What is in initial values of variables whose type is not at hand."""
+    return {
+        part
+        for item in (context.data.items if context.data else ())
+        if isinstance(item, ast.VariableDeclaration)
+        and (Space.TYPE, item.type.key) in context.open_uses
+        for declarator in item.declarators
+        if declarator.value is not None
+        for part in walk(declarator.value)
+    }
 
 
 def _parts(context: Context) -> Iterator[UnresolvedName]:

@@ -128,7 +128,8 @@ class LooseConstant:
     """A constant in a place where no enumeration at hand decides which there are.
 
     ``region`` is the first place of ``count`` in the file at ``path``; ``near`` are constants of
-    the controller that it may be a slip of.
+    the controller that it may be a slip of. ``has_unknown_type``: it is the initial value of a
+    variable whose type is not at hand, which may well have it.
     """
 
     name: str
@@ -136,6 +137,7 @@ class LooseConstant:
     region: Region
     count: int
     near: tuple[str, ...]
+    has_unknown_type: bool
 
 
 def slipped_declarations(
@@ -255,7 +257,8 @@ def of_constants(
     usual = [some[0].name for key, some in uses.items() if counts[key] > 1 and key not in names]
     typos = Typos([*names.values(), *usual])
     for key, some in uses.items():
-        if key in names or counts[key] > _MOST_SLIPS:
+        is_known = key in names or any(one.has_unknown_type for one in some)
+        if is_known or counts[key] > _MOST_SLIPS:
             continue
         near = some[0].near or tuple(
             one

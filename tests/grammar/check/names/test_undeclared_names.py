@@ -565,3 +565,14 @@ def test_a_missing_data_list_may_hide_what_is_global() -> None:
     assert [("R1/main.src", 3, "KSS2052")] == found_in(
         {**files, "R1/main.dat": "DEFDAT MAIN\nDECL INT UNKNOWN_A\nDECL INT UNKNOWN_B=0\nENDDAT\n"}
     )
+
+
+def test_a_type_that_is_not_at_hand_may_have_a_constant() -> None:
+    """What it has is unknown, so the initial value of its variable is no slip of another name."""
+    main = "DEF MAIN()\n  HALT\nEND\n"
+    data = "DEFDAT MAIN\nDECL {} X=#GIVE_STOPP\nENUM OWN GIVE_STOP, GIVE_WAY\nENDDAT\n"
+    for type_, expected in (
+        ("FAR", []),
+        ("OWN", [("main.dat", 2, "KSS2296")]),
+    ):
+        assert expected == found_in({"main.src": main, "main.dat": data.format(type_)})
