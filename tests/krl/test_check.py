@@ -303,3 +303,12 @@ def test_what_fails_a_check_can_be_chosen(
     (tmp_path / "a.src").write_text(f"DEF A()\n{body}\nEND\n", encoding="utf-8")
     words = ["check", "--no-cache", str(tmp_path), "--fail-on"]
     assert expected == tuple(main([*words, which]) for which in ("error", "any", "never"))
+
+
+@pytest.mark.parametrize("is_there", [False, True])
+def test_a_baseline_that_cannot_be_read_comes_before_fixes(programs: Path, is_there: bool) -> None:
+    """No file is changed where the check behind the fixes could not run."""
+    if is_there:
+        assert check(str(programs), "--write-baseline", "known.json") == 0
+    assert check(str(programs), "--fix", "--baseline", "known.json") == (1 if is_there else 2)
+    assert ("N == 1" in (programs / "A.src").read_text(encoding="utf-8")) is is_there

@@ -141,6 +141,8 @@ def check(
     if fix or diff:
         from krl.commands.check.fixing import fix_files
 
+        if known and not write_baseline:
+            read_baseline(known)  # what is wrong with it is told before files are changed
         is_changed = fix_files(paths, check_.is_wanted, agreed.leaves_out, is_shown=diff)
         if diff:
             return FINDINGS if is_changed else FINE
