@@ -309,7 +309,7 @@ def _calling(folder: _P, folders: _Folders[_P]) -> _P:
     """
     own = folders.below(folder)
     names = {path.stem.upper() for path in own}
-    called = {name for path in own for name in folders.calls(path)}
+    called: Set[str] | None = None
     found = folder
     for outer in folder.parents:
         every = folders.below(outer)
@@ -318,6 +318,10 @@ def _calling(folder: _P, folders: _Folders[_P]) -> _P:
         is_copy = more and 2 * len(others & names) >= min(len(others), len(names))
         if is_copy or not every or any(_is_of_controller(one.relative_to(outer)) for one in more):
             break
+        if not others - names:
+            continue
+        if called is None:
+            called = {name for path in own for name in folders.calls(path)}
         if called & (others - names):
             found, names = outer, names | others
     return found
@@ -404,9 +408,10 @@ class _Disk:
     def calls(self, file: PurePath) -> Set[str]:
         """Return the routines that a file calls, in upper case."""
         from support.files.decode import Decoded, decode
+        from support.files.untrusted import read_bytes
 
         try:
-            read = decode(Path(file).read_bytes())
+            read = decode(read_bytes(Path(file)))
         except OSError:
             return frozenset()
         return _calls(read.text) if isinstance(read, Decoded) else frozenset()
