@@ -281,24 +281,26 @@ class _DataFlow:
                 (written if access.use is Use.WRITTEN else used).add(key)
                 if key not in table and self._context.found(access.name):
                     others[key] = access.name.text
-        for key in sorted(self.variables | self.parameters):
-            symbol = table[key]
-            if key in used or (symbol.kind is Kind.PARAMETER and key in written):
-                continue
+        unused = [
+            table[key]
+            for key in sorted((self.variables | self.parameters) - used)
+            if table[key].kind is not Kind.PARAMETER or key not in written
+        ]
+        typos = Typos(others.values() if unused else ())
+        for symbol in unused:
+            key = symbol.key
             what = "is assigned to and never read" if key in written else "is never used"
-            message = f"{symbol.name} {what}"
-            near = Typos(others.values()).meant(symbol.name) if key not in written else ()
-            if len(near) == 1 and symbol.kind is Kind.VARIABLE:
-                yield self._context.finding(
-                    "unused",
-                    symbol.span,
-                    message,
-                    reason=f"{near[0]} is used here and declared elsewhere",
-                    severity="warning",
-                    fix=one_of(near),
-                )
-            else:
-                yield self._context.finding("unused", symbol.span, message)
+            may_slip = symbol.kind is Kind.VARIABLE and key not in written
+            near = typos.meant(symbol.name) if may_slip else ()
+            is_slip = len(near) == 1
+            yield self._context.finding(
+                "unused",
+                symbol.span,
+                f"{symbol.name} {what}",
+                reason=f"{near[0]} is used here and declared elsewhere" if is_slip else "",
+                severity="warning" if is_slip else None,
+                fix=one_of(near) if is_slip else None,
+            )
 
 
 def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
