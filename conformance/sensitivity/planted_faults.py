@@ -10,10 +10,11 @@ long as a case runs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any, Final
+from unittest.mock import patch
 
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.motion_queue import MotionQueue
@@ -28,7 +29,7 @@ from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.planning.timeline import Timeline
 
 #: Plants a fault for as long as the context lasts.
-Plant = Callable[[], AbstractContextManager[None]]
+Plant = Callable[[], AbstractContextManager[object]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,17 +44,7 @@ class Fault:
 
 def on(owner: Any, name: str, make: Callable[[Any], Any]) -> Plant:
     """Replace an attribute that a class or module itself has by what is made from it."""
-    before = vars(owner)[name]
-
-    @contextmanager
-    def planted() -> Iterator[None]:
-        setattr(owner, name, make(before))
-        try:
-            yield
-        finally:
-            setattr(owner, name, before)
-
-    return planted
+    return lambda: patch.object(owner, name, make(vars(owner)[name]))
 
 
 # ------------------------------------------------------------------------------------ controller
