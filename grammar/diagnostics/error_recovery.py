@@ -3,7 +3,8 @@
 A syntax error costs its statement, not the file. The first line that cannot be read is overwritten
 with blanks, so that all offsets stay valid, and the text is parsed again, until it is a program.
 Failures that only follow from an earlier error are marked: the end or a branch of a block whose
-first line was blanked, and a block whose last line was blanked.
+first line was blanked, a block whose last line was blanked, and the uses of a variable whose name
+is a keyword. Such a variable gets another name of the same length in all its lines.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
+from grammar.diagnostics.expected_tokens import is_in_place_of_name
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
 from grammar.diagnostics.typos import Series, Typos
 from grammar.parser.tree import Tree
@@ -33,6 +35,8 @@ _ONCE = {"CASE": "CASE 0", "IF": "IF TRUE THEN", "FOR": "FOR {}=1 TO 1", "UNTIL"
 _STRUCTURE = frozenset({*BLOCKS, *BRANCHES, *CLOSERS})
 _SLIPS_OF_STRUCTURE = Typos(_STRUCTURE, 3, series=Series.NONE)
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
+#: A text, a comment or a word.
+_WORDS = re.compile(r'"[^"\n]*"|;.*|(?<![\w$#.])[A-Za-z_]\w*', re.ASCII)
 #: A type declaration can be cut after some of its members: the type is then known to have others.
 _TYPE = re.compile(r"[ \t]*(?:(?:DECL|GLOBAL)[ \t]+)*(?:ENUM|STRUC)\b", re.IGNORECASE)
 
@@ -95,6 +99,7 @@ class _Recovery:
         self._exchanged: dict[int, str] = {}
         self._failures: list[SyntaxFailure] = []
         self._readings: dict[int, Iterator[str]] = {}
+        self._renamed: dict[str, str] = {}
         self._is_cut = False
 
     def run(self) -> Recovered | None:
@@ -115,7 +120,8 @@ class _Recovery:
             if cause is not None:
                 follows = self._is_explained(cause)
             else:
-                follows = bool(self._failures) and (block is None or is_orphan)
+                is_use = self._is_renamed(tree.text.upper(), context.expected)
+                follows = is_use or (bool(self._failures) and (block is None or is_orphan))
             is_case = "CASE" in context.expected and cause is None
             if tree.line in self._readings:
                 if self._read_otherwise(tree.line):
@@ -173,13 +179,30 @@ class _Recovery:
             return True  # the file breaks off there
         return any(_is_like_structure(self._written.line(line)) for line in failed)
 
-    def _readings_of(self, line: int, column: int, block: OpenBlock | None) -> Iterator[str]:
-        """Yield replacements for a line that opens or divides a block or declares a type.
+    def _is_renamed(self, word: str, expected: Sequence[str]) -> bool:
+        """Return whether a failing token is a keyword that was the name of a variable before.
 
-        First its beginning up to the failure, then a line with the same first word that is valid
-        and lets the body run once.
+        Rename it from now on if this is its declaration.
+        """
+        if word in self._renamed:
+            return "NAME" in expected
+        name = f"{word[:-1]}_"
+        if is_in_place_of_name(word, expected) and not re.search(rf"\b{name}\b", self._text, re.I):
+            self._renamed[word] = name
+        return False
+
+    def _readings_of(self, line: int, column: int, block: OpenBlock | None) -> Iterator[str]:
+        """Yield replacements for a line that cannot be read.
+
+        First the line with other names for variables that are called like a keyword, then its
+        beginning up to the failure, then a line with the same first word that is valid and lets the
+        body run once.
         """
         written = self._written.line(line)
+        if self._renamed:
+            words = _WORDS.sub(lambda one: self._renamed.get(one[0].upper(), one[0]), written)
+            if words != written:
+                yield words
         beginning = written[: column - 1].rstrip()
         word = lead(written)
         if _TYPE.match(beginning):

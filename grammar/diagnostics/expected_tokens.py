@@ -7,12 +7,14 @@ grammar.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Collection, Iterable
 from functools import cache
 
 from grammar.syntax.build import builder
 
 _Words = frozenset[str]
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 @cache
@@ -26,6 +28,19 @@ def _first(rule: str) -> _Words:
 def names() -> _Words:
     """Return NAME and the keywords that can also be names."""
     return _first("name")
+
+
+def is_reserved(word: str) -> bool:
+    """Return whether a word in upper case is a keyword that cannot be a name."""
+    lexer = builder().parser.recognizer.lexer
+    kind = lexer.kinds[word] if _WORD.fullmatch(word) else None
+    return kind is not None and lexer.is_keyword(kind) and lexer.names[kind] not in names()
+
+
+def is_in_place_of_name(word: str, expected: Collection[str]) -> bool:
+    """Return whether a token in upper case is a keyword where only a name was expected."""
+    is_name = "NAME" in expected and "INTEGER" not in expected and "HALT" not in expected
+    return is_name and is_reserved(word)
 
 
 def statements() -> _Words:

@@ -15,11 +15,17 @@ from grammar.blocks import BRANCHES, CLOSERS
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.did_you_mean import nearest, one_of
 from grammar.diagnostics.error_site import ErrorSite
-from grammar.diagnostics.expected_tokens import in_words, names, statements
+from grammar.diagnostics.expected_tokens import (
+    in_words,
+    is_in_place_of_name,
+    is_reserved,
+    names,
+    statements,
+)
 from grammar.diagnostics.line_edits import BRACKETS, LineEdit, bracket, doubled, keyword, left_out
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, most_likely, open_blocks
 from grammar.motion_kinds import CIRCLES, MOTIONS
-from grammar.syntax.build import SyntaxFailure, builder
+from grammar.syntax.build import SyntaxFailure
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
@@ -424,9 +430,9 @@ def _constants(site: ErrorSite) -> _Mistake | None:
 def _names(site: ErrorSite) -> _Mistake | None:
     """Return the mistake of an invalid name, or of a statement where none can be."""
     text, place = site.text, site.place
-    is_name = site.expects("NAME") and not site.expects("INTEGER") and not site.expects("HALT")
-    if is_name and _is_keyword(text):
+    if is_in_place_of_name(text, site.failure.expected):
         return _Mistake(f"{_shown(site)} is a keyword and cannot be a name")
+    is_name = site.expects("NAME") and not site.expects("INTEGER") and not site.expects("HALT")
     if is_name and text[:1].isdigit() and _WORD.search(text):
         return _Mistake("a name does not begin with a digit")
     if site.failure.rule == "module" and text:
@@ -444,27 +450,18 @@ def _names(site: ErrorSite) -> _Mistake | None:
 def _opens_statement(site: ErrorSite) -> bool:
     if site.text in statements():
         return True
-    if not _BEGINNING.match(site.text) or _is_keyword(site.text):
+    if not _BEGINNING.match(site.text) or is_reserved(site.text):
         return False
     return site.text not in names() and "=" in site.words[site.place :]
 
 
 def _is_name(site: ErrorSite, place: int) -> bool:
     word = site.word(place)
-    return bool(_WORD.fullmatch(word)) and not _is_keyword(word)
+    return bool(_WORD.fullmatch(word)) and not is_reserved(word)
 
 
 def _is_data(site: ErrorSite) -> bool:
     return innermost(site.block, ("DEFDAT",)) is not None
-
-
-def _is_keyword(word: str) -> bool:
-    """Return whether a word is a keyword that cannot be a name."""
-    if not _WORD.fullmatch(word):
-        return False
-    lexer = builder().parser.recognizer.lexer
-    kind = lexer.kinds[word]
-    return lexer.is_keyword(kind) and lexer.names[kind] not in names()
 
 
 # ------------------------------------------------------------------------------ edits that help
@@ -556,7 +553,7 @@ def _prose(site: ErrorSite) -> _Mistake | None:
     """Return the mistake of a comment without its semicolon: a line of words unknown to KRL."""
     words = [token[0] for token in site.tokens]
     begin = words[:_PROSE]
-    if len(begin) < _PROSE or not all(word.isalpha() and not _is_keyword(word) for word in begin):
+    if len(begin) < _PROSE or not all(word.isalpha() and not is_reserved(word) for word in begin):
         return None
     fix = Fix("write ; ahead of it if it is one")
     return _Mistake("a comment begins with a semicolon", fix, region=site.region(0))

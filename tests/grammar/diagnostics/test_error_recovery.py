@@ -71,6 +71,17 @@ def test_one_mistake_is_one_failure_and_keeps_all_routines(
     assert ["CELL", "WORK"] == routines(found.syntax)
 
 
+def test_a_variable_with_the_name_of_a_keyword_is_one_failure() -> None:
+    """Its declaration is reported; its uses follow, and all other names of the lines are known."""
+    text = CELL.replace("INT COUNT", "INT OFF, COUNT").replace("HALT", "OFF = off + COUNT ;off")
+    found = recover(text.replace("COUNT == 2", "OFF == 2"))
+    assert [(3, False), (6, True), (9, True)] == [
+        (failure.line, failure.follows) for failure in found.failures
+    ]
+    assert found.syntax is not None
+    assert "OF_ = OF_ + COUNT ;off" in found.text
+
+
 @pytest.mark.parametrize(
     ("line", "lines"),
     [("COUNT[1=3", [5, 7]), ("ENDFI", [5]), ("HALT ENDIF", [5]), ("  N=2 +", [5, 7])],
