@@ -121,9 +121,13 @@ class Context:
 
     @cached_property
     def used(self) -> frozenset[Found]:
-        """What some name in the file means that does not declare it."""
-        answers = self.resolution.answers.items()
-        places = [(answer, name) for name, answer in answers if type(answer) is Found]
+        """What some name in the file means that neither declares nor announces it."""
+        announced = {symbol.span for symbol in self.table.externals.values()}
+        places = [
+            (answer, name)
+            for name, answer in self.resolution.answers.items()
+            if type(answer) is Found and name.span not in announced
+        ]
         # of several places the one that declares it is not both the first and the last
         ends = (*dict(places).items(), *dict(reversed(places)).items())
         return frozenset(found for found, name in ends if found.symbol.span != name.span)

@@ -16,7 +16,7 @@ from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.did_you_mean import one_of
 from grammar.diagnostics.typos import Typos
 from grammar.semantics.scopes import REST
-from grammar.semantics.symbols import ModuleTable, TypeSymbol
+from grammar.semantics.symbols import Kind, ModuleTable, Symbol, TypeSymbol
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
@@ -168,25 +168,49 @@ def slipped_declarations(
 def misspelt_declarations(
     spelling: Spelling, used: Set[str], file_of: FileOf
 ) -> Iterator[Diagnostic]:
-    """What nothing uses and is a slip of what other files write, or of a series of names."""
+    """What nothing uses and is a slip of what other files write, or of a series of names.
+
+    An EXT is one if it announces a routine that no file has, one slip away from one that is there.
+    """
+    announced: list[tuple[str, Symbol]] = []
+    routines: dict[str, str] = {}
     for path in spelling.files if REST not in used else ():
         table, source = file_of(path) or (None, None)
         if table is None or source is None:
             continue
-        for space, symbol in table.table.symbols():
-            if space not in (Space.VALUE, Space.TYPE) or symbol.key in used:
+        for space, symbol in (*table.table.symbols(), *_externals(table)):
+            if space is Space.ROUTINE and symbol.kind is not Kind.EXTERNAL:
+                routines[symbol.key] = symbol.name
+            if symbol.key in used:
+                continue
+            if space is Space.ROUTINE and symbol.kind is Kind.EXTERNAL:
+                announced.append((path, symbol))
+            if space not in (Space.VALUE, Space.TYPE):
                 continue
             meant = spelling.meant(symbol.name)
             if meant:
-                yield diagnose(
-                    "unused",
-                    path,
-                    Region.of(source(), symbol.span),
-                    f"{symbol.name} is declared and never used",
-                    reason=f"{meant} is written elsewhere",
-                    severity="warning",
-                    fix=one_of([meant]),
-                )
+                message = f"{symbol.name} is declared and never used"
+                reason = f"{meant} is written elsewhere"
+                yield _misspelt(path, source(), symbol, message, reason, meant)
+    typos = Typos(routines.values() if announced else ())
+    for path, symbol in announced:
+        near = typos.meant(symbol.name) if symbol.key not in routines else ()
+        table, source = file_of(path) or (None, None)
+        if len(near) == 1 and source is not None:
+            message = f"EXT announces {symbol.name}, which no file has or calls"
+            yield _misspelt(path, source(), symbol, message, f"{near[0]} is there", near[0])
+
+
+def _externals(table: ModuleTable) -> Iterator[tuple[Space, Symbol]]:
+    """The routines that EXT announces in a program; in a data list they are among its symbols."""
+    return ((Space.ROUTINE, symbol) for symbol in table.externals.values())
+
+
+def _misspelt(
+    path: str, source: Source, symbol: Symbol, message: str, reason: str, meant: str
+) -> Diagnostic:
+    region, fix = Region.of(source, symbol.span), one_of([meant])
+    return diagnose("unused", path, region, message, reason=reason, severity="warning", fix=fix)
 
 
 def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[Diagnostic]:

@@ -40,6 +40,22 @@ END"""
     agrees({"cell.dat": DATA, "cell.src": cell}, is_complete=None)
 
 
+def test_an_ext_that_is_a_slip_is_reported(agrees: Agrees) -> None:
+    """In $CONFIG as in a program; a routine that is there or called is announced rightly."""
+    config = """DEFDAT $CONFIG
+  EXT WELD_SEMA(INT :IN) ;> KRL117?
+  EXT WELD_SEAM(INT :IN)
+  EXT WELD_SEEM(INT :IN)
+  EXT GRIPPER(INT :IN)
+ENDDAT"""
+    weld = "DEF WELD_SEAM(N :IN)\nINT N\n$OUT[N] = TRUE\nEND"
+    cell = (
+        "DEF CELL()\nEXT WELD_SEMA(INT :IN) ;> KRL117?\nWELD_SEAM(1)\nWELD_SEEM(1) ;> KRL701-\nEND"
+    )
+    files = {"R1/System/$config.dat": config, "R1/weld_seam.src": weld, "R1/cell.src": cell}
+    agrees(files, with_data=True)
+
+
 def test_a_constant_without_its_mark_is_reported() -> None:
     """A name that nothing declares where a constant of that name fits is told with its #."""
     text = "DEF CELL()\n$IPO_MODE = BASE\n$ORI_TYPE = VAR\nEND\n"
