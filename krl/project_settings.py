@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from fnmatch import fnmatchcase
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 
@@ -122,6 +123,8 @@ def _settings(root: Path, table: Mapping[str, Any]) -> Settings:
     given = {name: read(key, table[key]) for key, (name, read) in _READ.items() if key in table}
     if "baseline" in given:
         given["baseline"] = root / given["baseline"]
+    if "profile" in given:
+        given["profile"] = _profile(root, given["profile"])
     return Settings(root, **given)
 
 
@@ -159,6 +162,21 @@ def baseline_place(baseline: Path) -> Callable[[str], str]:
 
 
 # ------------------------------------------------------------------------------- kinds of values
+
+
+def _profile(root: Path, name: str) -> str:
+    """Return the name of a built-in profile, or the path of the file that ``name`` gives."""
+    if name.lower().endswith(".toml"):
+        if not (root / name).is_file():
+            raise ValueError(f"profile: there is no file {name}")
+        return str(root / name)
+    # not by interp.controller, whose import takes as long as a small check
+    built_in = resources.files("interp").joinpath("controller", "state", "profiles")
+    names = sorted(one.name.removesuffix(".toml") for one in built_in.iterdir())
+    if name not in names:
+        known = ", ".join(names)
+        raise ValueError(f"profile: {name} is unknown; there are {known}, and any .toml file")
+    return name
 
 
 def _text(key: str, value: object) -> str:

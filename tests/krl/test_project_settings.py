@@ -82,6 +82,8 @@ def test_the_command_line_stands_above_the_settings(cell: Path, codes: Codes) ->
         ('ignore = ["KRX"]', "ignore: no code begins with KRX"),
         ('[severity]\nKRL1 = "bad"', "severity: KRL1 must be one of error, warning, note, off"),
         ("complete = 1", "complete must be true or false"),
+        ('profile = "kss9"', "profile: kss9 is unknown; there are kss5, kss8, and any .toml file"),
+        ('profile = "cell.toml"', "profile: there is no file cell.toml"),
         ("= 1", "Invalid"),
         ("\x00", "Invalid"),
     ],
@@ -93,6 +95,15 @@ def test_wrong_settings_are_one_line(tmp_path: Path, settings: str, said: str) -
     with pytest.raises(InputError, match=said.replace("?", r"\?")) as raised:
         read_settings(file)
     assert str(raised.value).startswith(str(file))
+
+
+def test_the_file_of_a_profile_is_relative_to_the_settings(tmp_path: Path) -> None:
+    """A profile is the name of a built-in one or a file."""
+    file = tmp_path / "krl.toml"
+    (tmp_path / "cell.toml").touch()
+    for written, expected in (("kss5", "kss5"), ("cell.toml", str(tmp_path / "cell.toml"))):
+        file.write_text(f'profile = "{written}"', encoding="utf-8")
+        assert expected == read_settings(file).profile
 
 
 def test_settings_of_two_projects_are_not_mixed(tmp_path: Path) -> None:
