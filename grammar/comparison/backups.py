@@ -9,7 +9,7 @@ from typing import Any
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText, content_of
 from grammar.comparison.matching import likest, line_operations
-from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change
+from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change, without_frames
 from grammar.comparison.renaming import names_in, renamed, renamings
 from grammar.syntax.source import Source
 
@@ -233,7 +233,10 @@ def _hunk(old: Sequence[CodeLine], new: Sequence[CodeLine], line: int, new_line:
 
 
 def _data(old: Content, new: Content, *, is_point: bool) -> Iterator[Record]:
-    """Yield the changes to the points of a data list, or to everything else in it."""
+    """Yield the changes to the points of a data list, or to everything else in it.
+
+    Tool and base of a point are reported with the point, and not again with its form.
+    """
     before, after = _of_kind(old, is_point), _of_kind(new, is_point)
     renamed = {}
     if is_point:
@@ -248,7 +251,7 @@ def _data(old: Content, new: Content, *, is_point: bool) -> Iterator[Record]:
             yield {**_datum("renamed", new.path, now, was.text, now.text), "old_name": was.name}
         elif is_point:
             yield from _point(old, new, was, now)
-        elif was.key != now.key:
+        elif without_frames(new.data, was) != without_frames(old.data, now):
             yield _datum("changed", new.path, now, was.text, now.text)
     known = after.keys() | set(renamed.values())
     for key, was in before.items():

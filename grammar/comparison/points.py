@@ -7,6 +7,7 @@ the new Y, then C about the new X.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -17,6 +18,8 @@ _POSES = frozenset({"FRAME", "POS", "E3POS", "E6POS"})
 _AXES = frozenset({"AXIS", "E3AXIS", "E6AXIS"})
 POINT_TYPES = _POSES | _AXES
 
+# In the key of a datum, whose tokens are separated by blanks.
+_FRAMES = re.compile(r"\b(TOOL_NO|BASE_NO) (?:[-+] )?\S+")
 _Quaternion = tuple[float, float, float, float]
 
 
@@ -65,6 +68,13 @@ def frame_numbers(data: Mapping[str, Datum], point: str) -> tuple[int | None, in
     numbers = [(known or {}).get(name) for name in ("TOOL_NO", "BASE_NO")]
     tool, base = (None if one is None else int(one) for one in numbers)
     return tool, base
+
+
+def without_frames(data: Mapping[str, Datum], form: Datum) -> str:
+    """Return the key of a datum, without tool and base if it is the form of a point in ``data``."""
+    name = form.name.upper()
+    has_point = name[0] == "F" and f"X{name[1:]}" in data
+    return _FRAMES.sub(r"\1", form.key) if has_point else form.key
 
 
 def numbers_of(datum: Datum) -> dict[str, float] | None:

@@ -133,6 +133,16 @@ def test_taught_points_are_measured() -> None:
     assert ([1, 5], [2, 2]) == (point["tool"], point["base"])
 
 
+def test_tool_and_base_are_reported_with_the_point_alone() -> None:
+    """The form of the point is an item of its own only if something else in it changed."""
+    data = DATA.replace("TOOL_NO 1,BASE_NO 2", "TOOL_NO 5,BASE_NO 7")
+    assert [] == changes(data=data)["data"]
+    (form,) = changes(data=data.replace("IPO_FRAME #BASE", "IPO_FRAME #TCP"))["data"]
+    assert "FP1" == form["name"]
+    (alone,) = changes(data=data.replace("POS XP1", "POS XP3"))["data"]
+    assert "FP1" == alone["name"]
+
+
 def test_axis_positions_are_measured() -> None:
     """The largest difference of an axis."""
     (point,) = changes(data=DATA.replace("A2 -90.0,A3 90.0", "A2 -80.0,A3 93.0"))["points"]
