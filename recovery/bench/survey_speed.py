@@ -16,12 +16,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from grammar.generation.cells.writing import write_cells
 from grammar.notation import g4
 from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.lazy_automaton import Core
 from grammar.parser.recognizer import Recognizer
-from recovery.bench.resampling import Written, spread, templates, write_corpus
 from recovery.survey.survey import Survey, survey
 from support.files.decode import Decoded, decode
 from support.files.discovery import Found, IngestError, discover, read, source_files
@@ -94,9 +94,7 @@ def measure(
         "ratio_vs_antlr_python": beside["valid"]["ratio"],
         "antlr": beside,
         "unchanged_s_per_mb": unchanged * MB / of.bytes,
-        **scaling(
-            sizes, lambda size: _scaled_to(size, roots, grammar, seed), "bytes_per_s", on_step
-        ),
+        **scaling(sizes, lambda size: _scaled(size, grammar, seed), "bytes_per_s", on_step),
     }
 
 
@@ -249,7 +247,7 @@ def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> d
     recovering = _recovering_antlr()
     antlr_reference.accepts("")
     budget = seconds * ANTLR_BYTES_PER_S
-    texts = spread(_texts(roots))
+    texts = _spread(_texts(roots))
     valid, failing = _Side(), _Side()
     checker = Recognizer(grammar)  # a third one: what is compared has to be cold
     for text in texts:
@@ -261,6 +259,15 @@ def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> d
             failing.compare(text, recovering, finder.find)
             failing.tokens += len(recognizer.kinds(text))
     return {"valid": valid.record(), "failing": failing.record()}
+
+
+def _spread(texts: Sequence[str]) -> list[str]:
+    """The texts in an order of which every beginning has small and large ones as the whole has."""
+    ordered = sorted(texts, key=lambda text: (len(text), text))
+    bits = len(ordered).bit_length()
+    # the bits of the places read backwards: halves first, then quarters, then eighths
+    places = sorted(range(len(ordered)), key=lambda place: int(f"{place:0{bits}b}"[::-1], 2))
+    return [ordered[place] for place in places]
 
 
 def _recovering_antlr() -> Callable[[str], object]:
@@ -285,29 +292,14 @@ def _recovering_antlr() -> Callable[[str], object]:
 # ---------------------------------------------------------------------------------- scaling
 
 
-def _scaled_to(size: float, roots: Sequence[Path], grammar: Grammar, seed: int) -> dict[str, Any]:
+def _scaled(size: float, grammar: Grammar, seed: int) -> dict[str, Any]:
     """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
     with tempfile.TemporaryDirectory() as folder:
-        call_isolated(_synthesise, roots, grammar.text, Path(folder), round(size * MB), seed)
-        return call_isolated(_scaled, Path(folder), grammar.text)
+        write_cells(Path(folder), round(size * MB), seed)
+        return call_isolated(_measured, Path(folder), grammar.text)
 
 
-def _synthesise(
-    roots: Sequence[Path], grammar_text: str, folder: Path, size: int, seed: int
-) -> Written:
-    """Write copies of the programs below the roots, other ones for another seed.
-
-    Raises `support.files.discovery.IngestError` where there is nothing to copy.
-    """
-    texts = spread(_texts(roots))
-    lexer = Recognizer(g4.read(grammar_text)).lexer
-    try:
-        return write_corpus(list(templates(texts, lexer)), folder, size, seed)
-    except ValueError as error:
-        raise IngestError(f"no larger corpus can be made of these files: {error}") from error
-
-
-def _scaled(folder: Path, grammar_text: str) -> dict[str, Any]:
+def _measured(folder: Path, grammar_text: str) -> dict[str, Any]:
     grammar = g4.read(grammar_text)
     seconds, found = _timed_survey([folder], grammar)
     size = sum(file.size for file in found.files)

@@ -21,7 +21,7 @@ def recover(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
     sizes: SizesOption = "1,10,100",
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the copies.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the synthetic corpora.")] = 1,
 ) -> int:
     """Measure the survey: bytes per second, beside ANTLR, with a cache, at growing sizes.
 
