@@ -1,5 +1,6 @@
 """Coverage: what trees exercise of a grammar, counted by hand and by a slow plain reading."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from random import Random
 
@@ -19,7 +20,7 @@ from grammar.notation.model import (
 )
 from grammar.notation.wellformed import shortest_length, shortest_lengths
 from grammar.parser import coverage as measuring
-from grammar.parser.coverage import Branch, GrammarCoverage, Share, branches
+from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
@@ -28,16 +29,17 @@ from grammar.parser.tree import ParseNode, Tree
 WORDS = "".join(f"{word} : '{word}' ;\n" for word in "ABCDE") + "COMMA : ',' ;\n"
 SPACE = "SPACE : ' ' -> skip ;\n"
 
+#: Alternatives taken and rounds made, by rule and address.
+Counts = tuple[dict[tuple[str, Address], set[int]], dict[tuple[str, Address], set[int]]]
+
 
 def grammar_of(*rules: str) -> Grammar:
     return read("grammar T;\n" + "".join(f"{rule} ;\n" for rule in rules) + WORDS + SPACE)
 
 
-def covered_by(
-    grammar: Grammar, texts: Iterable[str], words: Sequence[str] = ()
-) -> GrammarCoverage:
+def covered_by(grammar: Grammar, texts: Iterable[str]) -> GrammarCoverage:
     parser = Parser(Recognizer(grammar))
-    coverage = GrammarCoverage(grammar, words)
+    coverage = GrammarCoverage(grammar)
     for text in texts:
         tree = parser.parse(text)
         assert isinstance(tree, Tree), text
@@ -45,118 +47,57 @@ def covered_by(
     return coverage
 
 
-def missing(rules: Sequence[str], texts: Iterable[str]) -> list[str]:
-    coverage = covered_by(grammar_of(*rules), texts)
-    return [coverage.describe(branch) for branch in coverage.uncovered]
+def counts(coverage: GrammarCoverage) -> Counts:
+    choices = {place: set(found) for place, found in coverage.choices.items()}
+    return choices, {place: set(found) for place, found in coverage.rounds.items()}
 
 
-# ------------------------------------------------------------------------------- branches
-
-
-def test_the_branches_of_a_grammar() -> None:
-    """Every alternative at every place of its rule, of every group, and every count of a loop."""
+def test_what_is_counted() -> None:
+    """The alternative at each place of a rule, of each group, and the rounds of each loop."""
     grammar = grammar_of("s : (x | A)? B+ x (y C)* EOF", "x : A | B C", "y : D")
-    assert [
-        Branch("s", (1, 1), None, "absent"),
-        Branch("s", (1, 1), None, "present"),
-        Branch("s", (1, 1), None, 1),
-        Branch("s", (1, 1), None, 2),
-        Branch("s", (1, 2), None, "one"),
-        Branch("s", (1, 2), None, "more"),
-        Branch("s", (1, 3), "x", 1),
-        Branch("s", (1, 3), "x", 2),
-        Branch("s", (1, 4), None, "none"),
-        Branch("s", (1, 4), None, "one"),
-        Branch("s", (1, 4), None, "more"),
-        Branch("s", (1, 1, 1, 1), "x", 1),
-        Branch("s", (1, 1, 1, 1), "x", 2),
-        Branch("s", (1, 4, 1, 1), "y", 1),
-    ] == list(branches(grammar))
+    coverage = covered_by(grammar, ["B C B B A D C D C", "A B A", "B A"])
+    assert {
+        ("s", ()): {1: 3},
+        ("s", (1, 1)): {1: 2},
+        ("s", (1, 1, 1, 1)): {1: 1, 2: 1},
+        ("s", (1, 3)): {1: 3},
+        ("s", (1, 4)): {1: 2},
+        ("s", (1, 4, 1, 1)): {1: 2},
+        ("x", ()): {1: 3, 2: 1},
+        ("y", ()): {1: 1},
+    } == coverage.choices
+    assert {(1, 1): {0: 1, 1: 2}, (1, 2): {1: 2, 2: 1}, (1, 4): {0: 2, 2: 1}} == {
+        at: found for (_, at), found in coverage.rounds.items()
+    }
+    assert [] == coverage.unused_alternatives
 
 
 @pytest.mark.parametrize(
-    ("rules", "texts", "expected"),
+    ("rule", "text", "place", "expected"),
     [
-        # an alternative has to occur at each place of its rule
-        (["s : x C x EOF", "x : A | B"], ["A C A", "B C B"], []),
-        (
-            ["s : x C x EOF", "x : A | B"],
-            ["A C A", "A C B"],
-            ["s 1.1: x is never B"],
-        ),
-        (["s : x EOF | y EOF", "x : A", "y : B C"], ["A"], ["s 2.1: y is never there"]),
-        # optional parts and loops
-        (["s : A? EOF"], ["A"], ["s 1.1: A? is always there"]),
-        (["s : A? EOF"], [""], ["s 1.1: A? is never there"]),
-        (["s : A? EOF"], ["", "A"], []),
-        (
-            ["s : A* B EOF"],
-            ["A A B"],
-            ["s 1.1: A* is always there", "s 1.1: A* never comes just once"],
-        ),
-        (["s : A* B EOF"], ["B", "A B"], ["s 1.1: A* never comes more than once"]),
-        (["s : A+ EOF"], ["A A A"], ["s 1.1: A+ never comes just once"]),
-        (["s : A+ EOF"], ["A"], ["s 1.1: A+ never comes more than once"]),
-        # groups, and loops in loops: each time the inner loop is entered counts for itself
-        (
-            ["s : (A | B C | D) EOF"],
-            ["A"],
-            ["s 1.1: (A | B C | D) is never B C", "s 1.1: (A | B C | D) is never D"],
-        ),
-        (["s : (A B*)+ EOF"], ["A A B A B B"], ["s 1.1: (A B*)+ never comes just once"]),
-        (["s : (A B*)* EOF"], ["", "A", "A A B A B"], ["s 1.1.1.2: B* never comes more than once"]),
-        # an empty alternative
-        (["s : x A EOF", "x : B |"], ["B A"], ["s 1.1: x is never empty"]),
-        (["s : (B |) A EOF"], ["A"], ["s 1.1: (B |) is never B"]),
+        ("s : (A B*)+ EOF", "A A B A B B", (1, 1, 1, 2), [0, 1, 2]),
+        ("s : (A B*)+ EOF", "A A B A B B", (1, 1), [3]),
+        ("s : A? A? EOF", "A", (1, 1), [1]),
+        ("s : A? A? EOF", "A", (1, 2), [0]),
     ],
-)  # fmt: skip
-def test_what_is_missing(rules: Sequence[str], texts: Sequence[str], expected: list[str]) -> None:
-    """What no tree takes is named, with its place, in words."""
-    assert expected == missing(rules, texts)
+)
+def test_rounds(rule: str, text: str, place: Address, expected: list[int]) -> None:
+    """Each time a loop is entered counts; of two ways the one that ANTLR takes."""
+    assert expected == sorted(covered_by(grammar_of(rule), [text]).rounds["s", place])
 
 
-def test_shares() -> None:
-    """Rules, alternatives and branches are counted, with what was never used in order."""
-    grammar = grammar_of("s : x EOF", "x : A | y | z z", "y : B C", "z : C | D E")
-    coverage = covered_by(grammar, ["A", "C D E"])
-    assert Share(3, 4) == coverage.rules
-    assert Share(5, 7) == coverage.alternatives
-    assert Share(4, 8) == coverage.branches
-    assert 75.0 == coverage.rules.percent
-    assert ["y"] == coverage.unused_rules
-    assert [("x", 2), ("y", 1)] == coverage.unused_alternatives
-    assert 100.0 == Share(0, 0).percent
-    group = covered_by(grammar_of("s : (A B)? (C) EOF"), ["A B C"])
-    assert Share(1, 2) == group.branches
-
-
-def test_rules_of_words_count_once() -> None:
-    """The alternatives of a rule of words are branches of their own and not of every place."""
-    grammar = grammar_of("s : x C x EOF", "x : A | B | D")
-    coverage = covered_by(grammar, ["A C B"], ["x"])
-    assert Share(4, 5) == coverage.branches
-    assert ["x is never D"] == [coverage.describe(branch) for branch in coverage.uncovered]
-    assert Share(2, 6) == covered_by(grammar, ["A C B"]).branches
-    unused = GrammarCoverage(grammar, ["x"])
-    assert [
-        "s 1.1: x is never there",
-        "s 1.3: x is never there",
-        "x is never A",
-        "x is never B",
-        "x is never D",
-    ] == [unused.describe(branch) for branch in unused.uncovered]
-
-
-def test_the_way_is_the_one_written_first() -> None:
-    """Where a rule says the same twice, only the way that ANTLR takes counts."""
-    assert ["s 1.1: (A | A) is never A"] == missing(["s : (A | A) EOF"], ["A"])
-    assert ["s 1.2: A? is never there"] == missing(["s : A? A? EOF"], ["", "A"])
+def test_unused_alternatives() -> None:
+    """What no tree takes is named in the order of the grammar; of two ways the first counts."""
+    grammar = grammar_of("s : x EOF", "x : A | y | z z | A", "y : B C", "z : C | D E |")
+    assert [("x", 2), ("x", 4), ("y", 1), ("z", 3)] == (
+        covered_by(grammar, ["A", "C D E"]).unused_alternatives
+    )
 
 
 # ------------------------------------------------------------------- counted independently
 
-#: What is met on a way through a rule: places of symbols, and branches taken.
-Met = tuple[tuple[str, Address, int | str], ...]
+#: What is met on a way through a rule: places of symbols, alternatives and rounds.
+Met = tuple[tuple[str, Address, int], ...]
 
 
 def through(
@@ -185,14 +126,12 @@ def at_element(
     match element:
         case Reference() | Literal():
             if symbols and symbols[0] == grammar.token_of(element):
-                yield (("symbol", at, symbols[0]),), symbols[1:]
+                yield (("symbol", at, 0),), symbols[1:]
         case Group(alternatives=alternatives):
             yield from through(grammar, alternatives, at, symbols)
         case Repeat(item=item, operator=operator):
             for met, rounds, left in in_rounds(grammar, item, operator, at, symbols):
-                names = {"?": ("absent", "present"), "*": ("none", "one", "more")}
-                name = names.get(operator, ("", "one", "more"))[min(rounds, 2)]
-                yield (*met, ("taken", at, name)), left
+                yield (*met, ("rounds", at, rounds)), left
 
 
 def in_rounds(
@@ -214,21 +153,24 @@ def first_way(grammar: Grammar, node: ParseNode) -> Met:
     return next(met for met, left in ways if not left)
 
 
-def taken_in(grammar: Grammar, node: ParseNode) -> set[Branch]:
-    """The branches that one node takes."""
+def note(grammar: Grammar, node: ParseNode, found: Counts) -> None:
+    """Enter what one node takes."""
+    choices, rounds = found
     met = first_way(grammar, node)
-    taken = {Branch(node.rule, at, None, what) for sign, at, what in met if sign == "taken" and at}
+    for sign, at, number in met:
+        if sign != "symbol":
+            into = rounds if sign == "rounds" else choices
+            into.setdefault((node.rule, at), set()).add(number)
     places = [at for sign, at, _ in met if sign == "symbol"]
     for child, at in zip(node.children, places, strict=True):
         if isinstance(child, ParseNode):
             number = first_way(grammar, child)[0][2]
-            taken.add(Branch(node.rule, at, child.rule, number))
-    return taken
+            choices.setdefault((node.rule, at), set()).add(number)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_random_grammars(random_grammar: Callable[[Random], Grammar], seed: int) -> None:
-    """The branches covered are those that trying all ways through every node finds."""
+    """What is counted is what trying all ways through every node finds."""
     chance = Random(seed)
     compared = 0
     for _ in range(40):
@@ -239,17 +181,15 @@ def test_random_grammars(random_grammar: Callable[[Random], Grammar], seed: int)
         rows = [sentences.random(chance, chance.randint(1, 12)) for _ in range(6)]
         texts = ["".join(row).replace("NEWLINE", "\n") for row in rows if len(row) < 20]
         parser = Parser(Recognizer(grammar))
-        expected: set[Branch] = set()
+        expected: Counts = {}, {}
         for text in texts:
             tree = parser.parse(text)
             assert isinstance(tree, Tree)
             for node in tree.root.walk():
                 if isinstance(node, ParseNode):
-                    expected |= taken_in(grammar, node)
-        every = set(branches(grammar))
-        found = every - set(covered_by(grammar, texts).uncovered)
-        assert expected & every == found, (grammar.text, texts)
-        compared += len(found)
+                    note(grammar, node, expected)
+        assert expected == counts(covered_by(grammar, texts)), (grammar.text, texts)
+        compared += len(expected[0])
     assert compared > 100
 
 
@@ -260,23 +200,18 @@ def has_empty_rounds(grammar: Grammar) -> bool:
 
 
 def test_every_alternative_of_the_grammar_in_force(krl: Grammar) -> None:
-    """The shortest programs through each part of each rule use every rule and alternative."""
+    """The shortest programs through each part of each rule use every alternative."""
     sentences, speller = Sentences(krl), Speller(krl)
     texts = {speller.text(t) for rule in sentences.reachable for t in sentences.through(rule)}
-    coverage = covered_by(krl, sorted(texts))
-    assert [] == coverage.unused_rules
-    assert [] == coverage.unused_alternatives
-    assert 40 < coverage.branches.percent < 100
+    assert [] == covered_by(krl, sorted(texts)).unused_alternatives
 
 
 def test_long_sequences(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sequences of any length are matched, and nothing changes where none is remembered."""
     grammar = grammar_of("s : (x | C)* EOF", "x : A | B")
     texts = ["A C " * 5_000]
-    found = covered_by(grammar, texts).uncovered
-    assert ["s 1.1: (x | C)* is always there", "s 1.1: (x | C)* never comes just once"] == [
-        GrammarCoverage(grammar).describe(branch) for branch in found[:2]
-    ]
+    found = covered_by(grammar, texts)
+    assert Counter({10_000: 1}) == found.rounds["s", (1, 1)]
     for name in ("_LONGEST_REMEMBERED", "_MOST_REMEMBERED"):
         monkeypatch.setattr(measuring, name, 1)
-        assert found == covered_by(grammar, texts).uncovered
+        assert counts(found) == counts(covered_by(grammar, texts))
