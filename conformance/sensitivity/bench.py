@@ -1,4 +1,4 @@
-"""The record of `krl bench conform`: what mutants and planted faults cases find, and how fast."""
+"""The record of `krl bench conform`: mutants and planted faults that cases notice, and speed."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from typing import Any, Final, get_args
 from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.mutant_trial import OF_TRIAL, Fate, Trial
-from conformance.sensitivity.mutants import OF_CASES
+from conformance.sensitivity.mutants import OF_CASES, Mutant
 from conformance.sensitivity.planted_faults import Fault
-from conformance.sensitivity.trial import Verdict, try_faults
+from conformance.sensitivity.trial import OF_TRIAL, Fate, Trial
 from conformance.suite.case import Case
 
 #: The share of planted faults that the cases have to find.
@@ -46,64 +45,53 @@ def speed_of(
     }
 
 
-def measure(
-    faults: Sequence[Fault],
-    cases: Sequence[Case],
-    jobs: int = 1,
-    on_done: Callable[[int], None] = lambda _count: None,
-    executor: str = _EXECUTOR,
-) -> dict[str, Any]:
-    """Try the faults under an executor; ``on_done`` is called for each when it has its verdict."""
-    begun = time.perf_counter()
-    verdicts = try_faults(faults, cases, jobs, on_done, executor)
+def planted_record(trials: Sequence[Trial[Fault]], executor: str) -> dict[str, Any]:
+    """Return the record of the trials of planted faults, by group; ``executor`` ran the cases."""
+    groups = list(dict.fromkeys(one.fault.group for one in trials))
     return {
-        **record_of(verdicts),
-        "faults_executor": executor,
-        "seconds": round(time.perf_counter() - begun, 3),
-    }
-
-
-def record_of(verdicts: Sequence[Verdict]) -> dict[str, Any]:
-    """What is written as JSON, but for the times."""
-    groups = list(dict.fromkeys(one.group for one in verdicts))
-    rows = [
-        {"group": one.group, "fault": one.words, **_fields(one, ("case", "verdict", "runs"))}
-        for one in verdicts
-    ]
-    return {
-        "mutants": len(verdicts),
-        **_counts(verdicts),
+        "mutants": len(trials),
+        **_counts(trials),
         "aim": AIM,
         "groups": [
             {"group": group, "mutants": len(own), **_counts(own)}
             for group in groups
-            if (own := [one for one in verdicts if one.group == group])
+            if (own := [one for one in trials if one.fault.group == group])
         ],
         "survivors": [
-            {key: row[key] for key in ("group", "fault", "runs")}
-            for row in rows
-            if row["case"] is None
+            {"group": one.fault.group, "fault": one.fault.words, "runs": one.runs}
+            for one in trials
+            if not one.case
         ],
-        "verdicts": rows,
+        "verdicts": [
+            {
+                "group": one.fault.group,
+                "fault": one.fault.words,
+                "case": one.case or None,
+                "verdict": {"red": "fail", "soft": "unconfirmed"}.get(one.fate, ""),
+                "runs": one.runs,
+            }
+            for one in trials
+        ],
+        "faults_executor": executor,
     }
 
 
-def _counts(verdicts: Sequence[Verdict]) -> dict[str, Any]:
-    """``failing`` are those that fail a case, the others only change a verdict."""
-    killed = sum(one.case is not None for one in verdicts)
-    failing = sum(one.verdict == "fail" for one in verdicts)
+def _counts(trials: Sequence[Trial[Fault]]) -> dict[str, Any]:
+    """Return how many faults any case noticed, and how many of them made one fail."""
+    killed = sum(bool(one.case) for one in trials)
+    failing = sum(one.fate == "red" for one in trials)
     return {
         "killed": killed,
         "failing": failing,
-        "share": round(killed / len(verdicts), 4) if verdicts else 0.0,
-        "failing_share": round(failing / len(verdicts), 4) if verdicts else 0.0,
+        "share": round(killed / len(trials), 4) if trials else 0.0,
+        "failing_share": round(failing / len(trials), 4) if trials else 0.0,
     }
 
 
-def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
-    """What is written of mutants, by the seed they were drawn with.
+def mutants_record(trials: Mapping[int, Sequence[Trial[Mutant]]]) -> dict[str, Any]:
+    """Return the record of the trials of mutants, by the seed with which they were drawn.
 
-    A share is that of the red ones among those that some case could notice.
+    A share is that of the red ones among those that are neither invalid nor equivalent.
     """
     every = [one for of_seed in trials.values() for one in of_seed]
     return {
@@ -116,8 +104,8 @@ def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
         "packages": _by_package(every),
         "trials": [
             {
-                "mutant": one.mutant.name,
-                **_fields(one.mutant, _OF_MUTANT),
+                "mutant": one.fault.name,
+                **_fields(one.fault, _OF_MUTANT),
                 **_fields(one, OF_TRIAL),
             }
             for one in every
@@ -125,11 +113,11 @@ def mutants_record(trials: Mapping[int, Sequence[Trial]]) -> dict[str, Any]:
     }
 
 
-def _by_package(trials: Sequence[Trial]) -> list[dict[str, Any]]:
+def _by_package(trials: Sequence[Trial[Mutant]]) -> list[dict[str, Any]]:
     return [
         {"package": package, **_fates(own)}
         for package in OF_CASES
-        if (own := [one for one in trials if one.mutant.package == package])
+        if (own := [one for one in trials if one.fault.package == package])
     ]
 
 
@@ -137,7 +125,7 @@ def _fields(of: object, names: Sequence[str]) -> dict[str, Any]:
     return {name: getattr(of, name) for name in names}
 
 
-def _fates(trials: Sequence[Trial]) -> dict[str, Any]:
+def _fates(trials: Sequence[Trial[Mutant]]) -> dict[str, Any]:
     counts = Counter(one.fate for one in trials)
     counted = len(trials) - counts["invalid"] - counts["equivalent"]
     survived = [one for one in trials if one.fate == "survived"]

@@ -16,7 +16,7 @@ from conformance.differential.campaign import world_seed
 from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, Prepared, trace_of
 from conformance.differential.traces import Fact
-from conformance.sensitivity.mutants import InvalidMutant, Mutant, drawn, load, put_in_place
+from conformance.sensitivity.mutants import InvalidMutant, Mutant, drawn, load
 from grammar.generation.closed.programs import seeded
 from support.parallel.ordered_map import ordered_map
 
@@ -52,7 +52,7 @@ class ReferenceRuns:
         runs = 0
         try:
             while runs < len(self._programs) or self._grow():
-                with put_in_place(mutant):
+                with mutant.plant():
                     for number, program, expected in self._programs[runs:]:
                         runs += 1
                         if self._trace(number, program, "vm") != expected:

@@ -13,7 +13,7 @@ import inspect
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache, partial
@@ -23,7 +23,7 @@ from pathlib import Path
 from pkgutil import walk_packages
 from random import Random
 from types import CodeType, FunctionType, ModuleType
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from conformance.sensitivity.mutation_operators import Change, Operator, changes
 
@@ -147,6 +147,26 @@ class InvalidMutant(ValueError):
     """A change that cannot be put in place, as it would be another function with other names."""
 
 
+class SeededFault(Protocol):
+    """A fault that cases should notice: a drawn `Mutant`, or one that is planted by hand.
+
+    ``lines``, first and last, are those of its function or statement. ``is_module_level`` is set
+    for the change of a name of the module ``module``, which is then ``function``.
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def module(self) -> str: ...  # noqa: D102
+    @property
+    def function(self) -> str: ...  # noqa: D102
+    @property
+    def lines(self) -> tuple[int, int]: ...  # noqa: D102
+    @property
+    def is_module_level(self) -> bool: ...  # noqa: D102
+    def plant(self) -> AbstractContextManager[object]: ...  # noqa: D102
+
+
 @dataclass(frozen=True, slots=True)
 class Mutant:
     """A change of a module; ``number`` is its place among all changes of this module.
@@ -181,6 +201,25 @@ class Mutant:
     def file(self) -> str:
         """The file of its module, from the root of the project."""
         return self.module.replace(".", "/") + ".py"
+
+    @contextmanager
+    def plant(self) -> Iterator[None]:
+        """Have the mutant in the running process while the context lasts.
+
+        Raises `InvalidMutant` if this is not possible.
+        """
+        module = import_module(self.module)
+        tree = tree_of(self.module)
+        change = _change(tree, self.number)
+        change.make()
+        undo = _reassigned(module, change) if change.assignment else recoded(module, tree)
+        _forget()
+        try:
+            yield
+        finally:
+            for one in undo:
+                one()
+            _forget()
 
 
 def all_mutants(packages: Iterable[str] = OF_CASES) -> Iterator[str]:
@@ -242,33 +281,33 @@ def modules() -> tuple[str, ...]:
     return tuple(name for package in PACKAGES for name in _modules(package))
 
 
-def uses_of(mutant: Mutant) -> Mapping[str, frozenset[int]]:
-    """The lines of which a case has to run one to notice a mutant, by module.
+def uses_of(fault: SeededFault) -> Mapping[str, frozenset[int]]:
+    """Return the lines of which a case has to run one to notice a fault, by module.
 
     Those of its statement, or where a module-level name was changed those that use this name.
     """
-    if not mutant.is_module_level:
-        first, last = mutant.lines
-        return {mutant.module: frozenset(range(first, last + 1))}
-    importing = f"from {mutant.module} import"
+    if not fault.is_module_level:
+        first, last = fault.lines
+        return {fault.module: frozenset(range(first, last + 1))}
+    importing = f"from {fault.module} import"
     return {
         module: frozenset(
             one.lineno
             for function in ast.walk(tree_of(module))
             if isinstance(function, ast.FunctionDef | ast.Lambda)
             for one in ast.walk(function)
-            if isinstance(one, ast.Name) and one.id == mutant.function
+            if isinstance(one, ast.Name) and one.id == fault.function
         )
         for module in modules()
-        if module == mutant.module or importing in _text(module)
+        if module == fault.module or importing in _text(module)
     }
 
 
-def around(mutant: Mutant) -> Mapping[str, frozenset[int]]:
+def around(fault: SeededFault) -> Mapping[str, frozenset[int]]:
     """The lines of its function, and of what its statement names: functions, methods, classes."""
-    first, last = sorted(map(abs, mutant.lines))
-    words = {mutant.function.rpartition(".")[2]}
-    for node in ast.walk(tree_of(mutant.module)):
+    first, last = sorted(map(abs, fault.lines))
+    words = {fault.function.rpartition(".")[2]}
+    for node in ast.walk(tree_of(fault.module)):
         if isinstance(node, ast.Name | ast.Attribute) and first <= node.lineno <= last:
             words.add(node.id if isinstance(node, ast.Name) else node.attr)
     found: dict[str, set[int]] = {}
@@ -278,10 +317,10 @@ def around(mutant: Mutant) -> Mapping[str, frozenset[int]]:
     return {module: frozenset(lines) for module, lines in found.items()}
 
 
-def cited(mutant: Mutant) -> frozenset[str]:
+def cited(fault: SeededFault) -> frozenset[str]:
     """The rules that its function cites, those that its statement names, and their modules."""
     found = set()
-    for module, lines in around(mutant).items():
+    for module, lines in around(fault).items():
         rows = _text(module).splitlines()
         text = [ast.get_docstring(tree_of(module)) or "", *(rows[number - 1] for number in lines)]
         found.update(_RULE.findall("\n".join(text)))
@@ -337,26 +376,6 @@ def _change(tree: ast.Module, number: int) -> Change:
 
 
 # ------------------------------------------------------------------------------ put in place
-
-
-@contextmanager
-def put_in_place(mutant: Mutant) -> Iterator[None]:
-    """Have a mutant in the running process as long as the context lasts.
-
-    Raises `InvalidMutant` where this cannot be done.
-    """
-    module = import_module(mutant.module)
-    tree = tree_of(mutant.module)
-    change = _change(tree, mutant.number)
-    change.make()
-    undo = _reassigned(module, change) if change.assignment else recoded(module, tree)
-    _forget()
-    try:
-        yield
-    finally:
-        for one in undo:
-            one()
-        _forget()
 
 
 def _reassigned(module: ModuleType, change: Change) -> list[Callable[[], None]]:
@@ -425,7 +444,7 @@ def _key(code: CodeType) -> tuple[Any, ...]:
 
 
 def load() -> None:
-    """Import all modules and find their functions and caches; `put_in_place` is quick then."""
+    """Import all modules and find their functions and caches; `Mutant.plant` is quick then."""
     _functions()
     _caches()
 

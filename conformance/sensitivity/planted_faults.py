@@ -4,8 +4,7 @@
 no statement, exchanges no order and reads no other value than the code does; the faults here do.
 A fault that an operator makes too is not in the table, nor a second one of its kind.
 
-Faults are planted into the running process: an attribute of a class or module is replaced for as
-long as a case runs.
+Faults are planted into the running process: a function of a class or module is replaced.
 """
 
 from __future__ import annotations
@@ -28,23 +27,59 @@ from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.planning.timeline import Timeline
 
-#: Plants a fault for as long as the context lasts.
-Plant = Callable[[], AbstractContextManager[object]]
-
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A fault that can be planted; ``suites`` have to find it, all of them where it is empty."""
+    """A function that a class or module ``owner`` has, replaced by what ``make`` makes from it."""
 
     group: str
     words: str
-    suites: tuple[str, ...]
-    plant: Plant
+    owner: Any
+    attribute: str
+    make: Callable[[Any], Any]
+
+    def plant(self) -> AbstractContextManager[object]:
+        """Have the fault in the running process while the context lasts."""
+        return patch.object(self.owner, self.attribute, self.make(self._right))
+
+    @property
+    def _right(self) -> Any:
+        """The function as it is without the fault."""
+        return vars(self.owner)[self.attribute]
+
+    @property
+    def name(self) -> str:
+        """Its identity: group and words."""
+        return f"{self.group}: {self.words}"
+
+    @property
+    def module(self) -> str:
+        """The module of the function."""
+        return str(self._right.__module__)
+
+    @property
+    def function(self) -> str:
+        """The qualified name of the function."""
+        return str(self._right.__qualname__)
+
+    @property
+    def lines(self) -> tuple[int, int]:
+        """The first and last line of the function; a case that runs none cannot notice it."""
+        code = self._right.__code__
+        return code.co_firstlineno, max(line for _, _, line in code.co_lines() if line)
+
+    @property
+    def is_module_level(self) -> bool:
+        """See `conformance.sensitivity.mutants.SeededFault`; only functions are replaced."""
+        return False
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process finds it in `FAULTS`, since functions made here cannot be sent."""
+        return _named, (self.name,)
 
 
-def on(owner: Any, name: str, make: Callable[[Any], Any]) -> Plant:
-    """Replace an attribute that a class or module itself has by what is made from it."""
-    return lambda: patch.object(owner, name, make(vars(owner)[name]))
+def _named(name: str) -> Fault:
+    return next(one for one in FAULTS if one.name == name)
 
 
 # ------------------------------------------------------------------------------------ controller
@@ -157,91 +192,46 @@ def _without_values(right: Any) -> Any:
     return lambda self, item, *more: right(self, replace(item, values=()), *more)
 
 
-_MOVING: Final = ("motion", "posture", "spline", "interrupt", "blending", "message")
-_TARGETS: Final = ("motion", "posture", "data")
-_INTERRUPTS: Final = ("interrupt", "program")
-
-FAULTS: Final = tuple(
-    Fault(group, words, suites, on(owner, name, make))
-    for group, words, suites, owner, name, make in (
-        (
-            "the clock",
-            "WAIT FOR looks in every tenth cycle only",
-            ("io", "control", "program"),
-            *(Waits, "next_slice", _poll_seldom),
-        ),
-        (
-            "outputs",
-            "outputs are switched a cycle late",
-            ("io", "trigger", "advance"),
-            *(Signals, "write", _write_late),
-        ),
-        (
-            "outputs",
-            "groups have their bits the other way round",
-            ("io",),
-            *(Signals, "put", _put_reversed),
-        ),
-        (
-            "the advance run",
-            "CONTINUE holds for all that follows",
-            ("advance", "program"),
-            *(AdvanceRun, "exempt", _exempt_always),
-        ),
-        (
-            "interrupts",
-            "the lowest priority comes first",
-            _INTERRUPTS,
-            *(Interrupts, "next", _lowest_priority),
-        ),
-        (
-            "interrupts",
-            "ON without a number means the first one",
-            _INTERRUPTS,
-            *(Interrupts, "switch", _switch_first),
-        ),
-        (
-            "interrupts",
-            "a number is declared once and for all",
-            _INTERRUPTS,
-            *(Interrupts, "declare", _declare_once),
-        ),
-        (
-            "triggers",
-            "only the last trigger counts",
-            ("trigger", "spline"),
-            *(MotionQueue, "plan", _last_trigger),
-        ),
-        (
-            "motions",
-            "the override counts twice",
-            _MOVING,
-            *(PlannedArm, "override", _override_squared),
-        ),
-        ("motions", "set-points come a cycle late", _MOVING, Timeline, "sample", _sample_late),
-        (
-            "motions",
-            "values behind WITH count nothing",
-            ("spline",),
-            *(MotionBuilder, "_part", _without_values),
-        ),
-        (
-            "targets",
-            "the Status of a target counts nothing",
-            _TARGETS,
-            *(targets_in_force, "ptp_target", _without_status),
-        ),
-        (
-            "targets",
-            "$TOOL counts nothing",
-            _TARGETS,
-            *(Placement, "flange", lambda _: lambda self, point: self.before @ point),
-        ),
-        (
-            "targets",
-            "components left out are zero",
-            _TARGETS,
-            *(Programmed, "components_of", _zero_where_missing),
-        ),
-    )
+#: All planted faults.
+FAULTS: Final = (
+    Fault(
+        "the clock", "WAIT FOR looks in every tenth cycle only", Waits, "next_slice", _poll_seldom
+    ),
+    Fault("outputs", "outputs are switched a cycle late", Signals, "write", _write_late),
+    Fault("outputs", "groups have their bits the other way round", Signals, "put", _put_reversed),
+    Fault(
+        "the advance run",
+        "CONTINUE holds for all that follows",
+        AdvanceRun,
+        "exempt",
+        _exempt_always,
+    ),
+    Fault("interrupts", "the lowest priority comes first", Interrupts, "next", _lowest_priority),
+    Fault(
+        "interrupts", "ON without a number means the first one", Interrupts, "switch", _switch_first
+    ),
+    Fault(
+        "interrupts", "a number is declared once and for all", Interrupts, "declare", _declare_once
+    ),
+    Fault("triggers", "only the last trigger counts", MotionQueue, "plan", _last_trigger),
+    Fault("motions", "the override counts twice", PlannedArm, "override", _override_squared),
+    Fault("motions", "values behind WITH count nothing", MotionBuilder, "_part", _without_values),
+    Fault(
+        "targets",
+        "the Status of a target counts nothing",
+        targets_in_force,
+        "ptp_target",
+        _without_status,
+    ),
+    Fault(
+        "targets",
+        "$TOOL counts nothing",
+        Placement,
+        "flange",
+        lambda _: lambda self, point: self.before @ point,
+    ),
+    Fault(
+        "targets", "components left out are zero", Programmed, "components_of", _zero_where_missing
+    ),
+    Fault("motions", "set-points come a cycle late", Timeline, "sample", _sample_late),
 )

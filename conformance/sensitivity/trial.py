@@ -1,123 +1,381 @@
-"""Faults against cases: each fault is tried on the cases that may find it, until one has.
+"""Trial of seeded faults: which drawn mutants and planted faults make a case fail.
 
-Cases of rules that may fail come first: a fault that they find fails the conformance run, one that
-only others find changes a verdict.
+Each fault is planted in a process of its own, a fork of one that has loaded everything, so that it
+has no effect on later trials. The cases that run one of its lines are run with it until one fails.
+A case also fails if it takes many times as long as any case should, or if the machine in C, which
+is not changed, does something else than the tree interpreter.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass
+import hashlib
+import os
+import pickle
+import tomllib
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, Final
+from importlib.util import find_spec
+from itertools import islice, zip_longest
+from operator import itemgetter
+from pathlib import Path
+from typing import Any, Final, Generic, Literal, NoReturn, TypeVar
 
-from conformance.evaluation.execution import Setup
-from conformance.runner import run_case
-from conformance.sensitivity.planted_faults import FAULTS, Fault, on
+from conformance.evaluation.execution import Setup, missing, observe
+from conformance.evaluation.observation import Observation
+from conformance.evaluation.verdicts import KnownFailures
+from conformance.runner import Result, observed_within, run_case
+from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, reach_of, seen_digest
+from conformance.sensitivity.mutants import (
+    InvalidMutant,
+    Mutant,
+    SeededFault,
+    around,
+    cited,
+    load,
+    uses_of,
+)
 from conformance.suite.case import Case
-from interp.controller.scheduler import Scheduler
-from interp.robot.api.control_core import ControlCore
+from support.files.code_digest import code_digest
+from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 
-#: No case takes more steps than this; a run that does is endless.
-_ENDLESS: Final = 60_000
+#: Red: a case has failed, or executors differ on it. Soft: only cases whose rules may not fail have
+#: noticed. Equivalent: none can, and ``equivalent.toml`` says why. Invalid: it cannot be planted.
+Fate = Literal["red", "soft", "survived", "equivalent", "invalid"]
+_Fault = TypeVar("_Fault", bound=SeededFault)
+
+_ROBOT: Final = "kinematic"
+_IN_C: Final = Setup("native", _ROBOT)
+#: Modules of which the machine in C has its own: it is run beside the tree interpreter.
+_APART: Final = ("interp.values.", "interp.tree.")
+_EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
+#: The fields of a trial but for its fault.
+OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
+#: The largest number of cases that may fail which are run with a fault.
+MOST: Final = 1000
+#: The limit of processor time for a case in s; all of them need less than a tenth of it.
+_SECONDS: Final = 2.0
+#: The limit of address space in bytes; a usual run needs less than a quarter of it.
+_MEMORY: Final = 4 << 30
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
-    """What became of a fault: the case that found it, with its verdict, or ``None``.
+class Trial(Generic[_Fault]):
+    """The outcome of a seeded fault.
 
-    ``runs`` are the cases that were run with it.
+    ``case`` is the case that noticed it, and ``why`` what that case reported, or for an equivalent
+    one why none can notice it. ``reached`` is the number of cases that run its lines, ``sure`` how
+    many of these may fail, ``runs`` how many were run. ``changed`` is the first case whose run
+    differed, whether it noticed that or not.
     """
 
-    group: str
-    words: str
-    case: str | None
-    verdict: str
-    runs: int
+    fault: _Fault
+    fate: Fate
+    case: str = ""
+    why: str = ""
+    reached: int = 0
+    sure: int = 0
+    runs: int = 0
+    changed: str = ""
 
 
-def try_faults(
-    faults: Sequence[Fault],
+def is_possible() -> bool:
+    """Whether this system can copy a process and limit what it takes."""
+    return hasattr(os, "fork") and find_spec("resource") is not None
+
+
+def kept_trials(folder: Path | None) -> ResultStore:
+    """Return the store of the trials of this code in a folder, as a context manager."""
+    return ResultStore(
+        folder, f"mutants {code_digest('conformance', 'grammar', 'interp', 'support')}"
+    )
+
+
+def reaches_of(
     cases: Sequence[Case],
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
-    executor: str = "tree",
-) -> list[Verdict]:
-    """What becomes of each fault, in their order; the same whatever ``jobs`` is.
+    store: ResultStore = NOTHING_KEPT,
+) -> list[Reach]:
+    """Return the lines that each case runs, in the order in which cases are tried.
 
-    With more than one job the faults have to be among `FAULTS`. ``on_done`` is called for
-    each fault as soon as it has its verdict. ``executor`` runs the cases.
+    Cases that may fail come first, then one of each suite in turn, in each suite those first that
+    have most expectations for what they cost. Cases that do not pass are left out. ``on_done`` is
+    called with the number of finished cases. ``store`` is that of `kept_trials`.
     """
     running = [case for case in cases if case.phase == "run"]
-    ordered = tuple(sorted(running, key=lambda case: (not case.may_fail, case.name)))
-    verdicts: list[Verdict] = []
-    for found in _verdicts(faults, ordered, jobs, executor):
-        verdicts.append(found)
+    places: Counter[tuple[bool, str]] = Counter()
+    keyed = []
+    for one in sorted(reach_of(running, Setup("tree", _ROBOT), jobs, on_done, store), key=_price):
+        kind = not one.case.may_fail, one.case.suite
+        places[kind] += 1
+        keyed.append(((kind[0], places[kind], *_price(one)), one))
+    return [one for _, one in sorted(keyed, key=itemgetter(0))]
+
+
+def _price(reach: Reach) -> tuple[float, str]:
+    """Return the cost of a case per expectation, and its name, which makes the order definite."""
+    return reach.cost / len(reach.case.expectations), reach.case.name
+
+
+def try_faults(
+    faults: Sequence[_Fault],
+    reaches: Sequence[Reach],
+    jobs: int = 1,
+    most: int = MOST,
+    on_done: Callable[[int], None] = lambda _count: None,
+    store: ResultStore = NOTHING_KEPT,
+    executor: str = "tree",
+) -> list[Trial[_Fault]]:
+    """Return the trials of faults in their order, the same for any ``jobs``.
+
+    If more cases than ``most`` that may fail run the lines of a fault, only so many are tried.
+    ``executor`` runs the cases. ``on_done`` is called with the number of finished trials. ``store``
+    is that of `kept_trials`: what it has for the same cases is not tried again.
+    """
+    key_of = [(most, executor), *((one.case.name, one.case.digest, one.seen) for one in reaches)]
+    tried = hashlib.sha256(repr(key_of).encode()).hexdigest()
+    keys = [f"trial {one.name} {tried}" for one in faults]
+    found: dict[str, Trial[_Fault]] = {}
+    for one, key in zip(faults, keys, strict=True):
+        row = store.get_record(key)
+        if row is not None:
+            found[one.name] = Trial(one, **row)
+    on_done(len(found))
+    new = [one for one in faults if one.name not in found]
+    tasks = ((one, _candidates(one, reaches, most), executor) for one in new)
+    for trial in ordered_map(_tried, tasks, jobs=jobs):
+        found[trial.fault.name] = trial
+        row = {each: getattr(trial, each) for each in OF_TRIAL}
+        store.put([(f"trial {trial.fault.name} {tried}", row)])
         on_done(1)
-    return verdicts
+    return [_if_equivalent(found[one.name]) for one in faults]
 
 
-def _verdicts(
-    faults: Sequence[Fault], cases: tuple[Case, ...], jobs: int, executor: str
-) -> Iterator[Verdict]:
-    if jobs <= 1:
-        return (_verdict_of(one, cases, executor) for one in faults)
-    known = {id(one): number for number, one in enumerate(FAULTS)}
-    tasks = ((known[id(one)], _of_suites(one, cases), executor) for one in faults)
-    return ordered_map(_verdict_of_number, tasks, jobs=jobs)
-
-
-def _of_suites(fault: Fault, cases: Sequence[Case]) -> tuple[Case, ...]:
-    return tuple(case for case in cases if not fault.suites or case.suite in fault.suites)
-
-
-def _verdict_of_number(number: int, cases: tuple[Case, ...], executor: str) -> Verdict:
-    """Functions are not sent from process to process: a fault is known by its number there."""
-    return _verdict_of(FAULTS[number], cases, executor)
-
-
-def _verdict_of(fault: Fault, cases: Sequence[Case], executor: str) -> Verdict:
-    runs = 0
-    setup = Setup(executor, "kinematic")
-    for case in _of_suites(fault, cases):
-        if not _passes(case, setup):
-            continue
-        runs += 1
-        verdict = _with(fault, case, setup)
-        if verdict:
-            return Verdict(fault.group, fault.words, case.name, verdict, runs)
-    return Verdict(fault.group, fault.words, None, "", runs)
+def _if_equivalent(trial: Trial[_Fault]) -> Trial[_Fault]:
+    """Return a trial, as equivalent if its fault survived and is known to change nothing."""
+    fault = trial.fault
+    if trial.fate != "survived" or not isinstance(fault, Mutant):
+        return trial
+    reason = equivalent().get(fault.change, "")
+    if not reason and 0 < trial.runs == trial.reached and not trial.changed:
+        reason = _search(fault)
+    return replace(trial, fate="equivalent", why=reason) if reason else trial
 
 
 @cache
-def _passes(case: Case, setup: Setup) -> bool:
-    """Whether a case passes as it is; one that does not cannot find anything."""
-    return run_case(case, [setup]).verdict == "pass"
+def equivalent() -> Mapping[tuple[str, ...], str]:
+    """Return the reasons why no case can notice some mutants, by `Mutant.change`."""
+    keys = ("module", "function", "source", "was", "now")
+    return {tuple(row[key] for key in keys): row["reason"] for row in _known()["mutant"]}
 
 
-def _with(fault: Fault, case: Case, setup: Setup) -> str:
-    """The verdict on a case with a fault where it is no longer ``pass``, else an empty text."""
-    with ExitStack() as stack:
-        for plant in (fault.plant, *_ending()):
-            stack.enter_context(plant())
-        verdict = run_case(case, [setup]).verdict
-    return "" if verdict == "pass" else verdict
+def _search(fault: SeededFault) -> str:
+    """Return why a mutant changes a search but not its result, or "" if it may change that."""
+    if not isinstance(fault, Mutant):
+        return ""
+    row = searches().get((fault.module, fault.function))
+    return "" if row is None or fault.source in row.get("deciding", ()) else row["reason"]
 
 
-def _ending() -> Iterator[Callable[[], Any]]:
-    """Ends an endless run, wherever its loop is."""
-    left = [_ENDLESS]
+@cache
+def searches() -> Mapping[tuple[str, str], Mapping[str, Any]]:
+    """Return the tables of functions and constants of numerical searches, by module and name.
 
-    def make(right: Any) -> Any:
-        def counted(self: Any, *given: Any) -> Any:
-            left[0] -= 1
-            if left[0] < 0:
-                raise AssertionError("this never ends")
-            return right(self, *given)
+    A change of one that changes no run changes only the number of steps.
+    """
+    return {(row["module"], name): row for row in _known()["search"] for name in row["names"]}
 
-        return counted
 
-    yield on(Scheduler, "_collect", make)
-    yield on(ControlCore, "_handle_arm_event", make)
+@cache
+def _known() -> dict[str, list[dict[str, Any]]]:
+    return tomllib.loads(_EQUIVALENT.read_text(encoding="utf-8"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidates:
+    """The cases to try on a mutant; ``reached`` and ``sure`` as in `Trial`."""
+
+    tried: tuple[Reach, ...]
+    reached: int
+    sure: int
+
+
+def _candidates(fault: SeededFault, reaches: Sequence[Reach], most: int) -> _Candidates:
+    """Return at most ``most`` cases that may fail and run its lines, and a tenth as many others.
+
+    If fewer may fail there are more of the others, as executors that differ fail any case. First
+    come cases of each line around it, those of the rarest lines first; then a case of each rule
+    that the code there cites; then one of each set of lines run in its module, because cases with
+    the same set mostly notice the same; then an even sample of the rest. A change of a search is
+    tried on all cases that run it, as it is equivalent only if it changes none of their runs.
+    """
+    uses = uses_of(fault)
+    reaching = [one for one in reaches if any(one.has(*lines) for lines in uses.items())]
+    hard = [one for one in reaching if one.case.may_fail]
+    tried = reaching
+    if not _search(fault):
+        soft = [one for one in reaching if not one.case.may_fail]
+        room = max(most - len(hard), most // 10, 1)
+        tried = [*_chosen(fault, hard, most), *_chosen(fault, soft, room)]
+    # the lines are large, and no longer needed
+    return _Candidates(tuple(replace(one, lines={}) for one in tried), len(reaching), len(hard))
+
+
+def _chosen(fault: SeededFault, cases: Sequence[Reach], most: int) -> Iterator[Reach]:
+    """At most so many of the cases."""
+    chosen: dict[str, Reach] = {}
+    for way in (_of_rarest(fault, cases), _of_rules(fault, cases), _of_ways(fault, cases)):
+        new = (one for one in way if one.case.name not in chosen)
+        chosen.update((one.case.name, one) for one in islice(new, most // 4))
+    yield from chosen.values()
+    left = [one for one in cases if one.case.name not in chosen]
+    room = most - len(chosen)
+    if room:
+        yield from left[:: -(-len(left) // room) or 1]
+
+
+def _of_rarest(fault: SeededFault, cases: Sequence[Reach]) -> Iterator[Reach]:
+    """Yield for each line around a fault the first case that runs it, the rarest lines first."""
+    near = around(fault)
+    running_it: dict[tuple[str, int], list[Reach]] = {}
+    for one in cases:
+        for module, lines in near.items():
+            for line in lines.intersection(one.lines.get(module, ())):
+                running_it.setdefault((module, line), []).append(one)
+    found: set[str] = set()
+    for _, those in sorted(running_it.items(), key=lambda item: (len(item[1]), item[0])):
+        if those[0].case.name not in found:
+            found.add(those[0].case.name)
+            yield those[0]
+
+
+def _of_rules(fault: SeededFault, cases: Sequence[Reach]) -> Iterator[Reach]:
+    """Yield a case of each rule that the code around a fault cites, the rarest first, then more."""
+    wanted = cited(fault)
+    stating: dict[str, list[Reach]] = {}
+    for one in cases:
+        for rule in wanted.intersection(one.case.rules):
+            stating.setdefault(rule, []).append(one)
+    rows = (those for _, those in sorted(stating.items(), key=lambda row: (len(row[1]), row[0])))
+    return (one for turn in zip_longest(*rows) for one in turn if one is not None)
+
+
+def _of_ways(fault: SeededFault, cases: Sequence[Reach]) -> list[Reach]:
+    """Return one case of each set of lines run in the module of a fault, then a second of each."""
+    turns: Counter[frozenset[int]] = Counter()
+    found = []
+    for one in cases:
+        way = one.lines.get(fault.module, frozenset())
+        turns[way] += 1
+        found.append((turns[way], one))
+    return [one for _, one in sorted(found, key=itemgetter(0))]
+
+
+# -------------------------------------------------------------------------- one fault, one process
+
+
+def _tried(fault: _Fault, cases: _Candidates, executor: str) -> Trial[_Fault]:
+    """Try a fault in a fork of this process; the last outcome that it sends is the result."""
+    trial = Trial(fault, "survived")
+    if not any(uses_of(fault).values()):
+        return replace(trial, fate="invalid", why="it is used only while modules are loaded")
+    if not cases.tried:
+        return trial
+    _load(cases.tried[0].case)
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(reading)
+        _in_fork(fault, cases, executor, writing)
+    os.close(writing)
+    outcome: dict[str, Any] = {"fate": "survived"}
+    with os.fdopen(reading, "rb") as received:
+        while received.peek(1):
+            outcome = pickle.load(received)
+    os.waitpid(child, 0)
+    return Trial(fault, reached=cases.reached, sure=cases.sure, **outcome)
+
+
+@cache
+def _loaded() -> list[str]:
+    return []
+
+
+def _load(case: Case) -> None:
+    """Load all that cases need, once, so that every fork has it."""
+    if not _loaded():
+        load()
+        _loaded().append(run_case(case, [Setup("tree", _ROBOT)]).verdict)
+
+
+def _in_fork(fault: SeededFault, cases: _Candidates, executor: str, pipe: int) -> NoReturn:
+    warnings.simplefilter("ignore")  # NumPy warns of what a fault makes it compute
+    try:
+        with os.fdopen(pipe, "wb", buffering=0) as results:
+            for outcome in _outcomes(fault, cases, executor):
+                results.write(pickle.dumps(outcome))
+        os._exit(0)
+    finally:
+        os._exit(1)
+
+
+def _outcomes(fault: SeededFault, cases: _Candidates, executor: str) -> Iterator[dict[str, Any]]:
+    """Yield before each case the outcome if it ends the process, and at last the real outcome.
+
+    An outcome has the fields of `Trial`.
+    """
+    import resource  # not on every system
+
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
+    runs, changed = 0, ""
+    setups = [Setup(executor, _ROBOT)]
+    if executor == "tree" and fault.module.startswith(_APART) and not missing(_IN_C):
+        setups.append(_IN_C)
+    try:
+        with fault.plant():
+            for runs, one in enumerate(cases.tried, 1):
+                name = one.case.name
+                fate: Fate | None = "red" if one.case.may_fail else "soft"
+                yield {"fate": fate, "case": name, "why": "the process ended", "runs": runs}
+                fate, why, seen = _noticed(one, setups)
+                changed = changed or (name if seen != one.seen else "")
+                outcome = {"fate": fate or "survived", "why": why, "runs": runs, "changed": changed}
+                if fate:
+                    yield {**outcome, "case": name}
+                    return
+            yield outcome
+    except InvalidMutant as error:
+        yield {"fate": "invalid", "why": str(error)}
+
+
+def _noticed(reach: Reach, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
+    """Return how a case notices the fault that is planted, why, and the digest of its run.
+
+    If the run is the same as without the fault, nothing is evaluated, and the other executor is not
+    run.
+    """
+    case = reach.case
+    first = observed_within(case, setups[0], _SECONDS)
+    digest = seen_digest(first)
+    if digest == reach.seen:
+        return None, "", digest
+
+    def see(case: Case, setup: Setup) -> Observation:
+        return first if setup is setups[0] else observe(case, setup)
+
+    results = run_case(case, setups, KnownFailures(), see, most=_SECONDS).results
+    bad = sorted((one for one in results if one.verdict not in ("pass", "skipped")), key=_grave)
+    if bad:
+        return ("red" if bad[0].verdict == "fail" else "soft"), bad[0].reason, digest
+    if any(one.verdict == "pass" for one in results):
+        return None, "", digest
+    return ("red" if case.may_fail else "soft"), "it was skipped", digest
+
+
+def _grave(result: Result) -> bool:
+    """Return a key that sorts failures first."""
+    return result.verdict != "fail"

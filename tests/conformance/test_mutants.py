@@ -10,18 +10,8 @@ from pathlib import Path
 import pytest
 
 from conformance.evaluation.execution import Setup
-from conformance.sensitivity import bench, mutant_trial
+from conformance.sensitivity import bench, trial
 from conformance.sensitivity.line_reach import Reach, reach_of
-from conformance.sensitivity.mutant_trial import (
-    Fate,
-    Trial,
-    equivalent,
-    is_possible,
-    kept_trials,
-    reaches_of,
-    searches,
-    try_mutants,
-)
 from conformance.sensitivity.mutants import (
     PACKAGES,
     Mutant,
@@ -30,10 +20,19 @@ from conformance.sensitivity.mutants import (
     drawn,
     modules,
     named,
-    put_in_place,
     uses_of,
 )
 from conformance.sensitivity.mutation_operators import changes
+from conformance.sensitivity.trial import (
+    Fate,
+    Trial,
+    equivalent,
+    is_possible,
+    kept_trials,
+    reaches_of,
+    searches,
+    try_faults,
+)
 from conformance.suite.case import CASES, Case, read_case
 from interp.controller.state import clock, interrupts
 from interp.tree import statements as tree_statements
@@ -156,7 +155,7 @@ def test_a_mutant_is_there_only_while_it_is_in_place() -> None:
         "self.tick + self.cycle",
         "self.tick - self.cycle",
     )
-    with put_in_place(mutant):
+    with mutant.plant():
         assert -12_000 == clock.Clock(12_000).next_tick
     assert 12_000 == clock.Clock(12_000).next_tick
 
@@ -164,7 +163,7 @@ def test_a_mutant_is_there_only_while_it_is_in_place() -> None:
 def test_functions_in_tables_are_changed_too() -> None:
     """A table that holds a function gives the changed one."""
     mutant = _mutant("interp.values.operators", "_quotient", "left / right", "left * right")
-    with put_in_place(mutant):
+    with mutant.plant():
         assert 12.0 == operators.apply("/", 6.0, 2.0)
     assert 3.0 == operators.apply("/", 6.0, 2.0)
 
@@ -173,7 +172,7 @@ def test_module_level_names_are_changed_wherever_they_are() -> None:
     """The modules that use the name have another value, for as long as the context lasts."""
     mutant = _mutant("interp.controller.state.interrupts", "_RANGES", "40", "41")
     assert not interrupts.is_usable(40)
-    with put_in_place(mutant):
+    with mutant.plant():
         assert interrupts.is_usable(40)
     assert not interrupts.is_usable(40)
     uses = uses_of(mutant)["interp.controller.state.interrupts"]
@@ -236,7 +235,7 @@ def test_cases_that_run_what_a_statement_names_come_first() -> None:
     reaches = [Reach(_case(f"motion/{name}"), lines, 1) for name in ("acc_cp", "lin_speed")]
     last = _case("motion/lin_end_pose")
     reaches.append(Reach(last, {**lines, called: frozenset({rare})}, 1))
-    assert last == mutant_trial._candidates(mutant, reaches, 60).tried[0].case
+    assert last == trial._candidates(mutant, reaches, 60).tried[0].case
 
 
 def test_cases_that_state_what_the_code_cites_are_tried() -> None:
@@ -246,7 +245,7 @@ def test_cases_that_state_what_the_code_cites_are_tried() -> None:
     names = ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose", "motion/lin_smooth")
     cases = [_case(name) for name in (*names, "motion/lin_limits", "interrupt/positions_of_event")]
     reaches = [Reach(case, {unit: frozenset({mutant.line})}, 1) for case in cases]
-    tried = mutant_trial._candidates(mutant, reaches, 4).tried
+    tried = trial._candidates(mutant, reaches, 4).tried
     assert cases[-1] in [one.case for one in tried]
 
 
@@ -269,9 +268,9 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
     """The machine in C divides otherwise; a rule that is not sure is soft; zero has no sign."""
     module, _, name = function.partition(":")
     mutant = _mutant(f"interp.{module}", name, was, now)
-    (trial,) = try_mutants([mutant], reach_of([_case(case)], _SETUP))
-    assert (fate, 1, 1) == (trial.fate, trial.reached, trial.runs)
-    assert ("" if fate == "equivalent" else case) == trial.case == trial.changed
+    (found,) = try_faults([mutant], reach_of([_case(case)], _SETUP))
+    assert (fate, 1, 1) == (found.fate, found.reached, found.runs)
+    assert ("" if fate == "equivalent" else case) == found.case == found.changed
 
 
 @needs_fork
@@ -279,18 +278,18 @@ def test_a_mutant_that_makes_a_case_fail() -> None:
     """It is red where the rule of the case is sure."""
     was, now = "self.now + max(duration, 0)", "self.now - max(duration, 0)"
     mutant = _mutant("interp.controller.state.clock", "Clock.tick_after", was, now)
-    (trial,) = try_mutants([mutant], reach_of([_case("advance/wait_sec_stops")], _SETUP))
-    assert "red" == trial.fate
+    (found,) = try_faults([mutant], reach_of([_case("advance/wait_sec_stops")], _SETUP))
+    assert "red" == found.fate
 
 
 @needs_fork
 def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     """So much computing is more than any case may take where it may take next to none."""
-    monkeypatch.setattr(mutant_trial, "_SECONDS", 1e-6)
+    monkeypatch.setattr(trial, "_SECONDS", 1e-6)
     mutant = _mutant("interp.values.operators", "_divided", "left < 0", "left <= 0")
-    (trial,) = try_mutants([mutant], reach_of([_case("data/int_division")], _SETUP))
-    assert ("red", "data/int_division") == (trial.fate, trial.case)
-    assert "seconds of computing" in trial.why
+    (found,) = try_faults([mutant], reach_of([_case("data/int_division")], _SETUP))
+    assert ("red", "data/int_division") == (found.fate, found.case)
+    assert "seconds of computing" in found.why
 
 
 @needs_fork
@@ -299,12 +298,12 @@ def test_what_is_kept_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
     mutants = [named("interp.controller.state.clock:0"), named("interp.controller.state.clock:1")]
     cases = [_case("control/if_else")]
 
-    def tried() -> list[Trial]:
+    def tried() -> list[Trial[Mutant]]:
         with kept_trials(tmp_path) as store:
-            return try_mutants(mutants, reaches_of(cases, store=store), store=store)
+            return try_faults(mutants, reaches_of(cases, store=store), store=store)
 
     first = tried()
-    for name in ("conformance.sensitivity.line_reach._reach", f"{mutant_trial.__name__}._tried"):
+    for name in ("conformance.sensitivity.line_reach._reach", f"{trial.__name__}._tried"):
         monkeypatch.setattr(name, None)
     assert first == tried()
 
@@ -313,19 +312,19 @@ def test_what_is_kept_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
 def test_a_mutant_whose_lines_no_case_runs_survives() -> None:
     """It is not tried on a case that cannot notice it."""
     mutant = _mutant("interp.values.operators", "_divided", "right == 0", "right != 0")
-    (trial,) = try_mutants([mutant], reach_of([_case("control/if_else")], _SETUP))
-    assert ("survived", 0, 0) == (trial.fate, trial.reached, trial.runs)
+    (found,) = try_faults([mutant], reach_of([_case("control/if_else")], _SETUP))
+    assert ("survived", 0, 0) == (found.fate, found.reached, found.runs)
 
 
 def test_known_equivalent_changes_exist() -> None:
-    """Each entry is a change that can be drawn; what is no longer there is taken out."""
+    """Each entry is a change that can be drawn from its line; one that is gone is removed."""
     there = {
-        (module, function, was, now)
-        for module in {one[0] for one in equivalent()}
-        for function, was, now in _changes(module)
+        named(f"{module}:{number}").change
+        for module, function in {one[:2] for one in equivalent()}
+        for number, (name, _, _) in enumerate(_changes(module))
+        if name == function
     }
-    listed = {(module, function, was, now) for module, function, _, was, now in equivalent()}
-    assert set() == listed - there
+    assert set() == set(equivalent()) - there
     assert [] == [
         (module, name)
         for module, name in searches()
@@ -351,8 +350,8 @@ def test_known_equivalent_changes_exist() -> None:
 def test_a_search_may_go_another_way(reached: int, runs: int, changed: str, fate: Fate) -> None:
     """A change of one is equivalent where all cases that run it did, and saw nothing else."""
     mutant = _mutant("interp.robot.planning.schedule", "_bisected", "2.0", "3.0")
-    trial = Trial(mutant, "survived", reached=reached, runs=runs, changed=changed)
-    assert fate == mutant_trial._if_equivalent(trial).fate
+    one = Trial(mutant, "survived", reached=reached, runs=runs, changed=changed)
+    assert fate == trial._if_equivalent(one).fate
 
 
 def test_a_search_is_tried_on_all_cases() -> None:
@@ -363,7 +362,7 @@ def test_a_search_is_tried_on_all_cases() -> None:
     for was, now in (("dt * jerk", "dt / jerk"), ("position <= 0.0", "position > 0.0")):
         mutant = _mutant(module, "SpeedProfile.time_at", was, now)
         reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
-        counts.append(len(mutant_trial._candidates(mutant, reaches, 1).tried))
+        counts.append(len(trial._candidates(mutant, reaches, 1).tried))
     assert [3, 1] == counts
 
 

@@ -1,34 +1,41 @@
 """Planted faults: they change what they say, are removed again, and cases notice them."""
 
+import pickle
+from collections.abc import Sequence
+from functools import partialmethod
 from pathlib import Path
 
 import pytest
 
 from conformance.sensitivity import bench
-from conformance.sensitivity.planted_faults import FAULTS, Fault, on
-from conformance.sensitivity.trial import try_faults
-from conformance.suite.case import CASES, Case, read_case
+from conformance.sensitivity.planted_faults import FAULTS, Fault
+from conformance.sensitivity.trial import Trial, is_possible, reaches_of, try_faults
+from conformance.suite.case import CASES, read_case
+from interp.controller.scheduler import Scheduler
 from interp.controller.state.clock import Clock
 from interp.executors import is_available
-from interp.robot.planning import blending
+from interp.tree.statements import Statements
+
+pytestmark = pytest.mark.skipif(not is_possible(), reason="a trial forks a process")
 
 
 def _fault(words: str) -> Fault:
     return next(one for one in FAULTS if one.words == words)
 
 
-def _cases(*names: str) -> list[Case]:
-    return [read_case(CASES / f"{name}.src", CASES) for name in names]
+def _trials(faults: Sequence[Fault], *names: str, executor: str = "tree") -> list[Trial[Fault]]:
+    cases = [read_case(CASES / f"{name}.src", CASES) for name in names]
+    return try_faults(faults, reaches_of(cases), executor=executor)
 
 
 def test_a_fault_is_there_only_while_it_is_planted() -> None:
     """The clock rounds down within the context and up outside of it, even after an error."""
     clock = Clock(12_000)
-    plant = on(Clock, "tick_after", lambda _right: lambda _clock, _duration: 12_000)
+    fault = Fault("", "", Clock, "tick_after", lambda _right: lambda _clock, _duration: 12_000)
     seen = []
 
     def fails() -> None:
-        with plant():
+        with fault.plant():
             seen.append(clock.tick_after(23_000))
             raise KeyError
 
@@ -38,12 +45,11 @@ def test_a_fault_is_there_only_while_it_is_planted() -> None:
     assert 24_000 == clock.tick_after(23_000)
 
 
-def test_each_fault_has_its_name_and_suites(own_cases: list[Case]) -> None:
-    """No two are called the same, and the suites that have to find them exist."""
-    names = [(one.group, one.words) for one in FAULTS]
+def test_no_two_faults_have_the_same_name() -> None:
+    """Another process finds a fault by its name."""
+    names = [one.name for one in FAULTS]
     assert len(names) == len(set(names))
-    suites = {case.suite for case in own_cases}
-    assert set() == {suite for one in FAULTS for suite in one.suites} - suites
+    assert FAULTS == tuple(map(pickle.loads, map(pickle.dumps, FAULTS)))
 
 
 @pytest.mark.parametrize(
@@ -56,9 +62,9 @@ def test_each_fault_has_its_name_and_suites(own_cases: list[Case]) -> None:
 )
 def test_a_case_finds_a_fault(words: str, case: str) -> None:
     """A case that passes as things are does not with the fault."""
-    (found,) = try_faults([_fault(words)], _cases(case))
-    assert case == found.case
-    assert found.verdict in ("fail", "unconfirmed")
+    (found,) = _trials([_fault(words)], case, "control/if_else")
+    assert (case, 1) == (found.case, found.reached)
+    assert found.fate in ("red", "soft")
 
 
 @pytest.mark.skipif(not is_available("compiled"), reason="there is no C compiler")
@@ -67,38 +73,34 @@ def test_a_case_finds_a_fault_under_native_code(
 ) -> None:
     """The executor that is asked for runs the case with the fault."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    (found,) = try_faults(
-        [_fault("a number is declared once and for all")],
-        _cases("interrupt/declared_anew"),
-        executor="compiled",
-    )
-    assert ("interrupt/declared_anew", "fail") == (found.case, found.verdict)
+    fault = _fault("a number is declared once and for all")
+    (found,) = _trials([fault], "interrupt/declared_anew", executor="compiled")
+    assert ("interrupt/declared_anew", "red") == (found.case, found.fate)
     assert [] != list(tmp_path.rglob("*.so"))
 
 
-def test_each_fault_is_reported_when_it_was_judged() -> None:
-    """Progress moves with each fault, and nothing depends on how many processes there are."""
-    faults, cases = FAULTS[:3], _cases("io/anout_follows", "control/if_else")
-    told: list[int] = []
-    alone = try_faults(faults, cases, 1, told.append)
-    assert [1, 1, 1] == told
-    assert alone == try_faults(faults, cases, 2, told.append)
-    assert [1] * 6 == told
+def test_trials_do_not_depend_on_the_number_of_processes() -> None:
+    """Progress is reported for each fault."""
+    names = ("io/anout_follows", "control/if_else")
+    reaches = reaches_of([read_case(CASES / f"{name}.src", CASES) for name in names])
+    done: list[int] = []
+    alone = try_faults(FAULTS[:3], reaches, 1, on_done=done.append)
+    assert [0, 1, 1, 1] == done
+    assert alone == try_faults(FAULTS[:3], reaches, 2)
 
 
 def test_a_fault_that_changes_nothing_survives() -> None:
-    """A fault that nobody can see is told as not found, with how often it was looked for."""
-    nothing = Fault("none", "nothing", ("control",), on(blending, "_HALF", lambda half: half))
-    (found,) = try_faults([nothing], _cases("control/recursion", "control/if_else"))
-    assert (None, 2) == (found.case, found.runs)
-    record = bench.record_of([found])
+    """It is reported with the number of cases that were run."""
+    nothing = Fault("none", "nothing", Statements, "_if", partialmethod)
+    (found,) = _trials([nothing], "control/recursion", "control/if_else")
+    assert ("survived", 2) == (found.fate, found.runs)
+    record = bench.planted_record([found], "tree")
     assert [{"group": "none", "fault": "nothing", "runs": 2}] == record["survivors"]
     assert 0.0 == record["share"]
 
 
 def test_a_run_without_end_is_found() -> None:
-    """A fault that lets a program go round for ever is stopped, and counts as found."""
-    from interp.controller.scheduler import Scheduler
+    """A fault that makes a program run for ever is noticed by the limit of processor time."""
 
     def make(_right: object) -> object:
         def settle(self: Scheduler) -> None:
@@ -107,6 +109,6 @@ def test_a_run_without_end_is_found() -> None:
 
         return settle
 
-    endless = Fault("none", "endless", (), on(Scheduler, "_settle", make))
-    (found,) = try_faults([endless], _cases("control/recursion"))
-    assert "control/recursion" == found.case
+    endless = Fault("none", "endless", Scheduler, "_settle", make)
+    (found,) = _trials([endless], "control/recursion")
+    assert ("control/recursion", "red") == (found.case, found.fate)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from conformance.sensitivity.mutant_trial import is_possible
+from conformance.sensitivity.trial import is_possible
 from conformance.suite import case as cases
 from krl.cli import main
 
@@ -13,6 +13,7 @@ pytest.importorskip("ruckig")
 pytest.importorskip("scipy")
 
 
+@pytest.mark.skipif(not is_possible(), reason="a trial forks a process")
 def test_faults_of_a_group_are_planted_and_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,8 +1,9 @@
 """`krl bench conform`: how many mutants and planted faults cases find, and how fast they run."""
 
+import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -14,9 +15,6 @@ from krl.terminal.options import JobsOption, JsonOption, all_cores
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
-
-if TYPE_CHECKING:
-    from conformance.suite.case import Case
 
 _SEED = 1
 
@@ -80,9 +78,15 @@ def conform(
     check_files(json_file, survivors)
     with expected_extras(*ARM):
         from conformance.evaluation.execution import Setup, missing
-        from conformance.sensitivity.bench import measure, speed_of
-        from conformance.sensitivity.mutants import OF_CASES
+        from conformance.sensitivity.bench import mutants_record, planted_record, speed_of
+        from conformance.sensitivity.mutants import OF_CASES, drawn
         from conformance.sensitivity.planted_faults import FAULTS
+        from conformance.sensitivity.trial import (
+            is_possible,
+            kept_trials,
+            reaches_of,
+            try_faults,
+        )
         from conformance.suite.case import CaseError, find_cases
     if removed:
         return _removals(json_file, all_cores(jobs))
@@ -100,55 +104,38 @@ def conform(
         cases = find_cases()
     seeds = seed or [_SEED]
     packages = [one for one in OF_CASES if not package or one in package]
-    drawn: dict[str, Any] = {}
-    if mutants:
-        drawn = _mutants(cases, seeds, mutants, packages, most, all_cores(jobs), cache)
+    wanted = {one: drawn(one, mutants, packages) for one in dict.fromkeys(seeds)}
+    every = tuple(dict.fromkeys(mutant for found in wanted.values() for mutant in found))
+    record: dict[str, Any] = {"bench": "conform"}
+    if (every or faults) and not is_possible():
+        raise InputError(
+            "faults need a system that can copy a process (fork): use --mutants 0 --group none"
+        )
+    began = time.perf_counter()
+    with kept_trials(cache) as store:
+        running = [case for case in cases if case.phase == "run"] if every or faults else []
+        with progress_bar("which lines cases run", len(running)) as bar:
+            reaches = reaches_of(running, all_cores(jobs), bar, store)
+        with progress_bar("trying mutants", len(every)) as bar:
+            trials = try_faults(every, reaches, all_cores(jobs), most, bar, store)
+        with progress_bar("planting faults", len(faults)) as bar:
+            planted = try_faults(faults, reaches, all_cores(jobs), most, bar, store, executor.value)
+    record |= planted_record(planted, executor.value)
+    record["seconds"] = round(time.perf_counter() - began, 3)
     with progress_bar("timing cases", len(cases)) as bar:
-        speed = speed_of(cases, bar)
-    with progress_bar("planting faults", len(faults)) as bar:
-        found = measure(faults, cases, all_cores(jobs), bar, executor.value)
-    record = {"bench": "conform", **found, **speed, **({"drawn": drawn} if drawn else {})}
+        record |= speed_of(cases, bar)
+    by_mutant = dict(zip(every, trials, strict=True))
+    if every:
+        record["drawn"] = mutants_record(
+            {one: [by_mutant[mutant] for mutant in found] for one, found in wanted.items()}
+        )
     write_json(record, json_file)
     if survivors is not None:
-        survivors.write_text(_rows(drawn), encoding="utf-8", newline="\n")
-    if drawn:
-        _print_mutants(drawn)
+        survivors.write_text(_rows(record.get("drawn", {})), encoding="utf-8", newline="\n")
+    if every:
+        _print_mutants(record["drawn"])
     _print(record)
     return FINE
-
-
-def _mutants(
-    cases: "list[Case]",
-    seeds: list[int],
-    count: int,
-    packages: list[str],
-    most: int,
-    jobs: int,
-    cache: Path | None,
-) -> dict[str, Any]:
-    from conformance.sensitivity.bench import mutants_record
-    from conformance.sensitivity.mutant_trial import (
-        is_possible,
-        kept_trials,
-        reaches_of,
-        try_mutants,
-    )
-    from conformance.sensitivity.mutants import drawn
-
-    if not is_possible():
-        raise InputError("mutants need a system that can copy a process (fork): use --mutants 0")
-    wanted = {one: drawn(one, count, packages) for one in dict.fromkeys(seeds)}
-    every = tuple(dict.fromkeys(mutant for found in wanted.values() for mutant in found))
-    running = sum(case.phase == "run" for case in cases)
-    with kept_trials(cache) as store:
-        with progress_bar("which lines cases run", running) as bar:
-            reaches = reaches_of(cases, jobs, bar, store)
-        with progress_bar("trying mutants", len(every)) as bar:
-            trials = try_mutants(every, reaches, jobs, most, bar, store)
-    by_mutant = dict(zip(every, trials, strict=True))
-    return mutants_record(
-        {one: [by_mutant[mutant] for mutant in found] for one, found in wanted.items()}
-    )
 
 
 def _removals(json_file: Path | None, jobs: int) -> int:

@@ -25,12 +25,12 @@ def planted(words: str) -> Iterator[str]:
         return
     fault = _chosen(words)
     with fault.plant():
-        yield f"{fault.group}: {fault.words}"
+        yield fault.name
 
 
 @contextmanager
 def _mutant(words: str) -> Iterator[str]:
-    from conformance.sensitivity.mutants import InvalidMutant, named, of_line, put_in_place
+    from conformance.sensitivity.mutants import InvalidMutant, named, of_line
 
     file, _, line = words.rpartition(":")
     on_line = of_line(file, int(line)) if file.endswith(".py") and line.isdigit() else []
@@ -39,7 +39,7 @@ def _mutant(words: str) -> Iterator[str]:
         raise InputError(f"--fault {words}: ambiguous; it may be {choices}")
     try:
         mutant = on_line[0] if on_line else named(words)
-        with put_in_place(mutant):
+        with mutant.plant():
             yield f"{mutant.file}:{mutant.line}: {mutant.was} becomes {mutant.now}"
     except KeyError as error:
         raise InputError(f"--fault {words}: there is no such mutant") from error
@@ -52,7 +52,7 @@ def _chosen(words: str) -> "Fault":
     from conformance.sensitivity.planted_faults import FAULTS
 
     wanted = words.strip().casefold()
-    fitting = [one for one in FAULTS if wanted in f"{one.group}: {one.words}".casefold()]
+    fitting = [one for one in FAULTS if wanted in one.name.casefold()]
     exact = [one for one in fitting if one.words.casefold() == wanted]
     if len(exact or fitting) == 1:
         return (exact or fitting)[0]
