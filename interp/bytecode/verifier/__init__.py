@@ -1,1 +1,1 @@
-"""Images checked before they run: stack effects, types, well-formedness."""
+"""The bytecode verifier: well-formedness, types and stack effects are checked before a run."""

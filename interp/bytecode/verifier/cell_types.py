@@ -1,4 +1,4 @@
-"""The types of cells: of what parameters, locals and data lists hold, by their places."""
+"""The types of cells: looks up what a cell of a frame or of the data lists holds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from interp.bytecode.verifier.stack_types import Refused, StackItem, item_of
 
 
 class CellTypes:
-    """The cells that one code object reaches; raises `Refused` for what is not there."""
+    """The cells that a code object can access; methods raise `Refused` for a missing cell."""
 
     def __init__(self, program: Program, code: Code) -> None:
         self._program = program
@@ -24,14 +24,14 @@ class CellTypes:
         return StackItem(Mode.IN, self._numbers[type_])
 
     def slot(self, place: int) -> Slot:
-        """The parameter or local that a cell of the frame belongs to."""
+        """Return the parameter or local variable to which a cell of the frame belongs."""
         number = bisect_right(self._starts, place) - 1
         if number < 0 or place >= self._slots[number].offset + self._slots[number].cells:
             raise Refused("there is no such cell in the frame")
         return self._slots[number]
 
     def _variable(self, place: int) -> tuple[Type, int]:
-        """The type of the parameter or local that a cell belongs to, and the offset within it."""
+        """Return the type of the variable to which a cell belongs, and the cell's offset in it."""
         slot = self.slot(place)
         if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
             raise Refused("the cell holds a reference")
@@ -45,28 +45,28 @@ class CellTypes:
         return type_, address - self._program.addresses[number]
 
     def local(self, place: int) -> StackItem:
-        """What a cell of the frame holds."""
+        """Return the value type of a cell of the frame."""
         return self._value(kind_at(*self._variable(place)))
 
     def data(self, address: int) -> StackItem:
-        """What a cell of the data lists holds."""
+        """Return the value type of a cell of the data lists."""
         return self._value(kind_at(*self._data_variable(address)))
 
     def check_local(self, place: int, number: int) -> None:
-        """A part of this type begins at a cell of the frame."""
+        """Check that a part of this type begins at a cell of the frame."""
         self.check_part(*self._variable(place), number)
 
     def check_data(self, address: int, number: int) -> None:
-        """A part of this type begins at a cell of the data lists."""
+        """Check that a part of this type begins at a cell of the data lists."""
         self.check_part(*self._data_variable(address), number)
 
     def check_part(self, whole: Type, offset: int, number: int) -> None:
-        """A part of this type begins at an offset within a type."""
+        """Check that a part of this type begins at an offset in a type."""
         if path_to(whole, offset, self._types[number]) is None:
             raise Refused(f"no {self._types[number]} is there")
 
     def parameter(self, place: int, mode: Mode) -> StackItem:
-        """The reference or view that a parameter is."""
+        """Return the reference or view that is passed for the parameter at a cell."""
         slot = self.slot(place)
         parameter = slot.variable
         if slot.offset != place or not isinstance(parameter, Parameter):
@@ -76,12 +76,12 @@ class CellTypes:
         return item_of(parameter)
 
     def array(self, number: int) -> Array:
-        """The array type of a number."""
+        """Return the array type with this number."""
         type_ = self._types[number]
         if not isinstance(type_, Array):
             raise Refused(f"{type_} is no array")
         return type_
 
     def element(self, array: Array) -> int:
-        """The number of the type of an array's elements."""
+        """Return the number of the element type of an array."""
         return self._numbers[array.element]

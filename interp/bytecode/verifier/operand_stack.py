@@ -1,8 +1,8 @@
-"""Contents of the operand stack at each instruction, by abstract interpretation.
+"""Computes the contents of the operand stack at each instruction, by abstract interpretation.
 
-Each instruction takes values of certain kinds from the stack and leaves others. Where ways meet the
-stack must hold the same. From that follow the largest stack, and that nothing is ever taken from an
-empty one or taken for what it is not.
+Each instruction pops items of certain types and pushes others. Where two paths meet, their stacks
+must be equal. This gives the maximum stack size, and proves that no instruction pops from an empty
+stack or misinterprets an item.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from interp.bytecode.verifier.wellformed import VerificationError
 
 
 class Flow:
-    """The stacks of one code object of a well-formed program. ``Flow(…).stacks()`` finds them."""
+    """The stacks of one code object of a well-formed program."""
 
     def __init__(self, program: Program, code: Code) -> None:
         self._code = code
         self._effects = StackEffects(program, code)
 
     def stacks(self) -> list[Stack | None]:
-        """The stack before each instruction, ``None`` where none leads to it.
+        """Return the stack before each instruction, or ``None`` for an unreachable one.
 
         Raises `VerificationError`.
         """
@@ -49,11 +49,11 @@ class Flow:
         return found
 
     def largest(self, stacks: Sequence[Stack | None]) -> int:
-        """The most cells that the stack ever has."""
+        """Return the maximum size of the stack in cells."""
         return max((stack.cells for stack in stacks if stack is not None), default=0)
 
     def _after(self, place: int, before: Stack) -> Iterator[tuple[int, Stack]]:
-        """Where an instruction can continue, and the stack there."""
+        """Yield the instructions that can come next, each with the stack before it."""
         instruction = self._code.instructions[place]
         try:
             stack = self._effects.after(instruction, before)

@@ -1,7 +1,7 @@
-"""Checks the entries of a program against the requests and functions that they name.
+"""Checks that requests and calls of predefined functions have the arguments that they need.
 
-An entry of the table of requests names a request of `interp.port.requests` and has a part for each
-of its fields except ``at``.
+An entry of the table of requests names a request of `interp.port.requests` and has one part for
+each of its fields except ``at``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from interp.bytecode.program import (
 from interp.port import requests
 from interp.values.builtins import BUILTINS, reads_text
 
-#: What a field of a request may be, by its annotation.
+#: The kind of a field of a request, by its annotation.
 _KINDS: Mapping[str, str] = {
     "Path": "path",
     "Value": "value",
@@ -47,12 +47,12 @@ _KINDS: Mapping[str, str] = {
     "tuple[SplineItem, ...]": "items",
 }
 _ASSIGNMENT = ("path", "value")
-#: What no program asks for: the executor sends it by itself.
+#: Requests that executors make themselves and that no program contains.
 _UNASKED = (requests.Skip, requests.Slice, requests.End, requests.Fail, requests.Crash)
 
 
 def _kinds(request: type) -> tuple[str, ...]:
-    """The kinds of a record's fields but ``at`` and those with a default; ``?`` for optional."""
+    """Return the kinds of the required fields of a record except ``at``; ``?`` means optional."""
     return tuple(
         _kind(one.name, str(one.type))
         for one in dataclasses.fields(request)
@@ -71,18 +71,15 @@ def _kind(name: str, annotation: str) -> str:
 _REQUESTS: Mapping[str, tuple[str, ...]] = {
     one.__name__: _kinds(one) for one in get_args(requests.Request) if one not in _UNASKED
 }
-#: What stands in a spline block, and whether it has a place in the source.
+#: The items of a spline block: their fields, and whether they have a place in the source.
 _SPLINE_ITEMS: Mapping[str, tuple[tuple[str, ...], bool]] = {
     one.__name__: (_kinds(one), issubclass(one, requests.Asking))
     for one in get_args(requests.SplineItem)
 }
 
 
-# ------------------------------------------------------------------------------ do they fit?
-
-
 def request_mismatch(program: Program, request: str, parts: Sequence[Argument]) -> str | None:
-    """Why the parts are not those of the request, or ``None`` where they are."""
+    """Return why the parts do not fit the request, or ``None`` if they do."""
     if request not in _REQUESTS:
         return f"{request} is not a request"
     return _Fit(program).fields(_REQUESTS[request], parts)
@@ -164,7 +161,7 @@ class _Fit:
         return isinstance(part, Handle) and part.code < len(codes) and codes[part.code].kind is kind
 
     def is_value(self, part: Argument) -> bool:
-        """Whether it is a value of the language."""
+        """Return whether a part is a value of the language."""
         if isinstance(part, Choice):
             return True
         if isinstance(part, Constant):
@@ -175,7 +172,7 @@ class _Fit:
 
 
 def call_mismatch(program: Program, builtin: Builtin) -> str | None:
-    """Why an entry is no call of a predefined function, or ``None`` where it is one."""
+    """Return why an entry is no valid call of a predefined function, or ``None`` if it is one."""
     known = BUILTINS.get(builtin.name.upper())
     if known is None:
         return "there is no such function that only computes"
@@ -200,7 +197,7 @@ def call_mismatch(program: Program, builtin: Builtin) -> str | None:
 
 
 def may_be_missing(builtin: Builtin) -> Iterator[bool]:
-    """For each input of a predefined function, whether it may be a text that was left out.
+    """Yield for each input of a predefined function whether it is a text that may be left out.
 
     See `interp.values.builtins.reads_text`.
     """
@@ -216,7 +213,7 @@ def may_be_missing(builtin: Builtin) -> Iterator[bool]:
 
 
 def _is_written(program: Program, part: Argument) -> bool:
-    """Whether the new value of a system variable has a place to be written to, if it is one."""
+    """Return whether the new value of a part can be written, if the part is :OUT."""
     return not isinstance(part, Changed) or _Fit(program).is_value(part)
 
 
@@ -228,7 +225,7 @@ def _is_text(program: Program, part: Argument) -> bool:
 
 
 def _type_of(program: Program, part: Argument) -> Type | None:
-    """The type of an argument; ``None`` for what is none."""
+    """Return the type of an argument, or ``None`` if the part is no argument."""
     match part:
         case Input(Mode.VIEW):
             return Array(program.types[part.type], (None,) * part.dimensions)

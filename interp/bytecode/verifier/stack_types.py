@@ -1,4 +1,4 @@
-"""The types of what lies on the stack of operands: values, references, views."""
+"""The abstract operand stack of the verifier: values, references and views with their types."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from interp.bytecode.program import Input, Mode, Parameter
 
 
 class Refused(Exception):
-    """An instruction does not fit what it works on; the message says why, but not where."""
+    """An instruction does not fit its operands or the stack; the message gives the reason only."""
 
 
 @dataclass(frozen=True, slots=True)
 class StackItem:
-    """What lies on the stack.
+    """The type of one item on the stack.
 
-    ``mode`` is ``IN`` for a value of one cell. ``type`` is a number of the program; -1 stands for
-    a value that was left out, ``is_missing`` for such a view. ``cells`` is how many cells it takes.
+    ``mode`` is ``IN`` for a value of one cell. ``type`` is the number of a type of the program; -1
+    is an argument that was left out, and ``is_missing`` marks a view that may be left out.
+    ``cells`` is the number of cells that the item takes.
     """
 
     mode: Mode
@@ -29,10 +30,11 @@ NOTHING = StackItem(Mode.IN, -1)
 
 
 class Stack:
-    """Items on what lies ``below``, ``None`` for the empty stack; ``cells`` is the size of all.
+    """An immutable stack: the item ``top`` on the stack ``below``; that is ``None`` if it is empty.
 
-    Stacks that began as one and hold the same are one object: a long stack at each of many
-    instructions costs an object each, and whether two are the same takes no look at their items.
+    ``cells`` is the size of the whole stack. Stacks are interned: two equal stacks that grew from
+    one empty stack are the same object. So the stacks of all instructions share their items, and a
+    comparison of two stacks takes constant time.
     """
 
     __slots__ = ("_above", "below", "cells", "top")
@@ -44,7 +46,7 @@ class Stack:
         self._above: dict[tuple[str, int, int, bool], Stack] = {}
 
     def with_item(self, item: StackItem) -> Stack:
-        """The stack with one item more."""
+        """Return the stack with one more item on top."""
         key = item.mode.value, item.type, item.cells, item.is_missing
         found = self._above.get(key)
         if found is None:
@@ -53,15 +55,15 @@ class Stack:
 
 
 def reference(type_: int) -> StackItem:
-    """A reference to a place of this type."""
+    """Return a reference to a place of this type."""
     return StackItem(Mode.REF, type_)
 
 
 def view_of(type_: int, dimensions: int) -> StackItem:
-    """A view of an array that has elements of this type."""
+    """Return a view of an array with elements of this type."""
     return StackItem(Mode.VIEW, type_, 1 + dimensions)
 
 
 def item_of(given: Parameter | Input) -> StackItem:
-    """An argument, as it lies on the stack."""
+    """Return the stack item for an argument."""
     return StackItem(given.mode, given.type, 1 + given.dimensions)

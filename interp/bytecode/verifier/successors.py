@@ -8,12 +8,12 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.instruction_set.table import instructions, shape
 from interp.bytecode.program import Instruction
 
-#: What nothing follows.
+#: Instructions without a next instruction.
 ENDS = frozenset(Op(one.number) for one in instructions() if "ends" in one.flags)
 
 
 def targets(instruction: Instruction) -> Iterator[int]:
-    """The instructions that an instruction may continue at, besides the next one."""
+    """Yield the jump targets of an instruction."""
     kinds = shape(instruction.op.name).operands
     for kind, operand in zip(kinds, instruction.operands, strict=True):
         if kind == "target":
@@ -21,7 +21,7 @@ def targets(instruction: Instruction) -> Iterator[int]:
 
 
 def successors(place: int, instruction: Instruction) -> Iterator[int]:
-    """The instructions that may come after the one at this place."""
+    """Yield the instructions that can come after the one at this place."""
     yield from targets(instruction)
     if instruction.op not in ENDS:
         yield place + 1

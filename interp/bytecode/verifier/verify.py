@@ -1,26 +1,26 @@
-"""The verifier: whether a program keeps the invariants that executors rely on.
+"""The verifier: checks that a program keeps the invariants on which executors rely.
 
-`verify` gives a `Verified` program, or raises `VerificationError`. An executor may rely on this
-without looking again:
+`verify` returns a `Verified` program or raises `VerificationError`. Executors do not check again
+that
 
-- every number names something: types, texts, entries, code objects, faults; every type has a size,
-  what it is made of has a smaller number, and the data lists and any frame together have at most
-  `MAX_CELLS` cells;
-- every cell has one kind, which never changes: what is loaded from it or stored in it is of that
-  kind; a constant is a value of its kind; a REAL is finite;
-- every instruction finds on the stack what it takes, and the stack of a code object never has more
-  than ``Code.stack`` cells; a statement begins with an empty one;
-- a reference leads to cells that are there, of the type that it is said to have. It lies on the
-  stack or in a parameter, never elsewhere, so that it never outlives what it refers to; the sizes
-  of a view are those of its array;
-- every way through a code object ends with RETURN, RETURN_VALUE or FAIL; targets are instructions;
-- every circle of instructions has a LINE or an ASK in it, and no routine is called before the first
-  LINE, so that a budget of statements ends every program; a condition has no circle and no LINE;
-- a request has the fields of the request it names, and hands over actions and conditions of the
-  code object it stands in only.
+- every number refers to something: types, texts, entries, code objects, faults; every type has a
+  size and is composed of types with smaller numbers; the data lists and any one frame together have
+  at most `MAX_CELLS` cells;
+- every cell has one type, which never changes, and every load and store uses this type; a constant
+  is a value of its type; a REAL is finite;
+- every instruction finds its operands on the stack; the stack of a code object never has more than
+  ``Code.stack`` cells and is empty at the beginning of a statement;
+- a reference refers to existing cells of the stated type. References exist only on the stack and in
+  parameters, so none outlives its target; the sizes of a view are those of its array;
+- every path through a code object ends with RETURN, RETURN_VALUE or FAIL; jump targets are
+  instructions;
+- every cycle of instructions contains a LINE or an ASK, and no routine is called before the first
+  LINE, so a statement budget ends every program; a condition has no cycle and no LINE;
+- a request has the fields of the request that it names, and passes only actions and conditions of
+  its own code object.
 
-What remains for running: values that are missing, indices, overflow, the depth of calls, and the
-cells of all frames together.
+Checked at run time are missing values, indices, overflow, the depth of calls, and the total size of
+all frames.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ _LONGEST_STACK = 1 << 16
 
 @dataclass(frozen=True)  # without slots, as it keeps its image
 class Verified:
-    """A program that keeps the rules.
+    """A program that has passed the verifier.
 
-    ``depths`` is for each code object how many cells lie on the stack before each instruction,
-    -1 where no way leads to it.
+    ``depths`` has a tuple for each code object: the stack size in cells before each instruction, or
+    -1 for an unreachable one.
     """
 
     program: Program
@@ -56,7 +56,7 @@ class Verified:
 
     @cached_property
     def image(self) -> bytes:
-        """The program as bytes, made once for all machines that run it."""
+        """The program as an image, encoded once for all machines that run it."""
         return write_image(self.program)
 
 
@@ -71,14 +71,17 @@ def verify(program: Program) -> Verified:
 
 
 def measured(program: Program) -> Program:
-    """The program with the sizes of stacks that it needs, as far as it keeps the other rules."""
+    """Return the program with the stack sizes that its code objects need.
+
+    Sizes are wrong if the program breaks other rules; see `stacks_needed`.
+    """
     pairs = zip(program.codes, stacks_needed(program), strict=True)
     codes = (replace(code, stack=needed) for code, needed in pairs)
     return replace(program, codes=tuple(codes))
 
 
 def stacks_needed(program: Program) -> list[int]:
-    """The most cells that each code object has on the stack, 0 where it breaks other rules."""
+    """Return the maximum stack size of each code object in cells; 0 if it breaks another rule."""
     needed = [0] * len(program.codes)
     try:
         check_form(program)
@@ -122,7 +125,7 @@ def _check_condition(code: Code) -> None:
 
 
 def _check_start(code: Code) -> None:
-    """Nothing is called or asked before the first statement begins."""
+    """Check that nothing is called or requested before the first statement begins."""
     todo, seen = [0], {0}
     while todo:
         place = todo.pop()
@@ -139,7 +142,10 @@ def _check_start(code: Code) -> None:
 
 
 def _check_circles(code: Code, stacks: Sequence[Stack | None]) -> None:
-    """Every circle has a LINE or an ASK: without their edges, no instruction leads to itself."""
+    """Check that every cycle contains a LINE or an ASK.
+
+    Depth-first search over the graph without the edges that leave those instructions.
+    """
     done, open_ = 2, 1
     colour = [0] * len(code.instructions)
     for start, stack in enumerate(stacks):

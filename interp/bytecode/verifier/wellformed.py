@@ -1,8 +1,8 @@
-"""Well-formedness: every number names something, every constant is of its kind.
+"""Well-formedness: every number refers to something, and every constant has the right type.
 
-That is all that `interp.bytecode.verifier.verify` asks of types, texts, data, entries, the heads of
-code objects and the operands of instructions, each by itself; what instructions do to the stack is
-checked by `interp.bytecode.verifier.operand_stack`.
+This checks types, texts, data, tables, the heads of code objects and the operands of instructions,
+each on its own. What instructions do to the stack is checked by
+`interp.bytecode.verifier.operand_stack`.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ from interp.values.faults import LinkError
 from interp.values.values import single
 
 _MOST_DIMENSIONS = 3
-#: Types, and parts of requests, lie at most so deep in one another.
+#: The maximum nesting of types and of parts of requests.
 _DEEPEST = 64
 
 
 class VerificationError(Exception):
-    """A program does not keep the rules; the message says where and why, on one line."""
+    """A program violates a rule of the format; the message says where and why, on one line."""
 
     def __init__(self, message: str) -> None:
         super().__init__(printable(message))
 
 
 def check_form(program: Program) -> None:
-    """Check all of a program but what its instructions do; raises `VerificationError`."""
+    """Check everything in a program except stack effects; raises `VerificationError`."""
     _Tables(program).check()
 
 
@@ -67,7 +67,7 @@ class _Tables:
         self._program = program
 
     def check(self) -> None:
-        """Raises `VerificationError`."""
+        """Raise `VerificationError` at the first violation."""
         self._types()
         for text in self._program.texts:
             if any(ord(letter) > 255 for letter in text):
@@ -265,7 +265,7 @@ class _Tables:
                     )
 
     def _ranges(self, code: Code) -> dict[str, tuple[int, int]]:
-        """The least and the largest operand of each kind."""
+        """Return the minimum and maximum operand of each kind."""
         program = self._program
         limits: dict[int | str | None, int] = {
             "length": len(code.instructions),
@@ -288,7 +288,7 @@ class _Tables:
 
 
 def _parts(type_: Type) -> Iterator[Type]:
-    """The types that a type is made of; names are compared in upper case."""
+    """Yield the types of which a type is composed; names are compared without regard to case."""
     match type_:
         case Structure():
             _distinct(type_, [member.name for member in type_.members])
