@@ -1,9 +1,9 @@
-"""Layout of values in cells: sizes, offsets of parts, and conversion between values and cells.
+"""The layout of values in cells: sizes, offsets of parts, conversion between values and cells.
 
 A cell holds one scalar, or nothing. Structures and arrays are flattened: members in order, elements
-row by row. What a cell holds is *raw*: INT an ``int``, REAL a ``float``, BOOL a ``bool``, CHAR its
-code, an enumeration the place of its constant; which of them it is follows from the type. A word of
-an image holds the same, a REAL by its bits.
+row by row. The contents of a cell are *raw*: an ``int`` for INT, a ``float`` for REAL, a ``bool``
+for BOOL, the code of a CHAR, the place of a constant in its enumeration; the type says which. A
+word of an image holds the same, but a REAL as its bits.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ from interp.port.requests import Path
 from interp.values.faults import LinkError
 from interp.values.values import ArrayValue, EnumValue, StructureValue, Value, converted
 
-#: What a cell holds when it has a value.
+#: The contents of a cell that has a value.
 Raw = int | float | bool
-#: The types that one cell holds.
+#: The types whose values fit into one cell.
 Plain = Scalar | Enumeration
 
-#: Of so many types it is remembered how they lie in cells.
+#: The number of types whose layout is cached.
 _REMEMBERED = 1 << 14
 
 _SINGLE = struct.Struct("<f")
@@ -49,13 +49,13 @@ _WORD = struct.Struct("<i")
 
 
 def bits_of(number: float) -> int:
-    """The bits of a single as a signed word."""
+    """Return the bits of a single-precision number as a signed word."""
     found: int = _WORD.unpack(_SINGLE.pack(number))[0]
     return found
 
 
 def real_of(bits: int) -> float:
-    """The single with these bits; it may be infinite or no number."""
+    """Return the single-precision number with these bits; it may be infinite or NaN."""
     found: float = _SINGLE.unpack(_WORD.pack(bits))[0]
     return found
 
@@ -64,7 +64,7 @@ def real_of(bits: int) -> float:
 
 
 def array_sizes(type_: Array) -> tuple[int, ...]:
-    """The sizes of an array, all of them known; raises `LinkError` where they are not."""
+    """Return the sizes of an array; raises `LinkError` if one is unknown or not positive."""
     sizes = tuple(size for size in type_.sizes if size is not None)
     if len(sizes) != len(type_.sizes) or not 1 <= len(sizes) <= 3 or min(sizes) < 1:
         raise LinkError(f"{type_} has no size")
@@ -72,13 +72,13 @@ def array_sizes(type_: Array) -> tuple[int, ...]:
 
 
 def elements(type_: Array) -> int:
-    """How many elements an array has."""
+    """Return the number of elements of an array."""
     return math.prod(array_sizes(type_))
 
 
 @lru_cache(_REMEMBERED)
 def size(type_: Type) -> int:
-    """How many cells a type has; raises `LinkError` for what has none or too many."""
+    """Return the size of a type in cells; raises `LinkError` if it has none or is too large."""
     match type_:
         case Scalar() | Enumeration():
             return 1
@@ -98,7 +98,7 @@ def size(type_: Type) -> int:
 
 @lru_cache(_REMEMBERED)
 def _places(type_: Structure) -> tuple[int, ...]:
-    """The offset of each member."""
+    """Return the offset of each member."""
     places = [0]
     for member in type_.members:
         places.append(places[-1] + size(member.type))
@@ -107,19 +107,19 @@ def _places(type_: Structure) -> tuple[int, ...]:
 
 @lru_cache(_REMEMBERED)
 def _members(type_: Structure) -> Mapping[str, tuple[int, Type]]:
-    """The offset and the type of each member by its name in upper case, the first of each name."""
+    """Return the offset and type of each member by its name in upper case; the first one counts."""
     pairs = zip(type_.members, _places(type_), strict=True)
     return {one.name.upper(): (place, one.type) for one, place in reversed(tuple(pairs))}
 
 
 @lru_cache(_REMEMBERED)
 def row_of(type_: Array) -> Type:
-    """What is left of an array when its first dimension has an index."""
+    """Return the type of an element of the first dimension: a row, or an element."""
     return Array(type_.element, type_.sizes[1:]) if len(type_.sizes) > 1 else type_.element
 
 
 def _step(type_: Structure | Array, offset: int) -> tuple[str | int, Type, int]:
-    """The direct part that has a cell: its name or index, its type, and the offset within it."""
+    """Return the direct part at an offset: its name or index, its type, and the offset in it."""
     if isinstance(type_, Array):
         row = row_of(type_)
         index, left = divmod(offset, size(row))
@@ -130,7 +130,7 @@ def _step(type_: Structure | Array, offset: int) -> tuple[str | int, Type, int]:
 
 
 def kind_at(type_: Type, offset: int) -> Plain:
-    """The type of a cell; ``offset`` is less than the size."""
+    """Return the type of the cell at an offset, which must be less than the size."""
     if isinstance(type_, Array):
         type_ = type_.element
         offset %= size(type_)
@@ -147,9 +147,10 @@ def _kind_in(type_: Structure, offset: int) -> Plain:
 
 
 def path_to(type_: Type, offset: int, wanted: Type | None = None) -> Path | None:
-    """The names and indices that lead to a part; ``None`` where there is no such part.
+    """Return the names and indices that lead to the part at an offset, or ``None``.
 
-    ``wanted`` is the type of the part, by default that of the cell. A row of an array is a part.
+    ``wanted`` is the type of the part; by default it is the single cell. A row of an array is a
+    part.
     """
     if not 0 <= offset < size(type_):
         return None
@@ -163,7 +164,7 @@ def path_to(type_: Type, offset: int, wanted: Type | None = None) -> Path | None
 
 
 def array_at(type_: Type, offset: int, element: Type, dimensions: int) -> Array | None:
-    """The array of so many dimensions, or the rest of one, that begins there."""
+    """Return the array, or the row of one, with these elements and dimensions at an offset."""
     while isinstance(type_, Structure | Array):
         if isinstance(type_, Array) and (type_.element, len(type_.sizes), offset) == (
             *(element, dimensions, 0),
@@ -174,7 +175,7 @@ def array_at(type_: Type, offset: int, element: Type, dimensions: int) -> Array 
 
 
 def offset_of(type_: Type, path: Sequence[str | int]) -> tuple[int, Type] | None:
-    """Where a part is, and its type: the other way round from `path_to`."""
+    """Return the offset and the type of a part, or ``None``; the inverse of `path_to`."""
     offset = 0
     for step in path:
         match type_, step:
@@ -191,9 +192,9 @@ def offset_of(type_: Type, path: Sequence[str | int]) -> tuple[int, Type] | None
 
 @lru_cache(_REMEMBERED)
 def shared_cells(to: Type, of: Type) -> int | None:
-    """How many cells two positions of one family have in common, which are the first of both.
+    """Return the number of leading cells that two positions of one family have in common.
 
-    ``None`` where they are no such positions.
+    Return ``None`` if they are not both cartesian positions or both axis positions.
     """
     families = {_family(to), _family(of)}
     if len(families) != 1 or None in families:
@@ -214,7 +215,7 @@ def _family(type_: Type) -> bool | None:
 
 @lru_cache(_REMEMBERED)
 def shown(type_: Type) -> Type:
-    """The type as values have it: ``@2`` behind a name distinguishes types in programs only."""
+    """Return a type as values show it: without ``@2``, which distinguishes types in a program."""
     match type_:
         case Array():
             return Array(shown(type_.element), type_.sizes)
@@ -228,7 +229,7 @@ def shown(type_: Type) -> Type:
 
 
 def value_of(raw: Raw, type_: Plain) -> Value:
-    """What a cell of a type holds, as a value."""
+    """Return the value in a cell of this type."""
     if isinstance(type_, Enumeration):
         kind = shown(type_)
         assert isinstance(kind, Enumeration), "shown as it is"
@@ -237,7 +238,7 @@ def value_of(raw: Raw, type_: Plain) -> Value:
 
 
 def raw_of(value: Value, type_: Plain) -> Raw:
-    """A value of exactly this type, as a cell holds it."""
+    """Return the contents of a cell for a value of exactly this type."""
     if isinstance(value, EnumValue):
         return value.index
     if isinstance(value, str):
@@ -247,7 +248,7 @@ def raw_of(value: Value, type_: Plain) -> Raw:
 
 
 def value_at(cells: Sequence[Raw | None], address: int, type_: Type) -> Value | None:
-    """The value that lies in cells; ``None`` only for a scalar without a value."""
+    """Return the value stored in cells; ``None`` only for a scalar without a value."""
     match type_:
         case Structure():
             members = [
@@ -266,7 +267,7 @@ def value_at(cells: Sequence[Raw | None], address: int, type_: Type) -> Value | 
 def _elements_at(
     cells: Sequence[Raw | None], address: int, type_: Array, element: Type
 ) -> list[Any]:
-    """The elements of an array; those of numbers and letters quickly, as texts are frequent."""
+    """Return the elements of an array; fast for numbers and letters, because texts are frequent."""
     count = size(type_)
     if element == CHAR:
         letters: Any = cells[address : address + count]
@@ -278,9 +279,9 @@ def _elements_at(
 
 
 def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
-    """A value as cells of a type, converted as an assignment does it.
+    """Return the cells of a value, after it is converted to a type as by an assignment.
 
-    Raises `interp.values.faults.Fault` where that cannot be.
+    Raises `interp.values.faults.Fault` if the value cannot be converted.
     """
     if value is None:
         return [None] * size(type_)
@@ -315,19 +316,19 @@ def _flattened(value: Value | None, type_: Type) -> list[Raw | None]:
 
 
 def word_of(raw: Raw) -> int:
-    """What a cell holds, as a word of an image."""
+    """Return the word of an image for the contents of a cell."""
     return bits_of(raw) if isinstance(raw, float) else int(raw)
 
 
 def raw_of_word(word: int, type_: Plain) -> Raw:
-    """The other way round from `word_of`; the word is one of that type."""
+    """Return the contents of a cell for a valid word; the inverse of `word_of`."""
     if type_ == REAL:
         return real_of(word)
     return bool(word) if type_ == BOOL else word
 
 
 def is_word_of(word: int, type_: Plain) -> bool:
-    """Whether a word stands for a value of that type."""
+    """Return whether a word represents a value of this type."""
     if isinstance(type_, Enumeration):
         return 0 <= word < len(type_.constants)
     if type_ == REAL:

@@ -1,11 +1,11 @@
-"""A program of the machine in memory, as its text and its byte image have it.
+"""A bytecode program in memory; assembly text and image hold the same.
 
-Types, texts, requests, predefined functions, data and code objects are numbered by their place.
-The first types are the four scalars; they are not written anywhere. A cell of the data lists has
-its address, counted from 0 through all variables in order; a cell of a frame its offset: first the
-parameters, then the locals.
+Types, texts, requests, predefined functions, data and code objects are referred to by their index.
+The first four types are the scalars, which are not part of text or image. A cell of the data lists
+has an address, counted from 0 through all variables in order. A cell of a frame has an offset:
+parameters come first, then locals.
 
-Nothing is checked here: see `interp.bytecode.verifier.verify`.
+Nothing is checked here, see `interp.bytecode.verifier.verify`.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ BASIC_TYPES: tuple[Type, ...] = tuple(SCALARS.values())
 
 
 class Mode(Enum):
-    """How something is handed over; the value is the word in the text form."""
+    """How an argument is passed; the value is the word in assembly."""
 
     #: A value; structures are copied cell by cell.
     IN = "in"
     #: A reference.
     REF = "ref"
-    #: A reference to elements, and the sizes of the array.
+    #: A reference to the elements of an array, together with its sizes.
     VIEW = "view"
 
 
 class CodeKind(Enum):
-    """What a code object is; the value is the word in the text form."""
+    """The kind of a code object; the value is the word in assembly."""
 
     ROUTINE = "routine"
-    #: Entered later: what an interrupt, a trigger or a cyclic signal does.
+    #: Executed later by an interrupt, a trigger or a cyclic signal.
     ACTION = "action"
     #: Evaluated later, without side effects.
     CONDITION = "condition"
@@ -50,14 +50,14 @@ class CodeKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A name, a number, a truth value, or what is left out."""
+    """A name, a number, a truth value, or ``None`` for something left out."""
 
     value: str | int | float | bool | None
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A constant of an enumeration."""
+    """A constant of an enumeration, by its place among the constants."""
 
     type: int
     place: int
@@ -65,7 +65,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """What the stack holds; of a view, ``type`` is that of its elements."""
+    """An operand on the stack; for a view, ``type`` is the type of the elements."""
 
     mode: Mode
     type: int
@@ -74,11 +74,12 @@ class Input:
 
 @dataclass(frozen=True, slots=True)
 class Changed:
-    """An argument that gets a new value from the reply; it is handed over by reference.
+    """An argument by reference that gets a new value from the reply.
 
-    For the trace, ``through`` is the offset of the parameter by which it was reached, ``None`` in
-    the frame or the data lists. Where it is a copy of a system variable, ``path`` says of which,
-    with its inputs below the reference, and the new value is written there.
+    ``through`` is the offset of the :OUT parameter through which the variable was reached, for the
+    trace; ``None`` for a variable of the frame or of the data lists. If the argument is a copy of a
+    system variable, ``path`` names the variable, to which the new value is then written. Inputs of
+    the path lie below the reference on the stack.
     """
 
     given: Input
@@ -88,23 +89,23 @@ class Changed:
 
 @dataclass(frozen=True, slots=True)
 class Handle:
-    """An action or a condition, with the frame it is made in."""
+    """An action or a condition, together with the frame in which the handle is created."""
 
     code: int
 
 
 @dataclass(frozen=True, slots=True)
 class Items:
-    """Several, in order."""
+    """A sequence of parts."""
 
     parts: tuple[Argument, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A request within a request, or another record of `interp.port.requests`, by its name.
+    """A nested request or another record of `interp.port.requests`.
 
-    ``line`` is where it stands in the source, 0 where the record has no place.
+    ``line`` is its line in the source, or 0 if the record has no place.
     """
 
     name: str
@@ -117,10 +118,10 @@ Argument = Constant | Choice | Input | Changed | Handle | Items | Record
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """A request: its name and its fields; inputs are on the stack in this order.
+    """A request with its fields; inputs are on the stack in the order of the fields.
 
-    ``result`` is the type of the reply, ``None`` where there is none. A value of one cell is
-    pushed, a larger one goes where a reference leads that lies on top of the inputs.
+    ``result`` is the type of the answer, or ``None`` if there is none. An answer of one cell is
+    pushed; a larger one is stored through the reference on top of the inputs.
     """
 
     request: str
@@ -130,7 +131,7 @@ class Ask:
 
 @dataclass(frozen=True, slots=True)
 class Builtin:
-    """A predefined function with its arguments; else like `Ask`."""
+    """A call of a predefined function, otherwise like `Ask`."""
 
     name: str
     parts: tuple[Argument, ...]
@@ -138,22 +139,22 @@ class Builtin:
 
 
 def printable(text: str) -> str:
-    """A text on one line: names come from images and may hold anything."""
+    """Return a text with unprintable characters escaped; names in an image can be anything."""
     return "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
 
 
 def variables(code: Code) -> tuple[Parameter | Local, ...]:
-    """The parameters and locals of a code object, in the order of the frame."""
+    """Return the parameters and locals of a code object, in the order of the frame."""
     return (*code.parameters, *code.locals)
 
 
 def stack_cells(given: Parameter | Input) -> int:
-    """How many cells an argument has on the stack; a structure lies there by reference."""
+    """Return the number of stack cells of an argument; a structure is passed by reference."""
     return 1 + given.dimensions
 
 
 def inputs_of(parts: tuple[Argument, ...]) -> Iterator[Input]:
-    """What the stack holds for an entry, from the bottom to the top."""
+    """Yield the operands of an entry on the stack, from bottom to top."""
     for part in parts:
         if isinstance(part, Input):
             yield part
@@ -169,7 +170,7 @@ def inputs_of(parts: tuple[Argument, ...]) -> Iterator[Input]:
 
 @dataclass(frozen=True, slots=True)
 class Data:
-    """A variable of a data list; ``is_global`` where other modules see it."""
+    """A variable of a data list; ``is_global`` if other modules can see it."""
 
     module: str
     name: str
@@ -179,10 +180,10 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class Import:
-    """What a routine calls a variable of another data list, by its number among the data [ADV-05].
+    """The name under which a routine imports a variable of another data list [ADV-05].
 
-    Without a routine it is what the whole module calls it. Instructions have addresses; it is for
-    texts that name variables.
+    ``number`` is the index of the variable. If ``routine`` is empty, the whole module imports it.
+    Instructions use addresses; this is for texts that name variables at run time.
     """
 
     module: str
@@ -193,7 +194,7 @@ class Import:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a code object; see `Input` for views."""
+    """A parameter of a code object; for views see `Input`."""
 
     name: str
     mode: Mode
@@ -203,7 +204,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Local:
-    """A variable of a frame; has no value when the frame is made."""
+    """A local variable; it has no value when the frame is created."""
 
     name: str
     type: int
@@ -211,7 +212,7 @@ class Local:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Where a parameter or a local is: its first cell and how many it has."""
+    """The position of a parameter or local in the frame, in cells."""
 
     offset: int
     cells: int
@@ -220,7 +221,7 @@ class Slot:
 
 @dataclass(frozen=True, slots=True)
 class Instruction:
-    """An instruction; targets are places of instructions in the code object, not of words."""
+    """An instruction; jump targets are indices of instructions, not of words."""
 
     op: Op
     operands: tuple[int, ...] = ()
@@ -230,10 +231,10 @@ class Instruction:
 class Code:
     """A code object.
 
-    ``line`` is where it begins in ``file``. An action or condition belongs to the code object
-    ``owner`` and has a reference or view parameter for each variable of the owner that it uses;
-    ``captures`` are the offsets of these in the owner's frame. ``stack`` is the largest number of
-    cells that it has on the stack of operands.
+    ``line`` is its first line in ``file``. An action or condition belongs to the code object
+    ``owner`` and has a parameter by reference or view for each variable of the owner that it uses;
+    ``captures`` are the offsets of these variables in the owner's frame. ``stack`` is the maximum
+    size of the operand stack in cells.
     """
 
     name: str
@@ -253,7 +254,8 @@ class Code:
 class Program:
     """A program.
 
-    ``initial`` are the initial values of the data lists, as address and word, in ascending order.
+    ``initial`` has the initial values of the data lists as pairs of address and word, by ascending
+    address.
     """
 
     types: tuple[Type, ...]
@@ -267,7 +269,7 @@ class Program:
 
     @cached_property
     def addresses(self) -> tuple[int, ...]:
-        """The address of each variable of the data lists, and behind them how many cells."""
+        """The address of each variable of the data lists, followed by the total number of cells."""
         places = [0]
         for variable in self.data:
             places.append(places[-1] + size(self.types[variable.type]))
@@ -275,7 +277,7 @@ class Program:
 
     @cached_property
     def cells(self) -> tuple[Raw | None, ...]:
-        """What is in the cells of the data lists at first."""
+        """The initial contents of the data lists; ``None`` is a cell without a value."""
         cells: list[Raw | None] = [None] * self.addresses[-1]
         for address, word in self.initial:
             number = self.data_at(address)
@@ -286,17 +288,17 @@ class Program:
 
     @cached_property
     def frames(self) -> tuple[int, ...]:
-        """How many cells a frame of each code object has."""
+        """The frame size of each code object in cells."""
         return tuple(self.frame_size(code) for code in self.codes)
 
     def data_at(self, address: int) -> int | None:
-        """The number of the variable of the data lists that has a cell."""
+        """Return the index of the variable of the data lists at an address, or ``None``."""
         if not 0 <= address < self.addresses[-1]:
             return None
         return bisect_right(self.addresses, address) - 1
 
     def slots(self, code: Code) -> tuple[Slot, ...]:
-        """The parameters and locals of a code object, in their order."""
+        """Return the positions of the parameters and locals of a code object, in order."""
         slots: list[Slot] = []
         offset = 0
         for variable in variables(code):
@@ -306,11 +308,11 @@ class Program:
         return tuple(slots)
 
     def width(self, variable: Parameter | Local) -> int:
-        """How many cells a parameter or a local has in its frame."""
+        """Return the number of cells of a parameter or local in its frame."""
         if isinstance(variable, Parameter) and variable.mode is not Mode.IN:
             return stack_cells(variable)
         return size(self.types[variable.type])
 
     def frame_size(self, code: Code) -> int:
-        """How many cells a frame of the code object has."""
+        """Return the number of cells of a frame of the code object."""
         return sum(map(self.width, code.parameters)) + sum(map(self.width, code.locals))

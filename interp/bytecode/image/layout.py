@@ -1,25 +1,23 @@
-"""The byte form of a program: a header, a table of sections, and the sections.
+"""The image format of a program: a header, a table of sections, and the sections.
 
-All numbers are words of 32 bits, the lowest byte first; all but the strings is words, so that a
-reader in C needs no more than an array. The header:
+All numbers are 32-bit words in little-endian order. Everything except strings consists of words, so
+a reader in C can use the image as an array. The header:
 
 ===== ==============================================================================================
-bytes
-===== ==============================================================================================
-0     ``KRLI``
-4     version of the format and the instruction set
-8     length of the image
-12    CRC-32 of all that follows
-16    number of sections; then for each its name, four letters, and its length
-===== ==============================================================================================
+bytes =====
+============================================================================================== 0
+``KRLI`` 4     version of the format and the instruction set 8     length of the image 12    CRC-32
+of everything that follows 16    number of sections; then for each its name of four letters and its
+length =====
+==============================================================================================
 
-The sections follow one another in the order of the table, which is that of `SECTIONS`. ``STRS``
-has all strings, each once: how many, their lengths, and their UTF-8 bytes, filled up with zeros to
-a whole word. Elsewhere a string is its number. Lists are their length and what is in them; what may
-be missing is 0, or its number and one more. Targets are words of the code object, not instructions.
+The sections have the order of the table, which is that of `SECTIONS`. ``STRS`` has all strings,
+each once: their number, their lengths, and their UTF-8 bytes, padded with zeros to a whole word.
+Elsewhere a string is its index. A list is its length followed by its items. An optional number is 0
+if it is missing, otherwise the number plus one. Jump targets are word offsets in the code object.
 
-Here is what both sides have to agree on: `interp.bytecode.image.writer` writes images,
-`interp.bytecode.image.reader` reads them.
+The writer and the reader of images, `interp.bytecode.image.writer` and
+`interp.bytecode.image.reader`, share these definitions.
 """
 
 from __future__ import annotations
@@ -35,7 +33,7 @@ KINDS = tuple(CodeKind)
 
 
 class TypeTag(IntEnum):
-    """How a type begins."""
+    """The first word of a type."""
 
     STRUCTURE = 0
     ENUMERATION = 1
@@ -43,7 +41,7 @@ class TypeTag(IntEnum):
 
 
 class PartTag(IntEnum):
-    """How a part of a request begins."""
+    """The first word of a part of a request."""
 
     NIL = 0
     FALSE = 1

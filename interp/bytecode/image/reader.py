@@ -1,7 +1,7 @@
-"""From an image to its program; the format is described in `interp.bytecode.image.layout`.
+"""Reads an image into a program; `interp.bytecode.image.layout` describes the format.
 
-What is read is not trusted: `read_image` raises `ImageError` for whatever is not of this format.
-Whether the program keeps the rules is checked by `interp.bytecode.verifier.verify`.
+Images are not trusted: `read_image` raises `ImageError` for any bytes that are not of this format.
+`interp.bytecode.verifier.verify` then checks the program.
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ _DEEPEST = 64
 
 
 class ImageError(Exception):
-    """Bytes are no image of this version, or a damaged one; the message is one clear line."""
+    """The bytes are not an image of this version, or are damaged; the message is one clear line."""
 
     def __init__(self, message: str) -> None:
         super().__init__(printable(message))
 
 
 def read_image(data: bytes) -> Program:
-    """The program of an image; raises `ImageError`."""
+    """Return the program in an image; raises `ImageError`."""
     if data[:4] != MAGIC:
         raise ImageError("not an image: it does not begin with KRLI")
     if len(data) < 20:
@@ -83,7 +83,7 @@ def read_image(data: bytes) -> Program:
 
 
 class _Reader:
-    """Reads the sections, one after the other."""
+    """Reads the sections one after another."""
 
     def __init__(self, sections: dict[str, bytes]) -> None:
         self._sections = sections
@@ -172,7 +172,7 @@ class _Reader:
     # ------------------------------------------------------------------------------ types
 
     def _add_type(self) -> None:
-        """Reads a type. Names differ, so that types are never compared by what they are made of."""
+        """Read a type and add it; names are unique, so that types can be compared by name."""
         type_ = self._type()
         if isinstance(type_, Structure | Enumeration):
             if type_.name.upper() in self._names:
@@ -284,7 +284,7 @@ class _Reader:
     def _targets(
         self, shape: Shape, operands: tuple[int, ...], numbers: dict[int, int]
     ) -> tuple[int, ...]:
-        """The operands with instructions as targets."""
+        """Return the operands with word offsets of jump targets replaced by instruction indices."""
         if "target" not in shape.operands:
             return operands
         found = []

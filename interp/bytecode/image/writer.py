@@ -1,4 +1,4 @@
-"""From a program to its image; the format is described in `interp.bytecode.image.layout`."""
+"""Writes a program as an image; `interp.bytecode.image.layout` describes the format."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _T = TypeVar("_T")
 
 
 def write_image(program: Program) -> bytes:
-    """The image of a program that was verified."""
+    """Return the image of a verified program."""
     return _Writer(program).image()
 
 
@@ -194,7 +194,7 @@ class _Writer:
 
 
 def _words(code: Code) -> list[int]:
-    """The instructions as words."""
+    """Return the words of the instructions of a code object."""
     shapes = instructions()
     starts, count = [], 0
     for instruction in code.instructions:
