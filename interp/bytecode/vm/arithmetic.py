@@ -1,7 +1,7 @@
-"""Numbers, comparisons, poses: what each of these instructions does.
+"""The instructions that compute: numbers, comparisons, poses.
 
-What `interp.values.operators` has as a primitive is done by its function, but for the most frequent
-ones: these have operations of their own, which give the same.
+Primitives of `interp.values.operators` are called as functions. The most frequent ones have an
+operation of their own with the same result.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from interp.values.values import StructureValue, single
 
 
 class ArithmeticRules(Rules):
-    """Makes the operations that compute."""
+    """Makes the operations of instructions that compute."""
 
     def rules(self) -> Mapping[Op, Rule]:
-        """The makers of operations by opcode."""
+        """Return the factory of each opcode."""
         rules: dict[Op, Rule] = {
             Op[name.upper()]: partial(self._primitive, primitive)
             for name, primitive in PRIMITIVES.items()
@@ -139,7 +139,7 @@ _INT_COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
     "LE": operator.le,
     "GE": operator.ge,
 }
-#: By the names of the instructions that continue elsewhere unless they hold.
+#: The comparisons of instructions that jump unless the comparison is true.
 _COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
     f"{name}_{kind}": compare
     for name, compare in _INT_COMPARISONS.items()

@@ -1,4 +1,4 @@
-"""Instructions for elements, rows, views and whole arrays."""
+"""The instructions for elements, rows, views and whole arrays."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from interp.values.faults import fault
 
 
 class ArrayRules(Rules):
-    """Makes the operations that work on arrays."""
+    """Makes the operations of array instructions."""
 
     def rules(self) -> Mapping[Op, Rule]:
-        """The makers of operations by opcode."""
+        """Return the factory of each opcode."""
         return {
             Op.INDEX: self._index,
             Op.INDEX_LOCAL: self._index_local,
@@ -130,7 +130,7 @@ class ArrayRules(Rules):
         return operation
 
     def _before(self, site: Site, after: Operation) -> Site:
-        """The place before an operation that the same instruction consists of."""
+        """Return the site of an operation that precedes another one of the same instruction."""
         return Site(site.code, site.place, site.body, after)
 
     def _index_view(self, site: Site, place: int) -> Operation:
@@ -271,13 +271,13 @@ class ArrayRules(Rules):
         return operation
 
     def _array(self, number: int) -> tuple[tuple[int, ...], int]:
-        """The sizes of an array type and the cells of an element."""
+        """Return the sizes of an array type and the width of an element in cells."""
         type_ = self._types[number]
         assert isinstance(type_, Array), "verified"
         return array_sizes(type_), size(type_.element)
 
     def _view_at(self, site: Site, place: int) -> tuple[int, int]:
-        """The dimensions of a parameter that is a view, and the cells of an element."""
+        """Return the number of dimensions of an array parameter and the width of its elements."""
         for slot in self._program.slots(self._program.codes[site.code]):
             if slot.offset == place and isinstance(slot.variable, Parameter):
                 return slot.variable.dimensions, size(self._types[slot.variable.type])
@@ -285,7 +285,7 @@ class ArrayRules(Rules):
 
 
 def _view(cells: list[Any], first: int, dimensions: int) -> list[Any]:
-    """The base and the sizes that a parameter is; faults ``uninitialised`` without them."""
+    """Return the address and sizes of an array parameter; raises ``uninitialised``."""
     view = cells[first : first + 1 + dimensions]
     if view[0] is None:
         raise fault("uninitialised")
@@ -293,7 +293,7 @@ def _view(cells: list[Any], first: int, dimensions: int) -> list[Any]:
 
 
 def _flat(stack: list[Any], sizes: Sequence[Any]) -> int:
-    """Take the indices of so many dimensions; gives the place of the element. Faults ``index``."""
+    """Pop one index for each dimension; return the offset of the element. Raises ``index``."""
     count = len(sizes)
     place = 0
     for index, one in zip(stack[-count:], sizes, strict=True):

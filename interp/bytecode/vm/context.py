@@ -1,4 +1,4 @@
-"""Context shared by the factories of operations."""
+"""What the factories of operations share."""
 
 from __future__ import annotations
 
@@ -9,47 +9,47 @@ from typing import Any, Protocol
 from interp.bytecode.program import Instruction, Program
 from interp.bytecode.vm.state import Operation, State
 
-#: Makes an operation of the place of an instruction and its operands.
+#: Makes an operation from the site and the operands of an instruction.
 Rule = Callable[..., Operation]
 
 
 class Hooks(Protocol):
-    """What instructions need of the machine around them."""
+    """The services of the machine that instructions need."""
 
-    #: Whether calls, and their ends, are traced.
+    #: Whether calls and returns are traced.
     calls_are_traced: bool
     returns_are_traced: bool
-    #: What ends an action, and what ends the routine that the program began with.
+    #: The operations that end an action, and the first routine of the program.
     leave_action: Operation
     finish: Operation
 
     def line(self, place: int, after: Operation) -> Operation:
-        """What `LINE` does at a place of its code object."""
+        """Return the operation of a `LINE` instruction."""
 
     def other_line(self, place: int, after: Operation) -> Operation:
-        """What `AT` does."""
+        """Return the operation of an `AT` instruction."""
 
     def proceed(self, after: Operation) -> Operation:
-        """What `PROCEED` does."""
+        """Return the operation of a `PROCEED` instruction."""
 
     def ask(self, number: int, after: Operation) -> Operation:
-        """What `ASK` does."""
+        """Return the operation of an `ASK` instruction."""
 
     def builtin(self, number: int, after: Operation) -> Operation:
-        """What `BUILTIN` does."""
+        """Return the operation of a `BUILTIN` instruction."""
 
     def tell(self, instruction: Instruction, after: Operation) -> Operation:
-        """What an instruction for the trace does."""
+        """Return the operation of a trace instruction."""
 
     def tell_call(self, code: int) -> None:
-        """A routine is about to be called."""
+        """Trace the call of a routine."""
 
     def tell_leave(self) -> None:
-        """The routine that runs is about to end."""
+        """Trace the end of the current routine."""
 
 
 class Site:
-    """Where an instruction stands: its code object, place, and the operations around it."""
+    """The place of an instruction: its code object, its index, and the operations around it."""
 
     __slots__ = ("after", "body", "code", "place")
 
@@ -62,10 +62,10 @@ class Site:
 
 @dataclass(frozen=True, slots=True)
 class Runtime:
-    """The program, the state it works on, and what is around it.
+    """The program, its state, and the services around it.
 
-    ``entries`` are the first operations of code objects, ``frames`` the sizes of their frames,
-    ``owners`` those whose variables actions and conditions use.
+    ``entries`` are the first operations of all code objects, ``frames`` their frame sizes in cells,
+    and ``owners`` the numbers of those whose variables are used by actions and conditions.
     """
 
     program: Program
@@ -91,7 +91,7 @@ class Rules:
 def computed(
     compute: Callable[..., Any], count: int, stack: list[Any], after: Operation
 ) -> Operation:
-    """An operation that puts the value of a function in place of its one or two operands."""
+    """Return an operation that replaces one or two operands on the stack by a function of them."""
     if count == 1:
 
         def of_one() -> Operation:

@@ -1,4 +1,4 @@
-"""Statements, jumps, calls, loops: what each of these instructions does."""
+"""The instructions for statements, jumps, calls and loops."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from interp.values.faults import FAULTS, LinkError, fault
 
 
 class ControlRules(Rules):
-    """Makes the operations that decide what comes next."""
+    """Makes the operations of control flow instructions."""
 
     def rules(self) -> Mapping[Op, Rule]:
-        """The makers of operations by opcode."""
+        """Return the factory of each opcode."""
         hooks = self._runtime.hooks
         return {
             Op.LINE: lambda site, _line, _to: hooks.line(site.place, site.after),
@@ -99,7 +99,7 @@ class ControlRules(Rules):
         return operation
 
     def _receiver(self, parameters: Sequence[Parameter]) -> Callable[[list[Any]], list[Any]] | None:
-        """What makes cells of arguments; ``None`` where they are those cells already."""
+        """Return a function that copies structures among arguments; ``None`` without any."""
         cells = self._cells
         widths = [
             (stack_cells(parameter), size(self._types[parameter.type]))

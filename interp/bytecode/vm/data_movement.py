@@ -1,4 +1,4 @@
-"""Constants, cells, references, structures: what each of these instructions does."""
+"""The instructions for constants, cells, references and structures."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from interp.values.faults import fault
 
 
 class MovementRules(Rules):
-    """Makes the operations that move what lies in cells."""
+    """Makes the operations of instructions that move data."""
 
     def rules(self) -> Mapping[Op, Rule]:
-        """The makers of operations by opcode."""
+        """Return the factory of each opcode."""
         return {
             Op.PUSH_INT: self._push,
             Op.PUSH_REAL: lambda site, bits: self._push(site, real_of(bits)),
@@ -172,7 +172,7 @@ class MovementRules(Rules):
 
 
 def load(state: State, site: Site) -> Operation:
-    """What `LOAD` does: the cell that the reference on top leads to."""
+    """Return the operation of `LOAD`: it replaces the reference on top of the stack by its cell."""
     cells, stack, after = state.cells, state.stack, site.after
 
     def operation() -> Operation:

@@ -1,11 +1,11 @@
-"""The machine as an executor: the port of `interp.port.executor` on a verified program.
+"""The bytecode machine: runs a verified program behind the port of `interp.port.executor`.
 
-It goes from operation to operation (`interp.bytecode.vm.threaded_code`) until one of them has put a
-request into the state and gives nothing to continue with.
+It runs operation after operation (see `interp.bytecode.vm.threaded_code`) until one of them stores
+a request in the state and returns no next operation.
 
-A fault that ON_ERROR_PROCEED takes is noted in ``$ERR.NUMBER`` by a request to write: the number of
-its message, or 1 where it has none. Then the routine continues behind the statement, as it does
-behind the one that RESUME comes back to.
+If ON_ERROR_PROCEED is active, a fault is stored in ``$ERR.NUMBER`` by a write request: the number
+of its message, or 1 if it has none. The routine then continues after the failed statement. RESUME
+continues in the same way after the statement to which it returns.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class _Open:
-    """What the machine does next: run an operation, or wait for the reply to a request.
+    """How the machine continues: with an operation, or after the reply to a request.
 
-    ``is_asked`` where the request was handed over since the program was interrupted last.
+    ``is_asked`` says whether the request was made again since the last interruption of the program.
     """
 
     operation: Operation | None = None
@@ -61,9 +61,9 @@ class _Open:
 
 @dataclass(frozen=True, slots=True)
 class _Entered:
-    """What was interrupted by `Machine.enter`, and how many calls were open then.
+    """What `Machine.enter` has interrupted, and the number of open calls at that time.
 
-    ``final`` is the end of the program where it has ended: the arm may still be on its way.
+    ``final`` is the final request if the program has ended already; the arm may still move then.
     """
 
     calls: int
@@ -73,11 +73,12 @@ class _Entered:
 
 
 class Machine:
-    """Runs a verified program from a routine without parameters on.
+    """Runs a verified program, beginning with a routine that has no parameters.
 
-    It is given by name, or by the number of its code object. ``beside`` is a machine of the same
-    program whose data lists it shares: their cells come first in one list, then the frames of each
-    machine in a range of their own. Raises `LinkError` where the program cannot begin with it.
+    The routine is given by its name or by the number of its code object. ``beside`` is a machine
+    that runs the same program and shares its data lists: one list of cells begins with the data
+    lists, and the frames of each machine follow in a range of their own. Raises `LinkError` if the
+    routine is missing or has parameters.
     """
 
     def __init__(
@@ -108,10 +109,10 @@ class Machine:
         self._first = self._state.fp
         self._open = _Open(self._threaded.entries[number])
 
-    # ----------------------------------------------------------------------- what it is made of
+    # ----------------------------------------------------------------------- parts
 
     def _made_state(self, limits: Limits) -> State:
-        """The cells; ``self._together`` are the machines that have the data lists already."""
+        """Return the state; ``self._together`` are the machines that share the data lists."""
         program = self._program
         count, data = len(self._together), program.addresses[-1]
         if count == 0:
@@ -125,7 +126,7 @@ class Machine:
         return ThreadedCode(program, self._state, self._services)
 
     def _begin(self, number: int) -> None:
-        """Make the first frame."""
+        """Create the first frame."""
         state = self._state
         state.code, first, frame = number, state.fp, self._threaded.frames[number]
         state.cells[first : first + frame] = [None] * frame
@@ -144,15 +145,15 @@ class Machine:
 
     @property
     def depth(self) -> int:
-        """How many calls deep the program is; 0 in the routine it began with."""
+        """The depth of calls; 0 in the first routine."""
         return self._services.depth
 
     def data(self) -> list[Raw | None]:
-        """What the cells of the data lists hold now."""
+        """Return the contents of the cells of the data lists."""
         return self._state.cells[: self._program.addresses[-1]]
 
     def advance(self, reply: Value | Fault | None = None) -> Request:
-        """Compute until the world is needed; see `interp.port.executor.Executor`."""
+        """Run until the next request; see `interp.port.executor.Executor`."""
         if self._final is not None:
             return self._final
         now, state = self._open, self._state
@@ -175,7 +176,7 @@ class Machine:
         return passed or request
 
     def _passed(self, at: At) -> Request | None:
-        """What has passed before a request without being asked for, if anything has."""
+        """Return the request that reports slices or advance stops that have passed, if any."""
         counter = self._services.counter
         if stops := counter.stopped():
             return StopAdvance(at, stops)
@@ -183,9 +184,9 @@ class Machine:
         return Slice(at, slices) if slices else None
 
     def enter(self, code: CodeHandle) -> None:
-        """Push an action, which runs before the program continues.
+        """Start an action, which runs before the program continues.
 
-        It finds no variables where the routine that handed it over has ended.
+        If the routine that created the action has ended, the action finds no variables.
         """
         state, counter, before = self._state, self._services.counter, self._open
         if before.request is not None:  # it will be asked again
@@ -200,7 +201,7 @@ class Machine:
         self._open = _Open(self._threaded.entries[number])
 
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
-        """The value of a condition; raises `interp.values.faults.Fault`."""
+        """Return the value of a condition; raises `interp.values.faults.Fault`."""
         state = self._state
         number, serial = self._parts_of(code, CodeKind.CONDITION)
         height, calls, guard = len(state.stack), len(state.calls), self._services.counter.guard
@@ -228,13 +229,13 @@ class Machine:
                 self._pop_frame()
 
     def companion(self, routine: str, sink: Sink | None = None) -> Machine:
-        """Another machine over the same data lists; see `interp.port.executor.Executor`."""
+        """Return another machine with the same data lists; see `interp.port.executor.Executor`."""
         return type(self)(
             self._verified, routine, self._limits, sink, self._random, beside=self._together[0]
         )
 
     def unwind(self, depth: int) -> None:
-        """Leave all routines deeper than ``depth``, and what was entered there [INT-10]."""
+        """Leave all routines deeper than ``depth``, with the actions entered in them [INT-10]."""
         while self.depth > depth or self._is_in_action():
             self._leave_frame()
         self._services.counter.guard = Guard.OFF
@@ -243,7 +244,7 @@ class Machine:
     # ----------------------------------------------------------------------- skipping
 
     def standing(self) -> object | None:
-        """All that it continues from; see `interp.port.executor.Recurrent`."""
+        """Return everything that determines the continuation; see `interp.port.executor`."""
         now, state, counter, random = self._open, self._state, self._services.counter, self._random
         counted = counter.standing
         is_known = state.site is not None and now.request is not None and not self._entered
@@ -252,41 +253,41 @@ class Machine:
         return counted, state.site, repr(now.request), now.is_asked, random.state, self._memory()
 
     def _memory(self) -> object:
-        """The frame that runs, the open calls, the data lists and the frames."""
+        """Return the current frame, the open calls, the data lists and the cells of all frames."""
         state, data = self._state, self._program.addresses[-1]
         end = state.fp + self._threaded.frames[state.code]
         cells = state.cells[:data], state.cells[self._first : end], state.stack
         frame = state.code, state.fp, state.base, state.statement, state.serial, state.serials
         counts = state.left, state.quota, state.whole, state.stops
-        # As bytes: the numbers 1, 1.0 and TRUE are equal, and so are both zeros.
+        # As bytes, because 1, 1.0 and TRUE are equal in Python, and so are 0.0 and -0.0.
         return frame, counts, tuple(state.calls), marshal.dumps(cells, 2)
 
     @property
     def spare(self) -> int:
-        """How many statements may be skipped."""
+        """The number of statements that may be skipped."""
         return self._services.counter.spare
 
     def skip(self, statements: int) -> None:
-        """So many more statements have begun."""
+        """Count this number of statements as begun."""
         self._services.counter.skip(statements)
 
     # ----------------------------------------------------------------------- inspection
 
     @property
     def begun(self) -> int:
-        """How many statements have begun."""
+        """The number of statements that have begun."""
         return self._services.counter.begun
 
     def ask_at(self, count: int) -> None:
-        """The slice that has begun ends once so many statements have begun altogether."""
+        """End the current slice when this number of statements has begun in all."""
         self._services.counter.ask_at(count)
 
     def break_at(self, places: Breaks) -> bool:
-        """Ask for time before statements that begin in these lines: not this machine."""
+        """Return whether there are no breakpoints: this machine cannot stop before statements."""
         return not places
 
     def frames(self) -> tuple[StackFrame, ...]:
-        """What is open; see `interp.port.inspection`."""
+        """Return the open frames; see `interp.port.inspection`."""
         found: list[StackFrame] = []
         depth, actions = self.depth, {one.calls for one in self._entered}
         for number in range(len(self._state.calls) + 1):
@@ -304,15 +305,15 @@ class Machine:
         return tuple(found)
 
     def look(self, text: str, frame: int = 0) -> Seen | None:
-        """A variable where the program is; see `interp.port.inspection`."""
+        """Return a variable as seen from a frame; see `interp.port.inspection`."""
         return self._names(frame).look(text)
 
     def put(self, text: str, value: Value, frame: int = 0) -> None:
-        """Give a variable a value; see `interp.port.inspection`."""
+        """Assign a value to a variable; see `interp.port.inspection`."""
         self._names(frame).put(text, value)
 
     def _frame(self, number: int) -> tuple[int, int, int]:
-        """The code object, the first cell and the statement of a frame, the innermost first."""
+        """Return code object, first cell and statement of a frame; 0 is the innermost frame."""
         state = self._state
         if number == 0:
             return state.code, state.fp, state.statement
@@ -324,7 +325,7 @@ class Machine:
         return Names(self._program, InFrame(self._state.cells, code, first))
 
     def select(self, line: int) -> None:
-        """Go on at a line of the routine that runs; see `interp.port.inspection`."""
+        """Continue at a line of the current routine; see `interp.port.inspection`."""
         state = self._state
         instructions = self._program.codes[state.code].instructions
         for place, one in enumerate(instructions):
@@ -338,7 +339,7 @@ class Machine:
     # ----------------------------------------------------------------------- running
 
     def _run(self, operation: Operation | None) -> None:
-        """Go from operation to operation until one stops for a request."""
+        """Run operations until one stops for a request."""
         try:
             while operation is not None:
                 operation = operation()
@@ -346,7 +347,7 @@ class Machine:
             self._failed(error)
 
     def _failed(self, error: RuntimeFailure) -> None:
-        """The program ends, or the fault is noted or skipped where its limits or it say so."""
+        """Handle a failure: record or skip the fault if allowed, otherwise end the program."""
         state, services = self._state, self._services
         is_fault = isinstance(error, Fault)
         # Behind the last statement of a function.
@@ -372,7 +373,7 @@ class Machine:
         services.counter.asked()
 
     def _behind_statement(self) -> Operation:
-        """The operation behind the statement that began last in the frame that runs."""
+        """Return the operation after the last statement that began in the current frame."""
         state = self._state
         del state.stack[state.base :]
         _, target = self._program.codes[state.code].instructions[state.statement].operands
@@ -389,7 +390,7 @@ class Machine:
         _, state.code, state.fp, state.base, state.statement, state.serial = call
 
     def _leave_frame(self) -> None:
-        """Leave a frame that is not to continue, and forget what it had interrupted."""
+        """Drop the current frame and, if it is an action, what the action has interrupted."""
         if self._is_in_action():
             self._forget_entered()
         self._pop_frame()
@@ -400,7 +401,7 @@ class Machine:
         return self._entered.pop()
 
     def _leave_action(self) -> None:
-        """An action has ended: what it had interrupted continues, or is asked again."""
+        """End an action: what it has interrupted continues, or makes its request again."""
         self._state.request = End(self._services.at())
         self._pop_frame()
         entered = self._forget_entered()
@@ -408,18 +409,18 @@ class Machine:
         self._open, self._final = entered.open, entered.final
 
     def _finish(self) -> None:
-        """The routine that the program began with has ended."""
+        """End the program, because its first routine has ended."""
         self._state.request = self._final = End(self._services.at())
 
     def _parts_of(self, code: CodeHandle, kind: CodeKind) -> tuple[int, int]:
-        """The number of the code object, and the serial of the frame it was handed out in."""
+        """Return the number of a code object and the serial of the frame of its handle."""
         serial, number = divmod(code.number, len(self._program.codes))
         if self._program.codes[number].kind is not kind:
             raise ValueError(f"{code} is no {kind.value}")
         return number, serial
 
     def _push_frame(self, number: int, serial: int, after: Operation) -> None:
-        """Make a frame for an action or a condition; faults `stack`."""
+        """Create a frame for an action or a condition; raises the fault ``stack``."""
         state, frames = self._state, self._threaded.frames
         first = state.fp + frames[state.code]
         if first + frames[number] > state.most_cells:
@@ -432,7 +433,7 @@ class Machine:
         state.statement, state.serial = -1, 0
 
     def _captures(self, number: int, serial: int) -> list[Any]:
-        """The parameters of an action or condition; none where the owner's frame has gone."""
+        """Return the arguments of an action or condition; none if the owner's frame has ended."""
         code = self._program.codes[number]
         owner = self._frame_of(serial) if code.captures else None
         if owner is None:
@@ -443,7 +444,7 @@ class Machine:
         return found
 
     def _captured(self, number: int, parameter: Parameter, owner: int, place: int) -> list[Any]:
-        """The reference or view that a parameter is, from the variable of the owner's frame."""
+        """Return the reference or view to a variable in the owner's frame, for a parameter."""
         code = self._program.codes[number]
         assert code.owner is not None, "only what has an owner captures"
         for slot in self._program.slots(self._program.codes[code.owner]):
@@ -454,7 +455,7 @@ class Machine:
         return [owner + place]
 
     def _frame_of(self, serial: int) -> int | None:
-        """The first cell of a frame, ``None`` where its routine has ended."""
+        """Return the first cell of the frame with this serial, or ``None`` if it has ended."""
         state = self._state
         if state.serial == serial:
             return state.fp
@@ -465,7 +466,7 @@ class Machine:
 
 
 def _given(completion: Completion, reply: Value | Fault | None) -> Operation:
-    """The operation that takes a reply."""
+    """Return the operation that passes a reply to a completion."""
 
     def operation() -> Operation | None:
         if isinstance(reply, Fault):
@@ -476,7 +477,7 @@ def _given(completion: Completion, reply: Value | Fault | None) -> Operation:
 
 
 def _routine(program: Program, routine: str | int) -> int:
-    """The number of the first routine of a name; raises `LinkError` where it cannot begin."""
+    """Return the number of the first routine with this name; raises `LinkError`."""
     for number, code in enumerate(program.codes):
         if routine not in (number, code.name.upper()) or code.kind is not CodeKind.ROUTINE:
             continue

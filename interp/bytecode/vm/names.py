@@ -1,4 +1,4 @@
-"""Names of variables and their parts, for the trace and for VARSTATE."""
+"""Names of variables and their parts, for the trace, VARSTATE and the debugger."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _STEP = re.compile(r"\w+", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class InFrame:
-    """A frame that is open: the cells, the number of its code object, its first cell."""
+    """An open frame: all cells, the number of its code object, and its first cell."""
 
     cells: list[Raw | None]
     code: int
@@ -43,10 +43,10 @@ class InFrame:
 
 
 class Names:
-    """Finds out what is called how, and what it has as its value.
+    """Maps addresses to names and names to addresses and values.
 
-    An assignment is reported by its address, so a name may not be found: a program that reports
-    something else than it has assigned gets none.
+    The trace reports an assignment by its address. An address outside of all variables in sight has
+    no name.
     """
 
     def __init__(self, program: Program, state: State | InFrame) -> None:
@@ -62,7 +62,7 @@ class Names:
         }
 
     def slots(self, code: int) -> tuple[Slot, ...]:
-        """The parameters and locals of a code object."""
+        """Return the parameters and locals of a code object."""
         if code not in self._slots:
             self._slots[code] = self._program.slots(self._program.codes[code])
         return self._slots[code]
@@ -70,9 +70,9 @@ class Names:
     def assigned(
         self, address: int, type_: Type, dimensions: int = 0
     ) -> tuple[Path, Value | None] | None:
-        """The path and the value of something in the frame or the data lists.
+        """Return the path and the value at an address, or ``None`` if no variable is there.
 
-        With ``dimensions`` it is an array, or the rest of one, of elements of this type.
+        With ``dimensions`` it is an array, or a row of one, with elements of this type.
         """
         program, state = self._program, self._state
         number = program.data_at(address)
@@ -92,7 +92,10 @@ class Names:
     def through(
         self, offset: int, type_: Type, dimensions: int
     ) -> tuple[Path, Value | None] | None:
-        """The same for what a parameter of the frame leads to, and was written last."""
+        """Return path and value of what was last written through a parameter.
+
+        ``offset`` is that of the parameter in the frame.
+        """
         state = self._state
         for slot in self.slots(state.code):
             if slot.offset == offset:
@@ -103,7 +106,7 @@ class Names:
         return None
 
     def referred(self, slot: Slot) -> tuple[Type, int | None]:
-        """The type of what a parameter is or leads to, and its address, if it leads anywhere."""
+        """Return the type and the address of a parameter's target; ``None`` if left out."""
         state, program = self._state, self._program
         first = state.fp + slot.offset
         variable = slot.variable
@@ -117,9 +120,10 @@ class Names:
         return type_, None if start is None else int(start)
 
     def find(self, text: str) -> tuple[Type, Value | None] | None:
-        """A variable, or a part of one, by what a program calls it here; ``None`` where it is not.
+        """Return type and value of what a text denotes here, or ``None`` if it is unknown.
 
-        An array may have empty brackets. The data of the own module come before those of others.
+        An array may have empty brackets. Variables of the own module have priority over those of
+        others.
         """
         place = self._place(text)
         if place is None:
@@ -130,14 +134,17 @@ class Names:
         return shown(type_), value_at(self._state.cells, address, type_)
 
     def put(self, text: str, value: Value) -> None:
-        """Give what a text names a value; raises `LinkError` and `interp.values.faults.Fault`."""
+        """Assign a value to the variable in a text.
+
+        Raises `LinkError` if it is unknown, and `interp.values.faults.Fault` for a wrong value.
+        """
         type_, address = self._place(text) or (None, None)
         if type_ is None or address is None:
             raise LinkError(f"{text} is not known here")
         self._state.cells[address : address + size(type_)] = cells_of(value, type_)
 
     def _place(self, text: str) -> tuple[Type, int | None] | None:
-        """The type of what a text names, and its address, if it leads anywhere."""
+        """Return type and address of what a text denotes; the address is ``None`` if left out."""
         match = _WRITTEN.fullmatch(text)
         if match is None:
             return None
@@ -151,9 +158,9 @@ class Names:
         return None if part is None else (part[1], place[1] + part[0])
 
     def fixed(self, text: str) -> tuple[Type, int, bool] | None:
-        """The same for what lies in the data lists or at one place of all frames, and which it is.
+        """Return type and address of a variable that does not move, and whether it is local.
 
-        Of a frame it is the distance from its first cell, where that is 0 in the state.
+        The address of a local variable is its distance from the first cell of the frame.
         """
         slot = self._slot(str(_STEP.findall(text.upper())[0]))
         if slot is not None and self._is_reference(slot):
@@ -162,7 +169,7 @@ class Names:
         return None if type_ is None or address is None else (type_, address, slot is not None)
 
     def look(self, text: str) -> Seen | None:
-        """The same with what a debugger wants to know besides; see `interp.port.inspection`."""
+        """Return type, value and further facts for a debugger; see `interp.port.inspection`."""
         found = self.find(text)
         if found is None:
             return None
@@ -196,12 +203,12 @@ class Names:
         return isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN
 
     def _slot(self, name: str) -> Slot | None:
-        """The parameter or local of a name."""
+        """Return the parameter or local with this name."""
         slots = self.slots(self._state.code)
         return next((one for one in slots if one.variable.name.upper() == name), None)
 
     def _number(self, name: str) -> int | None:
-        """The variable of the data lists that a name means site."""
+        """Return the index of the variable of the data lists that a name denotes here."""
         module = PurePosixPath(self._program.codes[self._state.code].file).stem.upper()
         numbers = self._by_name.get(name, ())
         own = [n for n in numbers if self._program.data[n].module.upper() == module]

@@ -1,4 +1,4 @@
-"""Requests made from cells: functions that make the fields of a request from its parts."""
+"""Marshalling of requests: functions that build the fields of a request from operands."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ from interp.bytecode.program import (
 from interp.port import requests
 from interp.port.requests import At, CodeHandle, Value
 
-#: Makes a part from the inputs, as values, and the place of the request.
+#: Builds a part from the values of the inputs and the place of the request.
 Part = Callable[[Sequence[Value | None], At], Any]
 
 
 def _nothing(_inputs: Sequence[Value | None], _at: At) -> None:
-    """What an argument has that is no system variable."""
+    """Return the path of an argument that is no system variable."""
 
 
 class RequestBuilder:
-    """Makes the functions that make requests; ``handle_of`` gives a code object in this frame."""
+    """Makes functions that build requests; ``handle_of`` returns the handle of a code object."""
 
     def __init__(self, program: Program, handle_of: Callable[[int], CodeHandle]) -> None:
         self._program = program
         self._handle_of = handle_of
 
     def parts(self, parts: Sequence[Argument]) -> Part:
-        """A function that makes the parts as a tuple. They take the inputs in their order."""
+        """Return a function that builds a tuple of the parts; they use the inputs in order."""
         return self._together(parts, count())
 
     def paths(self, arguments: Sequence[Argument]) -> Part:
-        """A function that makes the paths of those arguments that are system variables."""
+        """Return a function that builds the paths of those arguments that are system variables."""
         makers: list[Part] = []
         first = 0
         for part in arguments:
@@ -53,7 +53,7 @@ class RequestBuilder:
         return lambda inputs, at: tuple([make(inputs, at) for make in makers])
 
     def path(self, path: Items, first: int) -> Part:
-        """A function that makes a path; ``first`` is the number of its first input."""
+        """Return a function that builds a path; ``first`` is the number of its first input."""
         return self._together(path.parts, count(first))
 
     def _together(self, parts: Sequence[Argument], numbers: Any) -> Part:

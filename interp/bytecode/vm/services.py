@@ -1,4 +1,4 @@
-"""What instructions need from the machine: statement counting, requests, events."""
+"""Instructions that need more than cells: statement counting, requests, and trace events."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from interp.values.builtins import FUNCTIONS, Surroundings, call
 from interp.values.faults import LinkError
 from interp.values.values import converted, text_of
 
-#: Why a condition faults that does more than compute and read.
+#: The message if a condition does more than compute and read.
 NOT_IN_CONDITIONS = "a condition can only compute and read"
 
 _NOWHERE = At("", 0, 0)
 
 
 class Services:
-    """Makes the operations that reach beyond the cells, and knows where the program is.
+    """Makes the operations that go beyond cells, and knows the current place in the program.
 
-    ``entered`` counts the open calls that are entered actions. The machine sets
-    ``leave_action`` and ``finish``, which end an action and the program.
+    ``entered`` is the number of open calls that are actions. The machine sets ``leave_action`` and
+    ``finish``, the operations that end an action and the program.
     """
 
     def __init__(
@@ -68,21 +68,21 @@ class Services:
 
     @property
     def depth(self) -> int:
-        """How many calls deep the program is."""
+        """The depth of calls."""
         return len(self._state.calls) - self.entered
 
     def code(self) -> Code:
-        """The code object that runs."""
+        """Return the code object that is running."""
         return self._program.codes[self._state.code]
 
     def at(self) -> At:
-        """Where the program is: the line of the statement that began last."""
+        """Return the current place: the line of the statement that began last."""
         code, statement = self.code(), self._state.statement
         line = code.line if statement < 0 else code.instructions[statement].operands[0]
         return At(code.file, line, self.depth)
 
     def _handed_over(self, number: int) -> HandedOver:
-        """An action or condition of the code object that runs, in its frame."""
+        """Return the handle of an action or condition in the current frame."""
         captures = self._program.codes[number].captures
         serial = self._state.serial if captures else 0
         return HandedOver(number + serial * len(self._program.codes))
@@ -90,7 +90,7 @@ class Services:
     # ----------------------------------------------------------------------- statements
 
     def line(self, place: int, after: Operation) -> Operation:
-        """What `LINE` does at a place of its code object."""
+        """Return the operation of a `LINE` instruction."""
         state, pause = self._state, self._pause
         begin = after if self._lines is None else self._traced_line(self._lines, after)
 
@@ -102,7 +102,7 @@ class Services:
         return operation
 
     def _pause(self, begin: Operation) -> Operation | None:
-        """Do what has to be done before a statement begins."""
+        """Count the budget, make a slice request if it is due, and begin the statement."""
         counter, state = self.counter, self._state
 
         def completion(_reply: object) -> Operation:
@@ -125,11 +125,11 @@ class Services:
         return begin
 
     def _free(self, *, begins: bool) -> int:
-        """How many slices may pass; no more where events would come too early."""
+        """Return how many slices may pass without a request; fewer if events are traced."""
         return self.free_slices(begins) if self._tells_nothing else int(begins)
 
     def other_line(self, place: int, after: Operation) -> Operation:
-        """What `AT` does."""
+        """Return the operation of an `AT` instruction."""
         state = self._state
 
         def operation() -> Operation:
@@ -139,7 +139,7 @@ class Services:
         return operation
 
     def proceed(self, after: Operation) -> Operation:
-        """What `PROCEED` does."""
+        """Return the operation of a `PROCEED` instruction."""
 
         def operation() -> Operation:
             self.counter.guard = Guard.NEXT
@@ -147,10 +147,10 @@ class Services:
 
         return operation
 
-    # ----------------------------------------------------------------------- asking
+    # ----------------------------------------------------------------------- requests
 
     def ask(self, number: int, after: Operation) -> Operation:
-        """What `ASK` does. While a condition is evaluated the reader answers."""
+        """Return the operation of an `ASK` instruction; in a condition, the reader answers it."""
         ask, state = self._program.asks[number], self._state
         if ask.request == "StopAdvance":
             return self._stop_advance(after)
@@ -206,7 +206,7 @@ class Services:
         return operation
 
     def builtin(self, number: int, after: Operation) -> Operation:
-        """What `BUILTIN` does."""
+        """Return the operation of a `BUILTIN` instruction."""
         builtin, state = self._program.builtins[number], self._state
         function = FUNCTIONS.get(builtin.name.upper())
         if function is not None and all(self._is_real(part) for part in builtin.parts):
@@ -237,7 +237,7 @@ class Services:
         values: Sequence[Value | None],
         changes: Mapping[int, Value],
     ) -> Iterator[Request]:
-        """Store the arguments that have new values; those of the world are asked."""
+        """Store changed arguments; yield a write request for each that is a system variable."""
         for change in entry.changes:
             if change.argument not in changes:
                 continue
@@ -271,7 +271,7 @@ class Services:
         self.counter.asked()
         return None
 
-    # ----------------------------------------------------------------------- telling
+    # ----------------------------------------------------------------------- trace
 
     def _traced_line(self, sink: Sink, after: Operation) -> Operation:
         def operation() -> Operation:
@@ -281,7 +281,7 @@ class Services:
         return operation
 
     def tell(self, instruction: Instruction, after: Operation) -> Operation:
-        """What an instruction for the trace does; nothing where it does not want that kind."""
+        """Return the operation of a trace instruction; ``after`` if its events are not wanted."""
         if instruction.op is Op.TELL_BRANCH:
             branches = self._branches
             return after if branches is None else self._traced_branch(branches, instruction, after)
@@ -331,18 +331,18 @@ class Services:
             self._assignments.assign(self.at(), *found)
 
     def tell_call(self, code: int) -> None:
-        """A routine is about to be called."""
+        """Trace the call of a routine."""
         if self._calls is not None:
             self._calls.call(self.at(), self._program.codes[code].name)
 
     def tell_leave(self) -> None:
-        """The routine that runs is about to end."""
+        """Trace the end of the current routine."""
         if self._returns is not None:
             self._returns.leave(self.at(), self.code().name)
 
 
 def _finished(request: Request) -> Request:
-    """The request as it is handed over: texts as texts."""
+    """Return the request with arrays of letters converted to texts."""
     if isinstance(request, MoveEmily):
         device, action = text_of(request.device), text_of(request.action)
         return replace(request, device=device, action=action)

@@ -1,4 +1,4 @@
-"""State of the running machine: cells, the operand stack, open calls."""
+"""The state of a running machine: cells, operand stack, open calls."""
 
 from __future__ import annotations
 
@@ -9,31 +9,33 @@ from interp.bytecode.cell_layout import Raw
 from interp.port.executor import Reader
 from interp.port.requests import Request
 
-#: An instruction made ready to run. It gives the next one, or ``None`` where the machine stops.
+#: A translated instruction. It returns the next one, or ``None`` if the machine stops.
 Operation = Callable[[], Optional["Operation"]]
-#: Takes the reply to a request and gives the operation to continue with.
+#: Takes the reply to a request and returns the next operation.
 Completion = Callable[[Any], Operation | None]
 #: The frame to return to: the operation to continue with there, then ``code``, ``fp``, ``base``,
-#: ``statement`` and ``serial`` of the state. A tuple, as calls are frequent and a tuple is made in
-#: a third of the time of any object.
+#: ``statement`` and ``serial`` of the state. A tuple, because calls are frequent and creating any
+#: other object takes three times as long.
 Call = tuple[Operation, int, int, int, int, int]
 
 
 class State:
-    """What instructions work on. The first five describe the frame that runs.
+    """The registers and the memory of a machine. The first five describe the current frame.
 
     ``code`` is the number of its code object, ``fp`` its first cell, ``base`` the height of the
-    stack of operands when it began, ``statement`` the place of the LINE that began last, -1 before.
-    ``serial`` distinguishes activations whose actions and conditions may be handed over, else it is
-    0. ``left`` is how many statements may begin before something has to be done, out of ``quota``;
-    ``whole`` is ``left`` where a slice begins, as it does with each
-    `interp.port.requests.StopAdvance`, of which ``stops`` may pass without being asked for.
-    ``most_calls`` is how many calls may be open, ``most_cells`` where the frames have to end,
-    ``last`` the cell that was written last through a reference.
+    operand stack when it began, ``statement`` the index of the last LINE, or -1. ``serial``
+    identifies an activation for which handles of actions or conditions can exist, otherwise it is
+    0.
 
-    When the machine stops, ``request`` is why, and ``completion`` takes the reply. ``reader`` is
-    there while a condition is evaluated, which does not stop. ``site`` is where the program
-    continues with behind the request, where nothing else is to be remembered.
+    ``left`` is how many statements may begin before `statement_budget` has work, out of ``quota``.
+    ``whole`` is the value of ``left`` at the beginning of a slice; each
+    `interp.port.requests.StopAdvance` begins one, and ``stops`` of them may pass without a request.
+    ``most_calls`` is the maximum number of open calls, ``most_cells`` the end of the memory for
+    frames, ``last`` the cell that was last written through a reference.
+
+    When the machine stops, ``request`` is the reason, and ``completion`` takes the reply.
+    ``reader`` is set while a condition is evaluated, which never stops. ``site`` identifies how the
+    program continues after the request, if nothing else determines that.
     """
 
     __slots__ = (
@@ -63,8 +65,8 @@ class State:
         self, cells: list[Raw | None], most_calls: int, first: int, most_cells: int
     ) -> None:
         self.cells = cells
-        #: Values, references as addresses, views as an address and sizes; ``None`` is an argument
-        #: that was left out.
+        #: Values, references as addresses, views as an address and sizes; ``None`` is a missing
+        #: argument.
         self.stack: list[Any] = []
         self.calls: list[Call] = []
         self.most_calls = most_calls

@@ -1,16 +1,16 @@
-"""Counting statements: the budget, the slices, and how long ON_ERROR_PROCEED holds.
+"""Counts statements: the budget, the slices, and the scope of ON_ERROR_PROCEED.
 
-It is the same for all executors:
+All executors follow the same rules:
 
-- a statement begins with its LINE. Once so many have begun as `interp.program.load.Limits` allow,
-  the next one fails with `interp.values.faults.BudgetExhausted`; where as many as the slice
-  has, or all slices that may pass at once, have begun since the last request,
-  `interp.port.requests.Slice` is asked before the next one begins;
-- a `interp.port.requests.StopAdvance` that may pass without a request begins a slice all the same;
-- ON_ERROR_PROCEED holds for the statement that begins next, wherever that is, until another one
-  begins.
+- A statement begins with its LINE. If the number that `interp.program.load.Limits` allows have
+  begun, the next one fails with `interp.values.faults.BudgetExhausted`. If the statements of a
+  slice, or of all slices that may pass at once, have begun since the last request, the next one is
+  preceded by `interp.port.requests.Slice`.
+- A `interp.port.requests.StopAdvance` that may pass without a request begins a slice, too.
+- ON_ERROR_PROCEED is valid for the statement that begins next, in whichever routine, until another
+  one begins.
 
-A statement costs a subtraction: ``State.left`` says when there is more to do.
+A statement costs one subtraction: ``State.left`` says when there is more to do.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LARGEST: Final = 2**31 - 1
 
 
 class Guard(Enum):
-    """Whether ON_ERROR_PROCEED holds."""
+    """Whether ON_ERROR_PROCEED is active, or becomes active with the next statement."""
 
     OFF = 0
     NEXT = 1
@@ -34,7 +34,7 @@ class Guard(Enum):
 
 
 class Pause(Enum):
-    """What is to be done before a statement begins."""
+    """What has to happen before a statement begins."""
 
     NOTHING = 0
     SLICE = 1
@@ -65,27 +65,28 @@ class Counter:
 
     @guard.setter
     def guard(self, guard: Guard) -> None:
+        """Whether ON_ERROR_PROCEED is active."""
         self._settle()
         self._guard = guard
         self._refill()
 
     @property
     def begun(self) -> int:
-        """How many statements have begun."""
+        """The number of statements that have begun."""
         return self._begun + self._state.quota - self._state.left
 
     def asked(self) -> None:
-        """A request was made: a new slice begins."""
+        """Begin a slice, because a request was made."""
         self.ask_at(self.begun + self._limits.per_slice)
 
     def ask_at(self, count: int) -> None:
-        """The slice that has begun ends once so many statements have begun altogether."""
+        """End the current slice when this number of statements has begun in all."""
         self._passed += self._whole_slices()
         self._due = count
         self._refill()
 
     def allow(self, stops: int) -> None:
-        """So many `StopAdvance` may pass before the next request of another kind."""
+        """Let this number of `StopAdvance` pass before the next request of another kind."""
         self._most_stops = max(self._most_stops, stops)
         if self._guard is Guard.OFF:
             most = min(self._limits.statements - self.begun, _LARGEST) // self._state.whole - 1
@@ -93,7 +94,7 @@ class Counter:
 
     @property
     def standing(self) -> tuple[int, ...] | None:
-        """What it continues from, where neither the budget nor ON_ERROR_PROCEED is near."""
+        """The state of the counter; ``None`` close to the budget or with ON_ERROR_PROCEED."""
         if self._guard is not Guard.OFF or self.spare <= 0:
             return None
         due = self._due - self._begun
@@ -101,16 +102,16 @@ class Counter:
 
     @property
     def spare(self) -> int:
-        """How many statements may be skipped before the budget limits a slice, or what may pass."""
+        """The number of statements that may be skipped before the budget limits what may pass."""
         return self._limits.statements - self.begun - (self._most_stops + 3) * self._state.whole
 
     def skip(self, statements: int) -> None:
-        """So many more have begun."""
+        """Count this number of statements as begun."""
         self._begun += statements
         self._due += statements
 
     def passes_stop(self) -> bool:
-        """Whether a `StopAdvance` need not be asked for: then a slice begins."""
+        """Return whether a `StopAdvance` needs no request; if so, a slice begins."""
         state = self._state
         if state.stops == 0:
             return False
@@ -120,7 +121,7 @@ class Counter:
         return True
 
     def stopped(self) -> int:
-        """The `StopAdvance` that have passed before the last request, or the end; returned once."""
+        """Return the number of `StopAdvance` that passed since the last call."""
         if self._allowed:
             self._settle()
             self._refill()
@@ -128,10 +129,7 @@ class Counter:
         return count
 
     def passed(self) -> int:
-        """The slices that have passed before the last request, or the end, though not asked for.
-
-        They are returned once.
-        """
+        """Return the number of slices that passed without a request since the last call."""
         if self._slices == 1 and not self._passed:
             return 0
         count = self._passed + self._whole_slices()
@@ -139,7 +137,7 @@ class Counter:
         return count
 
     def pause(self) -> Pause:
-        """What comes before the statement that has used up ``State.left``."""
+        """Return what has to happen before the statement that has used up ``State.left``."""
         self._settle(begins=1)
         self._guard = Guard.NOW if self._guard is Guard.NEXT else Guard.OFF
         if self._begun >= self._limits.statements:
@@ -147,22 +145,22 @@ class Counter:
         return Pause.SLICE if self._begun >= self._due else Pause.NOTHING
 
     def begin(self) -> None:
-        """The statement begins, after whatever came before it."""
+        """Count the statement that begins."""
         self._begun += 1
         self._refill()
 
     @property
     def is_asking(self) -> bool:
-        """Whether the last request came just before the slice that has ended."""
+        """Whether the last request came immediately before the slice that has ended."""
         return self._slices == 1 and not self._passed and not self._stopped
 
     def free(self, slices: int) -> None:
-        """So many slices may pass, the one that is used up or begins now being the first."""
+        """Let this number of slices pass; the first is the one that has ended or begins now."""
         self._due += (slices - 1) * self._limits.per_slice
         self._slices = slices
 
     def _settle(self, begins: int = 0) -> None:
-        """Count what has begun but what ``begins`` now, and the `StopAdvance` that have passed."""
+        """Count statements up to now, except ``begins`` that are beginning, and passed stops."""
         state = self._state
         if count := self._allowed - state.stops:
             self._due = self._begun + state.quota - 1
@@ -172,7 +170,7 @@ class Counter:
         state.quota = state.left
 
     def _whole_slices(self) -> int:
-        """Those used up before the one that runs, which is the only one from now on."""
+        """Return how many slices were used up before the current one; no more will pass."""
         self._settle()
         count = 0
         if self._slices > 1:

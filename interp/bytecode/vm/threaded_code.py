@@ -1,11 +1,11 @@
-"""Code objects made ready to run: instructions as functions that give the next one.
+"""Threaded code: every instruction becomes a function that returns the next function.
 
-A code object is made ready from its last instruction to its first, so that each knows the one
-behind it; where it goes elsewhere it looks its target up. This is faster in Python than one loop
-that asks for every opcode, and keeps every instruction a few lines of its own: they stand in
+A code object is translated from its last instruction to its first, so each operation knows its
+successor; jumps look up their target when they are executed. In Python this is faster than a loop
+with a dispatch by opcode, and each instruction stays a few lines. The instructions are in
 `interp.bytecode.vm.control_flow`, `data_movement`, `arrays` and `arithmetic`.
 
-Nothing of this looks at what `interp.bytecode.verifier.verify` has made sure of.
+Nothing that `interp.bytecode.verifier.verify` guarantees is checked again.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from interp.bytecode.vm.state import Operation, State
 
 
 class ThreadedCode:
-    """The code objects of a program, made ready when they are first called.
+    """The translated code objects of a program; each is translated at its first call.
 
-    ``entries`` are their first operations, ``frames`` how many cells their frames have.
+    ``entries`` are their first operations, ``frames`` their frame sizes in cells.
     """
 
     def __init__(self, program: Program, state: State, hooks: Hooks) -> None:
@@ -44,7 +44,7 @@ class ThreadedCode:
         }
 
     def body(self, number: int) -> list[Operation]:
-        """The operations of a code object, by the places of their instructions."""
+        """Return the operations of a code object, by index of the instruction."""
         body = self._bodies.get(number)
         if body is None:
             body = self._bodies[number] = self._made_ready(number)

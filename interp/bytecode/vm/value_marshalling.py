@@ -1,4 +1,4 @@
-"""Conversion between cells and the values of requests: inputs and replies."""
+"""Marshalling of values: converts between cells and the inputs and results of requests."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from interp.bytecode.program import (
 from interp.bytecode.vm.state import State
 from interp.values.values import Value, converted, known
 
-#: What lay on the stack for an entry, the reference for a large result last.
+#: The operands of an entry; a reference for a large result comes last.
 Block = Sequence[Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """An argument that may change: its place among the arguments, and which input it is.
+    """An argument that may change: its place among the arguments, and the number of its input.
 
     ``first`` is the number of the first input of its path.
     """
@@ -48,9 +48,9 @@ class Change:
 
 
 class Entry:
-    """Takes the inputs of a request or a function from the stack, and puts results away.
+    """Pops the inputs of a request or function from the stack, and stores results.
 
-    ``arguments`` are those of its parts that the reply may change.
+    ``arguments`` are the parts that the reply may change.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Entry:
         self.changes = tuple(_changes(arguments))
 
     def take(self) -> Block:
-        """Take what lies on the stack."""
+        """Pop the inputs from the stack."""
         if self._cells == 0:
             return ()
         stack = self._state.stack
@@ -84,14 +84,14 @@ class Entry:
         return block
 
     def values(self, block: Block) -> list[Value | None]:
-        """The inputs as values; a structure without a value in any part is one all the same."""
+        """Return the inputs as values; a structure without any value is still a structure."""
         return [
             self._value(given, block, place)
             for given, place in zip(self._inputs, self._places, strict=True)
         ]
 
     def put(self, block: Block, result: Value | None) -> None:
-        """Store the result. Raises `faults.Fault` where there is none or a wrong one."""
+        """Store the result; raises `faults.Fault` if it is missing or cannot be converted."""
         if self._result is None:
             return
         if self._has_target:
@@ -103,13 +103,13 @@ class Entry:
         )
 
     def store(self, block: Block, change: Change, value: Value) -> None:
-        """Give a changed argument its new value; raises `interp.values.faults.Fault`."""
+        """Assign a new value to a changed argument; raises `interp.values.faults.Fault`."""
         address: int = block[self._places[change.number]]
         self._write(address, self.type_of(block, change), value)
         self._state.last = address
 
     def type_of(self, block: Block, change: Change) -> Type:
-        """The type of a changed argument."""
+        """Return the type of a changed argument."""
         return self._referred(change.changed.given, block, self._places[change.number])
 
     def _value(self, given: Input, block: Block, place: int) -> Value | None:
@@ -143,6 +143,6 @@ def _changes(arguments: Sequence[Argument]) -> Iterator[Change]:
 
 
 def arguments_of(parts: Sequence[Argument]) -> Sequence[Argument]:
-    """The arguments of a routine of the controller, which are the last field of its request."""
+    """Return the arguments of a routine of the controller: the last field of its request."""
     last = parts[-1]
     return last.parts if isinstance(last, Items) else ()
