@@ -1,10 +1,10 @@
-"""The compiler: from checked programs to bytecode.
+"""The compiler: translates checked programs to bytecode.
 
-A `project` compiles routines as they are called, each into a code object of its own. The parts that
-make the code of one are given those below them: `statements`, `control_flow` and `motions`, `calls`
-with `predefined_calls`, `expressions`, `designators`, `memory` (loads and stores), `emitter`. What
-leads upwards is a function that a part is given: expressions call routines, designators have
-expressions for indices, blocks have statements in them.
+A `project` compiles routines as they are called, each into one code object. The parts that generate
+its code form layers: `statements`; `control_flow` and `motions`; `calls` with `predefined_calls`;
+`expressions`; `designators`; `memory` (loads and stores); `emitter`. Each part is given the layers
+below it. Where code has to call upwards, the part is given a function: expressions call routines,
+designators contain expressions as indices, blocks contain statements.
 """
 
 from interp.bytecode.compiler.context import Refusal

@@ -1,34 +1,34 @@
-"""Upper bounds of arrays of unknown size, for the buffers of their copies.
+"""Upper bounds of arrays of unknown size, for the buffers into which they are copied.
 
-A formal array ``X[]`` has the size of what it receives. Where it is passed on :IN it is copied, as
-everything passed :IN is [SCO-06] (unconfirmed: by SCO-07 formal arrays are :OUT). Nothing is
-allocated while a program runs, so the copy has a buffer in the frame of the caller for the largest
-array that can come there: the largest that any routine passes, whichever way it took through
-others. That is known when all of them have been compiled.
+A formal array ``X[]`` has the size of its argument. An array that is passed on :IN is copied, as
+every :IN argument [SCO-06] (unconfirmed: according to SCO-07 formal arrays are :OUT). No memory is
+allocated at run time, so the caller's frame has a buffer for the largest array that can arrive
+there: the largest that any routine passes, directly or through other routines. This is known once
+all routines are compiled.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-#: A parameter: the number of its code object, and its place in the head of the routine from 0.
+#: A parameter: the number of its code object, and its index among the parameters.
 Origin = tuple[int, int]
-#: So many elements, or as many as a parameter has.
+#: A number of elements, or the size of the array that a parameter receives.
 Bound = int | Origin
 
 
 class Sizes:
-    """What parameters that are formal arrays receive."""
+    """The bounds of all arrays that are passed to formal array parameters."""
 
     def __init__(self) -> None:
         self._received: dict[Origin, set[Bound]] = {}
 
     def receives(self, parameter: Origin, given: Bound) -> None:
-        """A parameter is given an array somewhere."""
+        """Record that a parameter receives an array with this bound."""
         self._received.setdefault(parameter, set()).add(given)
 
     def most(self, given: Iterable[Bound]) -> int:
-        """The most elements that arrays with these bounds can have; 1 where none ever comes."""
+        """Return the maximum number of elements of arrays with these bounds; at least 1."""
         largest, seen, todo = 1, set[Origin](), list(given)
         while todo:
             one = todo.pop()

@@ -1,9 +1,9 @@
-"""Calls: of routines of the program.
+"""Code for calls of routines of the program.
 
-A routine is compiled for the way it is called. What is passed :OUT and is a variable is a
-reference, an array a view, so that it has the sizes of the actual argument. A system variable
-cannot be referred to: it becomes part of the routine, which is compiled once more for it, with
-parameters for its indices only.
+A routine is compiled for the way in which it is called. A variable that is passed :OUT becomes a
+reference, an array becomes a view with the sizes of the argument. There are no references to system
+variables: the routine is compiled again for the system variable that it is given, with parameters
+for its indices only.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from interp.program.variables import (
 
 @dataclass(frozen=True, slots=True)
 class Formals:
-    """The parameters of a routine as declared: what each is, its type, and whether it is :IN."""
+    """The declared parameters of a routine: their symbols, their types, and whether they are :IN."""
 
     found: tuple[Found, ...]
     types: tuple[Type, ...]
@@ -60,7 +60,7 @@ class Formals:
 
 
 def formals_of(routine: Routine, type_of: Callable[[Found], Type]) -> Formals:
-    """The parameters of a routine."""
+    """Return the declared parameters of a routine."""
     found = []
     for parameter in routine.node.parameters:
         means = routine.scope.own(Space.VALUE, parameter.name.key)
@@ -72,7 +72,7 @@ def formals_of(routine: Routine, type_of: Callable[[Found], Type]) -> Formals:
 
 
 class Calls(CodeMaker):
-    """Makes the code of calls; its ``expressions`` that of expressions with calls in them."""
+    """Generates code for calls; its ``expressions`` generate code for expressions with calls."""
 
     def __init__(self, emitter: Emitter) -> None:
         super().__init__(Expressions(emitter, self.call))
@@ -80,14 +80,14 @@ class Calls(CodeMaker):
         self._predefined = PredefinedCalls(self.expressions)
 
     def call(self, node: ast.Call) -> Value:
-        """The value of a function."""
+        """Generate a call of a function; return what it leaves on the stack."""
         value = self.called(node, is_value=True)
         if value is None:
             raise self._emitter.unlinked(f"{node.name.text} gives no value")
         return value
 
     def called(self, node: ast.Call, *, is_value: bool) -> Value | None:
-        """Call a routine; gives its result, ``None`` where it has none."""
+        """Generate a call of a routine; return its result, or ``None`` if it has none."""
         found = self._context.unit.found(node.name)
         if found is None:
             raise self._emitter.unlinked(self._context.unit.undeclared(node.name))
@@ -140,9 +140,9 @@ class Calls(CodeMaker):
         is_in: bool,
         later: Sequence[ast.Expression | None],
     ) -> tuple[Binding, Bound | None]:
-        """Push an argument, or what is left of it when it is a system variable.
+        """Push an argument, or the indices of an argument that is a system variable.
 
-        Gives what stands for a system variable, and how many elements an array has at most.
+        Return the binding for a system variable, and the maximum number of elements of an array.
         """
         is_view = isinstance(type_, Array) and (not is_in or None in type_.sizes)
         if argument is None:
@@ -163,7 +163,7 @@ class Calls(CodeMaker):
         return None, None
 
     def _bound(self, place: SystemVariable) -> Binding:
-        """Push the indices of a system variable; its path becomes part of the routine."""
+        """Push the indices of a system variable; return its path, to compile the routine for."""
         self._memory.pushed_path(place)
         path = tuple(None if isinstance(step, IndexCell) else step for step in place.path)
         return path, place.type
@@ -185,7 +185,7 @@ class Calls(CodeMaker):
     def _referred(self, place: Location, type_: Type, is_view: bool) -> Bound | None:
         """Push a reference to a variable, or a view of an array.
 
-        An array parameter that was left out is passed on as one [SCO-13].
+        An array parameter that was left out is passed on as left out [SCO-13].
         """
         assert not isinstance(place, SystemVariable), "it is bound"
         given: Reference | View
@@ -206,7 +206,7 @@ class Calls(CodeMaker):
         raise self._emitter.unlinked(str(mismatched(type_)))
 
     def _copied(self, type_: Type, argument: ast.Expression, is_copied_by_call: bool) -> None:
-        """Push a reference to a value; the call copies it, unless something comes between."""
+        """Push a reference to a value, copied first unless the call copies it in time."""
         kept = FrameCells(self._writer.temporary(type_), type_)
         behind = self._writer.here
         value = self._expressions.value(argument, type_)
@@ -251,7 +251,7 @@ class Calls(CodeMaker):
         return self._memory.as_view(Reference(made)).most
 
     def _copied_to_buffer(self, type_: Array, value: View) -> Bound:
-        """Make of the view on top one of a copy of the array, whose size is known when it runs."""
+        """Replace the view on top by one of a copy of the array; its size is not constant."""
         if not is_view_of(value, self._emitter.closed(type_.element), len(type_.sizes)):
             raise self._emitter.refuse(_other_type(type_))
         buffer = self._writer.copy_buffer(value.element, value.dimensions, value.most)
@@ -264,7 +264,7 @@ def _other_type(type_: Type) -> str:
 
 
 def _calls(nodes: Sequence[ast.Expression | None]) -> bool:
-    """Whether something is called, and so may be changed, when these are evaluated."""
+    """Return whether the evaluation of expressions calls something that may change variables."""
     return any(
         isinstance(inner, ast.Call) for node in nodes if node is not None for inner in walk(node)
     )

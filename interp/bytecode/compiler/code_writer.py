@@ -1,4 +1,4 @@
-"""A code object in the making: instructions, labels, variables, temporaries."""
+"""A code object under construction: instructions, labels, variables, temporaries."""
 
 from __future__ import annotations
 
@@ -28,23 +28,24 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(slots=True, eq=False)
 class Label:
-    """A place to continue at; ``place`` is that of an instruction when it is known."""
+    """A jump target; ``place`` is the index of an instruction once it is known."""
 
     place: int = -1
 
 
 @dataclass(slots=True, eq=False)
 class Later:
-    """An operand that is known at the end."""
+    """An operand that is known only when the code object is complete."""
 
     value: int = -1
 
 
 @dataclass(slots=True, eq=False)
 class CopyBuffer:
-    """A place of the frame for copies of arrays of unknown size: its offset, and its type.
+    """A buffer in the frame for copies of arrays of unknown size.
 
-    ``given`` are the bounds of all that is copied there.
+    ``given`` are the bounds of all arrays that are copied into it; ``offset`` and ``type`` are set
+    when the code object is complete.
     """
 
     element: Type
@@ -59,7 +60,7 @@ Operand = int | Label | Later
 
 @dataclass(slots=True)
 class Written:
-    """An instruction; its targets are labels."""
+    """An instruction whose jump targets are labels."""
 
     op: Op
     operands: tuple[Operand, ...]
@@ -67,7 +68,7 @@ class Written:
 
 @dataclass(slots=True, eq=False)
 class Writer:
-    """One code object. Parameters come before locals, locals as they are needed."""
+    """One code object. Parameters come before locals; locals are added when they are needed."""
 
     tables: Tables
     name: str
@@ -85,13 +86,13 @@ class Writer:
     _free: dict[int, list[int]] = field(default_factory=dict)
     _buffers: list[CopyBuffer] = field(default_factory=list)
     _free_buffers: dict[tuple[int, int], list[CopyBuffer]] = field(default_factory=dict)
-    #: What is taken for a while, each behind the list that it goes back to.
+    #: Temporaries and buffers in use, each with the free list to which it returns.
     _taken: list[tuple[list[Any], Any]] = field(default_factory=list)
 
     # ----------------------------------------------------------------------- the frame
 
     def parameter(self, name: str, mode: Mode, type_: Type, dimensions: int = 0) -> int:
-        """Add a parameter; gives its offset."""
+        """Add a parameter and return its offset."""
         assert not self._locals, "parameters come first"
         number = self.tables.number(type_)
         parameter = Parameter(name, mode, number, dimensions)
@@ -101,7 +102,7 @@ class Writer:
         return self._reserved(cells)
 
     def local(self, name: str, type_: Type) -> int:
-        """Add a variable; gives its offset."""
+        """Add a variable and return its offset."""
         number = self.tables.number(type_)
         self._locals.append(Local(name, number))
         return self._reserved(size(self.tables.types[number]))
@@ -112,7 +113,10 @@ class Writer:
         return offset
 
     def temporary(self, type_: Type) -> int:
-        """A variable without a name, until the end of `temporaries`; what it holds is not known."""
+        """Return the offset of an unnamed variable for use until the end of `temporaries`.
+
+        Its contents are undefined.
+        """
         number = self.tables.number(type_)
         free = self._free.setdefault(number, [])
         offset = free.pop() if free else self.local(f"%{len(self._locals)}", type_)
@@ -120,7 +124,7 @@ class Writer:
         return offset
 
     def copy_buffer(self, element: Type, dimensions: int, most: Bound) -> CopyBuffer:
-        """A place for a copy of an array, until the end of `temporaries`."""
+        """Return a buffer for copies of an array, for use until the end of `temporaries`."""
         free = self._free_buffers.setdefault((self.tables.number(element), dimensions), [])
         if free:
             buffer = free.pop()
@@ -133,7 +137,7 @@ class Writer:
 
     @contextmanager
     def temporaries(self) -> Iterator[None]:
-        """What is taken inside is free again behind it."""
+        """Release at the end all temporaries and buffers that are taken inside."""
         count = len(self._taken)
         try:
             yield
@@ -145,43 +149,43 @@ class Writer:
     # ----------------------------------------------------------------------- instructions
 
     def emit(self, op: Op, *operands: Operand) -> None:
-        """Add an instruction."""
+        """Append an instruction."""
         self._code.append(Written(op, operands))
 
     @property
     def here(self) -> int:
-        """How many instructions there are."""
+        """The number of instructions so far."""
         return len(self._code)
 
     def insert(self, place: int, op: Op, *operands: Operand) -> None:
-        """Put an instruction between others of the same expression, which has no labels."""
+        """Insert an instruction into the code of the current expression, which has no labels."""
         self._code.insert(place, Written(op, operands))
 
     def last(self) -> Written | None:
-        """The last instruction, unless a label leads behind it."""
+        """Return the last instruction, or ``None`` if a label follows it."""
         if not self._code or any(label.place == self.here for label in self._labels[-3:]):
             return None
         return self._code[-1]
 
     def cut(self, place: int) -> None:
-        """Take all instructions back that were added behind a place."""
+        """Remove all instructions from this place on."""
         del self._code[place:]
 
     def ops(self, place: int) -> set[Op]:
-        """The instructions that were added behind a place."""
+        """Return the opcodes of all instructions from this place on."""
         return {written.op for written in self._code[place:]}
 
     def drop_last(self) -> None:
-        """Take the last instruction back."""
+        """Remove the last instruction."""
         self._code.pop()
 
     def place(self, label: Label) -> None:
-        """What comes next is where the label leads."""
+        """Place a label before the next instruction."""
         label.place = self.here
         self._labels.append(label)
 
     def code(self, sizes: Sizes) -> Code:
-        """The code object, without what is never reached; its stack is not known yet."""
+        """Return the code object without unreachable instructions; its stack size is not set."""
         self._allocate_buffers(sizes)
         reached = self._reached()
         places = {place: number for number, place in enumerate(reached)}
@@ -200,7 +204,7 @@ class Writer:
         )
 
     def _allocate_buffers(self, sizes: Sizes) -> None:
-        """Buffers become locals; what does not fit into memory faults when it is copied."""
+        """Turn buffers into locals; an array that does not fit fails when it is copied."""
         for buffer in self._buffers:
             left = (MAX_CELLS - self.tables.cells - self._cells) // size(buffer.element)
             count = max(1, min(sizes.most(buffer.given), left))
@@ -221,7 +225,7 @@ class Writer:
         return Instruction(written.op, tuple(operands))
 
     def _reached(self) -> list[int]:
-        """The instructions that some way leads to, in their order."""
+        """Return the indices of all reachable instructions, in order."""
         seen, todo = {0}, [0]
         while todo:
             place = todo.pop()

@@ -1,4 +1,4 @@
-"""One code object in the making, and what it shares with the others of its program."""
+"""The context of a code object under construction, and what all code objects of a program share."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ from interp.bytecode.program import CodeKind
 from interp.program.load import CheckedProgram, Routine, Unit
 from support.lazy_dataclass import dataclass
 
-#: What stands for a system variable in a routine: its path, ``None`` for each index.
+#: The system variable that a parameter stands for: its path, ``None`` for each index.
 Binding = tuple[tuple[str | int | None, ...], Type] | None
-#: What is executed or evaluated later than where it stands: an action or a condition.
+#: Code that runs later than the statement that contains it: an action or a condition.
 Deferred = ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
 
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Something that ends the program with a `LinkError` when it is reached.
+    """A place where the program ends with a `LinkError` if it is executed.
 
-    It ``is_missing``: named and nowhere to be found; or it is not compiled, though it may be right.
+    ``is_missing`` if something is used that is declared nowhere; otherwise the code may be correct,
+    but cannot be compiled.
     """
 
     path: str
@@ -37,13 +38,13 @@ class Refusal:
 
 
 class CodeObjects(Protocol):
-    """Gives other code objects their numbers; they are compiled in their turn."""
+    """Assigns numbers to code objects, which are compiled later."""
 
     def code_of(self, routine: Routine, bindings: tuple[Binding, ...]) -> int:
-        """The number of a routine, called with these system variables."""
+        """Return the number of a routine that is called with these system variables."""
 
     def deferred(self, owner: Context, node: Deferred, kind: CodeKind) -> int:
-        """The number of an action or a condition, which uses variables of its owner."""
+        """Return the number of an action or a condition, which uses variables of its owner."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +60,12 @@ class Shared:
 
 @dataclass(slots=True, eq=False)
 class Context:
-    """One code object in the making.
+    """One code object under construction.
 
-    ``variables`` are the places of parameters and local data. ``result`` is the type of what the
-    routine gives; a large one goes where the parameter at ``target`` leads. ``number`` is that of
-    the code object. It ``is_data_list`` where it fills one, and so has the variables itself that
-    the world has later.
+    ``variables`` are the locations of parameters and local variables. ``result`` is the type of the
+    result; a large one is stored through the parameter at offset ``target``. ``number`` is the
+    number of the code object. If ``is_data_list``, the code fills a data list; then it stores the
+    system variables that the list declares, although the controller owns them at run time.
     """
 
     shared: Shared
@@ -89,6 +90,6 @@ class Context:
         return self.shared.tables
 
     def note(self, reason: str, *, is_missing: bool) -> None:
-        """Something at the line at hand ends the program."""
+        """Record that the program ends at the current line."""
         refusal = Refusal(self.unit.module.path, self.line, reason, is_missing)
         self.shared.refusals[refusal] = None

@@ -1,6 +1,7 @@
-"""Control flow as jumps: blocks with their labels, branches, loops.
+"""Code for control flow: blocks with labels, branches, loops.
 
-A loop begins anew at each pass. The trace event of a branch is which way was taken.
+Each pass of a loop begins with the statement anew. The trace event of a branch says which branch
+was taken.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from interp.values.values import letters
 
 
 class ControlFlow(CodeMaker):
-    """Makes the code of statements that hold others, and of those that leave them.
+    """Generates code for statements that contain others, and for jumps.
 
-    ``statement`` makes that of any statement.
+    ``statement`` generates code for any statement.
     """
 
     def __init__(
@@ -40,7 +41,7 @@ class ControlFlow(CodeMaker):
         self._exits: list[Label] = []
 
     def block(self, body: Sequence[ast.Statement]) -> None:
-        """The statements of a block, with the labels that GOTO finds there."""
+        """Generate the statements of a block, with its labels for GOTO."""
         labels: dict[str, Label] = {}
         for statement in body:
             if isinstance(statement, ast.Label):
@@ -57,7 +58,7 @@ class ControlFlow(CodeMaker):
         self._labels.pop()
 
     def begin(self, node: ast.Node, end: Label) -> None:
-        """A statement begins, or a loop anew; where it ends early it continues at ``end``."""
+        """Begin a statement or a pass of a loop; if it ends early, it continues at ``end``."""
         self._context.line = self._context.unit.line(node)
         self._emit(Op.LINE, self._context.line, end)
 
@@ -67,7 +68,7 @@ class ControlFlow(CodeMaker):
     # ----------------------------------------------------------------------- branches
 
     def if_statement(self, node: ast.If, end: Label) -> None:
-        """IF."""
+        """Generate IF."""
         otherwise = Label()
         self._expressions.unless(node.condition, otherwise)
         self._branch(1)
@@ -78,7 +79,7 @@ class ControlFlow(CodeMaker):
         self.block(node.otherwise or ())
 
     def switch(self, node: ast.Switch, end: Label) -> None:
-        """SWITCH."""
+        """Generate SWITCH."""
         selector = self._expressions.operand(node.selector, INT)
         if not isinstance(selector, Scalar):
             raise self._emitter.fail("operand")
@@ -97,7 +98,7 @@ class ControlFlow(CodeMaker):
             self._emit(Op.JUMP, end)
 
     def _choose(self, node: ast.Switch, type_: Type, branches: Sequence[Label]) -> None:
-        """Go on at one of the labels, or behind: by constants, or by comparing one by one."""
+        """Generate jumps to the branches: by CASE for constants, otherwise by comparisons."""
         pairs = [
             (value, label)
             for branch, label in zip(node.branches, branches, strict=True)
@@ -116,7 +117,7 @@ class ControlFlow(CodeMaker):
             self._case(kept, value, label)
 
     def _word_of(self, node: ast.Expression, type_: Type) -> int | None:
-        """The word of a literal of exactly this type, which CASE can compare."""
+        """Return the word of a literal of exactly this type for CASE, or ``None``."""
         match node, type_:
             case ast.EnumConstant(), Enumeration():
                 meant = self._context.unit.checked.enumerations.get(node, type_)
@@ -130,7 +131,7 @@ class ControlFlow(CodeMaker):
         return None
 
     def _case(self, kept: FrameCells, node: ast.Expression, label: Label) -> None:
-        """Go on at the label where the value kept is this one."""
+        """Generate a jump to the label if the selector is equal to a value."""
         self._memory.load(kept)
         between = self._writer.here
         wanted = kept.type if isinstance(kept.type, Enumeration) else INT
@@ -150,7 +151,7 @@ class ControlFlow(CodeMaker):
     # ----------------------------------------------------------------------- loops
 
     def while_loop(self, node: ast.While, end: Label) -> None:
-        """WHILE [CTL-01]."""
+        """Generate WHILE [CTL-01]."""
         test, done = Label(), Label()
         self._writer.place(test)
         self._expressions.unless(node.condition, done)
@@ -162,7 +163,7 @@ class ControlFlow(CodeMaker):
         self._branch(0)
 
     def repeat_loop(self, node: ast.Repeat, end: Label) -> None:
-        """REPEAT."""
+        """Generate REPEAT."""
         again, go_on = Label(), Label()
         self._writer.place(again)
         self._pass(node.body, end)
@@ -175,7 +176,7 @@ class ControlFlow(CodeMaker):
         self._emit(Op.JUMP, again)
 
     def endless_loop(self, node: ast.Loop, end: Label) -> None:
-        """LOOP."""
+        """Generate LOOP."""
         again = Label()
         self._writer.place(again)
         self._pass(node.body, end)
@@ -183,7 +184,7 @@ class ControlFlow(CodeMaker):
         self._emit(Op.JUMP, again)
 
     def _pass(self, body: Sequence[ast.Statement], end: Label) -> None:
-        """What is done in each pass of a loop."""
+        """Generate the body of a loop."""
         self._exits.append(end)
         self.block(body)
         self._exits.pop()
@@ -191,7 +192,7 @@ class ControlFlow(CodeMaker):
     # ----------------------------------------------------------------------- FOR
 
     def for_loop(self, node: ast.For, end: Label) -> None:
-        """FOR [CTL-05, CTL-06]."""
+        """Generate FOR [CTL-05, CTL-06]."""
         step = self._step(node.step)
         counter = self._designators.variable(node.counter)
         if step is None or not isinstance(counter, FrameCells | DataCells) or counter.type != INT:
@@ -216,7 +217,7 @@ class ControlFlow(CodeMaker):
         self._memory.tell(counter)
 
     def _step(self, node: ast.Expression | None) -> int | None:
-        """The step, if it is known and not zero; else it is kept, and `_general_for` finds it."""
+        """Return the step if it is a constant other than zero, otherwise ``None``."""
         if node is None:
             return 1
         number = self._expressions.literal_integer(node)
@@ -229,7 +230,7 @@ class ControlFlow(CodeMaker):
         return last
 
     def _store_integer(self, counter: Location, node: ast.Expression) -> None:
-        """Give the counter a number, rounded if need be, and trace it."""
+        """Generate the assignment of a number, rounded if necessary, to the counter; trace it."""
         ready = self._memory.ready(counter)
         behind = self._writer.here
         self._expressions.integer(node)
@@ -237,7 +238,7 @@ class ControlFlow(CodeMaker):
         self._memory.tell(ready)
 
     def _general_for(self, node: ast.For, counter: Location, known: int | None, end: Label) -> None:
-        """A loop whose counter is anywhere, or whose step is known when it runs."""
+        """Generate a loop with any kind of counter, or with a step that is not constant."""
         step = FrameCells(self._writer.temporary(INT), INT)
         if node.step is None or known is not None:
             self._emit(Op.PUSH_INT, known or 1)
@@ -264,7 +265,7 @@ class ControlFlow(CodeMaker):
     def _compare(
         self, counter: Location, last: FrameCells, operator: str, go_on: Label, end: Label
     ) -> None:
-        """Leave the loop where the counter is beyond its last value."""
+        """Generate a jump out of the loop if the counter is beyond its last value."""
         value = self._memory.load(counter)
         if not isinstance(value, Scalar):
             raise self._emitter.fail("operand")
@@ -280,7 +281,7 @@ class ControlFlow(CodeMaker):
         self._emit(Op.JUMP, go_on)
 
     def _count(self, counter: Location, step: FrameCells) -> None:
-        """Add the step to the counter."""
+        """Generate the addition of the step to the counter."""
         ready = self._memory.ready(counter)
         behind = self._writer.here
         value = self._memory.load(counter)
@@ -297,13 +298,13 @@ class ControlFlow(CodeMaker):
     # ----------------------------------------------------------------------- jumps
 
     def exit_loop(self, _node: ast.Exit, _end: Label) -> None:
-        """EXIT."""
+        """Generate EXIT."""
         if not self._exits:
             raise self._emitter.unlinked("EXIT outside of a loop")
         self._emit(Op.JUMP, self._exits[-1])
 
     def goto(self, node: ast.Goto, _end: Label) -> None:
-        """GOTO."""
+        """Generate GOTO."""
         for labels in reversed(self._labels):
             if node.label.key in labels:
                 self._emit(Op.JUMP, labels[node.label.key])
@@ -311,7 +312,7 @@ class ControlFlow(CodeMaker):
         raise self._emitter.unlinked(f"the label {node.label.key} is not there to go to")
 
     def return_statement(self, node: ast.Return, _end: Label) -> None:
-        """RETURN."""
+        """Generate RETURN."""
         type_ = self._context.result
         if node.value is None or type_ is None:
             if type_ is not None:

@@ -1,8 +1,8 @@
-"""The data lists: their cells, and what is in them at first.
+"""Data lists: cells for their variables, and the initial contents.
 
 Nearly all initial values are literals or aggregates of literals, whose cells are known at once.
-Others are compiled as any expressions. That code is run once, at the time of compiling, and what it
-leaves in the cells is written into the program.
+Others are compiled like any expression. That code runs once, during compilation, and the resulting
+cells become part of the program.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ from interp.values.faults import Fault, LinkError, fault
 
 
 def declare_data(program: CheckedProgram, tables: Tables) -> None:
-    """Give the variables of all data lists their cells.
+    """Assign cells to the variables of all data lists.
 
-    Raises `LinkError` where there are more than a program can have.
+    Raises `LinkError` if a program cannot have that many.
     """
     for unit, _ in data_lists(program):
         for found, type_ in data_variables(program, unit):
@@ -49,28 +49,28 @@ def declare_data(program: CheckedProgram, tables: Tables) -> None:
 
 
 class _DataListEmitter(Emitter):
-    """Ends the compiling where the program could not begin."""
+    """Raises an error, or leaves the value out, where the program could not start."""
 
     def refuse(self, reason: str) -> Ended:
-        """What cannot be compiled cannot be had."""
+        """Treat code that cannot be compiled as an error in the program."""
         return self.unlinked(reason)
 
     def unlinked(self, reason: str) -> Ended:
-        """The program cannot begin; where errors are no obstacle, there is no value."""
+        """Raise `LinkError` in strict mode; otherwise record the reason and leave the value out."""
         if self.context.program.is_strict:
             raise LinkError(f"{self.context.unit.module.path}:{self.context.line}: {reason}")
         self.context.note(reason, is_missing=True)
         return Ended()
 
     def fail(self, slug: str) -> Ended:
-        """The same."""
+        """Treat a fault as an error in the program."""
         return self.unlinked(str(fault(slug)))
 
 
 class _DataList:
-    """Fills one data list: gives cells what is known now, and makes the code for the rest.
+    """Fills one data list: stores known values in cells, and generates code for the others.
 
-    ``cells`` receives what is in cells before that code is run, by their addresses.
+    ``cells`` receives the contents of cells, by address, before that code runs.
     """
 
     def __init__(self, context: Context, cells: dict[int, Raw | None]) -> None:
@@ -81,7 +81,7 @@ class _DataList:
         self._cells = cells
 
     def fill(self, content: ast.DataList, places: list[str]) -> None:
-        """All initial values of the list; the line of a statement is its place in ``places``."""
+        """Store all initial values; the line number of a statement is an index into ``places``."""
         for line, target, value in first_values(self._context.unit, content):
             self._context.line = line
             start, end = self._writer.here, Label()
@@ -95,9 +95,10 @@ class _DataList:
             self._writer.place(end)
 
     def _needs_code(self, target: ast.Expression, value: ast.Expression, *, is_first: bool) -> bool:
-        """Whether there is code now that gives a value; else it has been given, or there is none.
+        """Return whether code was generated for a value; otherwise it is stored, or there is none.
 
-        Behind the first code there is code for all, as values count in their order.
+        After the first generated code, all values need code, because later values override earlier
+        ones.
         """
         start = self._writer.here
         with self._writer.temporaries():
@@ -118,7 +119,7 @@ class _DataList:
         return True
 
     def _cells_of(self, node: ast.Expression, type_: Type) -> Sequence[Raw | None]:
-        """A literal, or an aggregate of them, in cells of a type; raises `Fault`, `LinkError`."""
+        """Return the cells of a literal or aggregate of literals; raises `Fault`, `LinkError`."""
         tables, unit = self._context.tables, self._context.unit
         tables.number(type_)
         if isinstance(node, ast.Aggregate):
@@ -144,7 +145,7 @@ class _DataList:
 
 
 def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
-    """What is in the cells of the data lists at first; raises `LinkError`."""
+    """Return the initial contents of the data lists as address and word; raises `LinkError`."""
     tables = shared.tables
     writer = Writer(tables, "DATA", CodeKind.ROUTINE, "", 0)
     places: list[str] = []

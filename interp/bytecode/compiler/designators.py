@@ -1,7 +1,7 @@
-"""Code of designators: variables, members and elements, and the locations that they name.
+"""Code for designators: variables, members and elements, and the locations that they denote.
 
-Indices are evaluated from left to right. A place of the frame or of the data lists costs no
-instruction until something is done with it; others are on the stack.
+Indices are evaluated from left to right. A location in the frame or in the data lists needs no
+instruction until it is used; other locations are references on the stack.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ _MOST_SIGNALS = 8
 
 
 class Evaluation(Protocol):
-    """Leaves the value of an expression on the stack, for a place of type ``wanted``."""
+    """Generates the value of an expression on the stack, for a place of type ``wanted``."""
 
     def __call__(self, node: ast.Expression, wanted: Type = UNKNOWN) -> Value:
-        """What was left."""
+        """Return what is left on the stack."""
 
 
 class Designators:
-    """Makes the code of designators."""
+    """Generates code for designators."""
 
     def __init__(self, emitter: Emitter, memory: Memory, value: Evaluation) -> None:
         self._emitter = emitter
@@ -57,7 +57,7 @@ class Designators:
         self._value = value
 
     def place(self, node: ast.Expression) -> Location:
-        """Where an expression has its value."""
+        """Return the location of the value of an expression."""
         match node:
             case ast.Variable():
                 found = self._context.unit.found(node.name)
@@ -78,7 +78,7 @@ class Designators:
         raise self._emitter.unlinked("a part of what has none")
 
     def variable(self, name: ast.Name) -> Location:
-        """The place of a variable."""
+        """Return the location of a variable."""
         found = self._context.unit.found(name)
         if found is not None:
             return self.declared(found)
@@ -87,7 +87,7 @@ class Designators:
         raise self._emitter.unlinked(self._context.unit.undeclared(name))
 
     def declared(self, found: Found, signals: int = 0) -> Location:
-        """The place of what a name means: of a frame, of a data list, or of the world."""
+        """Return the location of a declared name: frame, data list, or system variable."""
         try:
             found = self._context.program.declaration(found)
         except LinkError as error:
@@ -110,13 +110,13 @@ class Designators:
         raise self._emitter.unlinked(f"{symbol.name} is no variable")
 
     def _is_remote(self, found: Found) -> bool:
-        """Whether it is the world that has a variable."""
+        """Return whether the controller owns a variable."""
         if self._context.is_data_list and found.symbol in self._context.tables.places:
             return False
         return found.module is None or found.symbol.key.startswith("$")
 
     def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> SystemVariable:
-        """What a signal stands for; several bits are ``("$IN", 1, "TO", 8)`` [IOT-03]."""
+        """Return the inputs or outputs of a signal; a group is ``("$IN", 1, "TO", 8)`` [IOT-03]."""
         assert found.module is not None, "the controller's signals are variables"
         unit = self._context.program.units[found.module]
         ends: list[SystemVariable] = []
@@ -136,7 +136,7 @@ class Designators:
     # ----------------------------------------------------------------------- elements
 
     def element(self, base: Location, nodes: tuple[ast.Expression | None, ...]) -> Location:
-        """An element; an index left out, and all behind it, mean the rest of the array."""
+        """Return the location of an element, or of a row if indices at the end are omitted."""
         given: list[ast.Expression] = []
         for node in nodes:
             if node is None:
@@ -222,7 +222,7 @@ class Designators:
 
 
 def literal(node: ast.Expression) -> int | None:
-    """The value of a literal that is an INT."""
+    """Return the value of an INT literal, or ``None``."""
     node = without_parentheses(node)
     if isinstance(node, ast.IntegerLiteral) and node.value <= INT_MAX:
         return node.value

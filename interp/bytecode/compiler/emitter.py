@@ -1,4 +1,4 @@
-"""Instructions of one code object, with the types and requests they name, and early ends."""
+"""Emits instructions with types and requests, and ends code that can only fail."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from interp.values.faults import FAULTS, LinkError
 
 
 class Ended(Exception):
-    """What comes next on this way is never reached, so nothing more of it is made."""
+    """Raised after an instruction that always ends the program: what follows is unreachable."""
 
 
 class Emitter:
@@ -22,36 +22,36 @@ class Emitter:
         self.emit = context.writer.emit
 
     def ask(self, request: str, *parts: Argument) -> None:
-        """Make a request of what lies on the stack."""
+        """Emit a request with the operands on the stack."""
         self.emit(Op.ASK, self.context.tables.ask(Ask(request, parts, None)))
 
     # ----------------------------------------------------------------------- types
 
     def number(self, type_: Type) -> int:
-        """The number of a type; refuses what no variable can be of."""
+        """Return the number of a type; refuses a type that no variable can have."""
         try:
             return self.context.tables.number(type_)
         except LinkError as error:
             raise self.refuse(str(error)) from None
 
     def closed(self, type_: Type) -> Type:
-        """The type as the program has it."""
+        """Return the type as it is stored in the program."""
         return self.context.tables.types[self.number(type_)]
 
     # ----------------------------------------------------------------------- ends
 
     def fail(self, slug: str) -> Ended:
-        """The program faults here; what comes back is to be raised."""
+        """Emit a fault; return what to raise."""
         self.emit(Op.FAIL, FAULTS[slug].code)
         return Ended()
 
     def unlinked(self, reason: str) -> Ended:
-        """The program ends here with a `LinkError`, on every executor."""
+        """End the program here with a `LinkError`, on every executor; return what to raise."""
         self.context.note(reason, is_missing=True)
         return self._ended(reason)
 
     def refuse(self, reason: str) -> Ended:
-        """The program ends here because it cannot be compiled."""
+        """End the program here because it cannot be compiled; return what to raise."""
         self.context.note(reason, is_missing=False)
         return self._ended(reason)
 

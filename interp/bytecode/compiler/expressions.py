@@ -1,8 +1,8 @@
-"""Code of expressions, which leaves their values on the stack.
+"""Code for expressions, which leaves their values on the stack.
 
-Operands and arguments are evaluated from left to right. What cannot be known before the program
-runs, above all the type of a system variable that no table has, is refused: it ends the program
-when it is reached, and is reported as a `Refusal`.
+Operands and arguments are evaluated from left to right. If something must be known at compile time
+and is not, above all the type of a system variable that is in no table, the expression is refused:
+the program ends when it is reached, and the place is reported as a `Refusal`.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
 
-#: Calls a function and gives its value.
+#: Generates a call of a function and returns its value.
 Call = Callable[[ast.Call], Value]
 
 
 class Expressions:
-    """Makes the code of expressions."""
+    """Generates code for expressions."""
 
     def __init__(self, emitter: Emitter, call: Call) -> None:
         self.emitter = emitter
@@ -65,23 +65,23 @@ class Expressions:
     # ----------------------------------------------------------------------- values
 
     def value(self, node: ast.Expression, wanted: Type = UNKNOWN) -> Value:
-        """The value of an expression, for a place of type ``wanted``."""
+        """Generate the value of an expression for a place of type ``wanted``."""
         rule = _VALUES.get(type(node))
         if rule is not None:
             return rule(self, node, wanted)
         return self.place_or_value(node)
 
     def place_or_value(self, node: ast.Expression) -> Value:
-        """The value of a variable, or of a part of what an expression gives."""
+        """Generate the value of a variable, or of a part of the value of an expression."""
         return self._memory.load(self._designators.place(node))
 
     def truth(self, node: ast.Expression) -> None:
-        """A condition."""
+        """Generate a condition."""
         if self.value(node, BOOL) != Scalar(BOOL):
             raise self._emitter.fail("operand")
 
     def unless(self, node: ast.Expression, label: Label) -> None:
-        """Go on at the label where a condition is FALSE."""
+        """Generate a jump to the label if a condition is FALSE."""
         self.truth(node)
         last = self._writer.last()
         if last is not None and f"UNLESS_{last.op.name}" in Op.__members__:
@@ -94,15 +94,15 @@ class Expressions:
             self._emit(Op.JUMP_UNLESS, label)
 
     def number(self, node: ast.Expression, type_: Type) -> None:
-        """A number as INT or REAL."""
+        """Generate a number as INT or REAL."""
         self._memory.convert(self.value(node, type_), type_)
 
     def integer(self, node: ast.Expression) -> None:
-        """A number as INT."""
+        """Generate a number as INT."""
         self.number(node, INT)
 
     def real(self, node: ast.Expression) -> None:
-        """A number as REAL."""
+        """Generate a number as REAL."""
         self.number(node, REAL)
 
     def _literal(self, node: Any, _wanted: Type) -> Value:
@@ -123,7 +123,7 @@ class Expressions:
         return Scalar(REAL)
 
     def literal_integer(self, node: ast.Expression) -> int | None:
-        """The value of a literal INT, with its sign."""
+        """Return the value of an INT literal with its sign, or ``None``."""
         match node:
             case ast.Parenthesised():
                 return self.literal_integer(node.inner)
@@ -166,7 +166,7 @@ class Expressions:
         return self._result(selection, value)
 
     def operand(self, node: ast.Expression, wanted: Type) -> Scalar | Reference:
-        """A value that an operator works on."""
+        """Generate an operand of an operator."""
         return self._as_operand(self.value(node, wanted))
 
     def _as_operand(self, value: Value) -> Scalar | Reference:
@@ -187,7 +187,7 @@ class Expressions:
         return value
 
     def _joined(self, node: ast.Binary, left: Scalar | Reference, first: int) -> Value:
-        """An operation on what lies on the stack and its right operand."""
+        """Generate an operation with its left operand on the stack."""
         between = self._writer.here
         wanted = left.type if isinstance(left.type, Enumeration) else UNKNOWN
         right = self.operand(node.right, wanted)
@@ -206,7 +206,7 @@ class Expressions:
         return self._result(selection, left)
 
     def selected(self, operator: str, left: Type, right: Type) -> Selection:
-        """How an operator works on values of these types."""
+        """Return the variant of an operator for these operand types."""
         kinds = kind_of(left), kind_of(right)
         selection = None
         if kinds[0] is not None and kinds[1] is not None:
@@ -216,14 +216,14 @@ class Expressions:
         return selection
 
     def unlike(self, primitive: Primitive) -> Value:
-        """Constants of two enumerations: they are never the same."""
+        """Generate the comparison of constants of two enumerations, which are never equal."""
         self._emit(Op.DROP)
         self._emit(Op.DROP)
         self._emit(Op.PUSH_BOOL, int(primitive.name != "eq_enum"))
         return Scalar(BOOL)
 
     def _apply(self, primitive: Primitive) -> None:
-        """Carry a primitive out; adding a constant is an instruction of its own."""
+        """Emit a primitive; the addition of a constant has its own instruction."""
         last = self._writer.last()
         if last is not None and last.op is Op.PUSH_INT and primitive.name in _SIGNS:
             number = last.operands[0]
@@ -238,7 +238,7 @@ class Expressions:
         return operand if found is None else Scalar(found)
 
     def _composed(self, left: Scalar | Reference, right: Scalar | Reference, first: int) -> Value:
-        """The geometric operator: its result has a place below its operands."""
+        """Generate the geometric operator; a reference to its result lies below its operands."""
         kept = FrameCells(self._writer.temporary(right.type), right.type)
         self._memory.refer_below(kept, first)
         self._emit(Op.COMPOSE, self._emitter.number(left.type), self._emitter.number(right.type))
@@ -264,7 +264,7 @@ class Expressions:
         return Reference(type_)
 
     def assign(self, place: Location, node: ast.Expression) -> Location:
-        """Store the value of an expression; gives the location to trace."""
+        """Generate an assignment; return the location to trace."""
         ready = self._memory.ready(place)
         behind = self._writer.here
         wanted = UNKNOWN if isinstance(ready, ViewParameter | PushedView) else ready.type
@@ -279,7 +279,7 @@ _Rule = Callable[[Expressions, Any, Type], Value]
 
 
 class CodeMaker:
-    """What makers of code other than expressions work with: expressions and what these have."""
+    """The parts that all generators above expressions use."""
 
     def __init__(self, expressions: Expressions) -> None:
         self._expressions = expressions

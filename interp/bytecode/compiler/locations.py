@@ -1,4 +1,4 @@
-"""Locations of values during code generation, and what an expression leaves on the stack."""
+"""The locations of values in generated code, and the items that expressions leave on the stack."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class FrameCells:
-    """In the frame."""
+    """Cells in the frame."""
 
     offset: int
     type: Type
@@ -17,7 +17,7 @@ class FrameCells:
 
 @dataclass(frozen=True, slots=True)
 class DataCells:
-    """In the data lists."""
+    """Cells in the data lists."""
 
     address: int
     type: Type
@@ -25,7 +25,7 @@ class DataCells:
 
 @dataclass(frozen=True, slots=True)
 class ReferenceParameter:
-    """What the parameter at this offset refers to."""
+    """The target of the reference parameter at this offset."""
 
     offset: int
     type: Type
@@ -33,9 +33,9 @@ class ReferenceParameter:
 
 @dataclass(frozen=True, slots=True)
 class ViewParameter:
-    """The array that the parameter at this offset is a view of.
+    """The array of the view parameter at this offset.
 
-    ``most`` is how many elements a view has at most.
+    ``most`` is the maximum number of elements.
     """
 
     offset: int
@@ -46,7 +46,7 @@ class ViewParameter:
 
 @dataclass(frozen=True, slots=True)
 class Pushed:
-    """A reference on the stack. ``through`` is the parameter it was reached by, if any."""
+    """The target of a reference on the stack; ``through`` is the parameter it came from."""
 
     type: Type
     through: int | None
@@ -54,7 +54,7 @@ class Pushed:
 
 @dataclass(frozen=True, slots=True)
 class PushedView:
-    """A view on the stack."""
+    """The array of a view on the stack."""
 
     element: Type
     dimensions: int
@@ -64,7 +64,7 @@ class PushedView:
 
 @dataclass(frozen=True, slots=True)
 class IndexCell:
-    """An index that a cell of the frame has, or what the parameter there refers to."""
+    """An index in a cell of the frame, or in the target of the parameter there if ``is_formal``."""
 
     offset: int
     is_formal: bool = False
@@ -72,7 +72,7 @@ class IndexCell:
 
 @dataclass(frozen=True, slots=True)
 class SystemVariable:
-    """A system variable or a part of one; ``type`` is `UNKNOWN` where no table has it."""
+    """A system variable or a part of one; ``type`` is `UNKNOWN` if it is in no table."""
 
     path: tuple[str | int | IndexCell, ...]
     type: Type
@@ -114,7 +114,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A text of the program; nothing is on the stack."""
+    """A text of the program, with nothing on the stack."""
 
     text: str
 
@@ -123,5 +123,5 @@ Value = Scalar | Reference | View | Text
 
 
 def is_view_of(view: View | ViewParameter, element: Type, dimensions: int) -> bool:
-    """Whether a view is one of an array with such elements and so many dimensions."""
+    """Return whether a view has elements of this type and this number of dimensions."""
     return (view.element, view.dimensions) == (element, dimensions)

@@ -1,6 +1,6 @@
-"""Code that reads a location, refers to it, stores in it, and traces the assignment.
+"""Code that reads a location, refers to it, stores a value in it, and traces the assignment.
 
-`Memory` knows cells and types and nothing of syntax trees.
+`Memory` depends on cells and types, not on syntax trees.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from interp.bytecode.program import Argument, Ask, Constant, Input, Items, Mode
 from interp.program.variables import is_complete, untyped_value
 from interp.values.values import single
 
-#: How a value of one type becomes one of another.
+#: The instructions that convert a value of one type to another.
 _CONVERSIONS: dict[tuple[Type, Type], tuple[Op, ...]] = {
     (INT, REAL): (Op.INT_TO_REAL,),
     (REAL, INT): (Op.REAL_TO_INT,),
@@ -39,7 +39,7 @@ _CONVERSIONS: dict[tuple[Type, Type], tuple[Op, ...]] = {
 
 
 class Memory:
-    """Reads and stores in one code object."""
+    """Generates loads and stores of one code object."""
 
     def __init__(self, emitter: Emitter) -> None:
         self._emitter = emitter
@@ -47,10 +47,10 @@ class Memory:
         self._writer = emitter.writer
         self._emit = emitter.emit
 
-    # ----------------------------------------------------------------------- reading
+    # ----------------------------------------------------------------------- loads
 
     def load(self, place: Location) -> Value:
-        """The value of a place."""
+        """Generate the value of a location."""
         match place:
             case SystemVariable():
                 return self.read(place)
@@ -80,7 +80,7 @@ class Memory:
                     last.op = element
 
     def refer(self, place: FrameCells | DataCells | ReferenceParameter | Pushed) -> None:
-        """Leave a reference to a place on the stack."""
+        """Push a reference to a location."""
         match place:
             case FrameCells(offset, type_):
                 self._emit(Op.REF_LOCAL, offset, self._emitter.number(type_))
@@ -90,17 +90,20 @@ class Memory:
                 self._emit(Op.LOAD_REF, offset)
 
     def refer_below(self, place: FrameCells, at: int) -> None:
-        """Leave a reference to cells of the frame below what was pushed from ``at`` on."""
+        """Insert a reference to cells of the frame below what was pushed from ``at`` on."""
         self._writer.insert(at, Op.REF_LOCAL, place.offset, self._emitter.number(place.type))
 
     def view(self, place: ViewParameter | PushedView, *, may_be_missing: bool = False) -> View:
-        """Leave a view on the stack."""
+        """Push a view."""
         if isinstance(place, ViewParameter):
             self._emit(Op.PASS_VIEW if may_be_missing else Op.LOAD_VIEW, place.offset)
         return View(place.element, place.dimensions, place.most)
 
     def as_view(self, value: Reference | View, at: int | None = None) -> View:
-        """Make a view of a reference to an array: of the one on top, or of one pushed before."""
+        """Turn a reference to an array into a view.
+
+        It is the one on top, or the one that is on top before the instruction at ``at``.
+        """
         if isinstance(value, View):
             return value
         assert isinstance(value.type, Array), "only arrays have views"
@@ -109,7 +112,7 @@ class Memory:
         return View(value.type.element, len(value.type.sizes), elements(value.type))
 
     def read(self, place: SystemVariable) -> Value:
-        """Ask the world for a value."""
+        """Generate a request for the value of a system variable."""
         type_ = place.type
         if not is_complete(type_):
             name, *rest = place.path
@@ -127,7 +130,7 @@ class Memory:
         return Reference(type_)
 
     def pushed_path(self, place: SystemVariable) -> Items:
-        """The path of a system variable as a part of a request; its indices are pushed."""
+        """Push the indices of a system variable; return its path as a part of a request."""
         parts: list[Argument] = []
         for step in place.path:
             if isinstance(step, IndexCell):
@@ -145,7 +148,7 @@ class Memory:
     # ----------------------------------------------------------------------- parts
 
     def member(self, base: Location, name: str) -> Location:
-        """A component of a structure."""
+        """Return the location of a component of a structure."""
         key = name.upper()
         if isinstance(base, SystemVariable):
             known = base.type.member(key) if isinstance(base.type, Structure) else None
@@ -179,7 +182,7 @@ class Memory:
     def fixed_element(
         self, base: FrameCells | DataCells, indices: tuple[int, ...]
     ) -> FrameCells | DataCells | None:
-        """An element, or what is left of an array, by indices that are known and inside."""
+        """Return the location of an element or row with constant indices; ``None`` if outside."""
         found = offset_of(base.type, indices)
         if found is None:
             return None
@@ -187,10 +190,10 @@ class Memory:
             return FrameCells(base.offset + found[0], found[1])
         return DataCells(base.address + found[0], found[1])
 
-    # ----------------------------------------------------------------------- converting
+    # ----------------------------------------------------------------------- conversion
 
     def convert(self, value: Value, to: Type) -> None:
-        """Make of the value on top a value of one cell of another type."""
+        """Convert the value on top to a value of one cell of another type."""
         if isinstance(value, Text) and len(value.text) == 1:
             self._emit(Op.PUSH_CHAR, ord(value.text))
             value = Scalar(CHAR)
@@ -210,10 +213,10 @@ class Memory:
         for op in ways:
             self._emit(op)
 
-    # ----------------------------------------------------------------------- storing
+    # ----------------------------------------------------------------------- stores
 
     def ready(self, place: Location) -> Location:
-        """Push what a place needs below the value that is to be stored."""
+        """Push what a location needs below the value that will be stored in it."""
         match place:
             case ReferenceParameter():
                 self.refer(place)
@@ -226,7 +229,10 @@ class Memory:
         return place
 
     def store(self, place: Location, value: Value, behind: int) -> None:
-        """Store the value on top in a place made `ready`; ``behind`` is where the value begins."""
+        """Store the value on top in a location made `ready`.
+
+        The code of the value begins at ``behind``.
+        """
         if isinstance(place, SystemVariable):
             self._write(place, value, behind)
             return
@@ -247,7 +253,7 @@ class Memory:
         self.store_block(place.type, value, behind)
 
     def store_block(self, type_: Type, value: Value, behind: int) -> None:
-        """Store in a structure or array whose reference lies below the value."""
+        """Store in a structure or array; the reference to it lies below the value."""
         match value:
             case Reference(of) if of == type_:
                 self._emit(Op.COPY, self._emitter.number(type_))
@@ -260,7 +266,7 @@ class Memory:
                 raise self._emitter.fail("inadmissible")
 
     def _fill(self, target: View, value: Value) -> None:
-        """Store in an array of which a view lies below the value."""
+        """Store in an array; the view of it lies below the value."""
         if isinstance(value, Text):
             if (target.element, target.dimensions) != (CHAR, 1):
                 raise self._emitter.fail("inadmissible")
@@ -278,13 +284,13 @@ class Memory:
         self._emit(Op.FILL_ARRAY, self._emitter.number(target.element), target.dimensions)
 
     def _write(self, place: SystemVariable, value: Value, behind: int) -> None:
-        """Tell the world a value. The indices of the path come before the value."""
+        """Generate a write request for a system variable; indices come below the value."""
         path = self._path_below(place, behind)
         part = self.remote_value(place.type, value, behind + _pushed_by(place))
         self._emitter.ask("Write", path, part)
 
     def _path_below(self, place: SystemVariable, behind: int) -> Items:
-        """The path as a part of a request; its indices are pushed below the value."""
+        """Push the indices of a path below the value; return the path as a part of a request."""
         parts: list[Argument] = []
         for step in place.path:
             if isinstance(step, IndexCell):
@@ -301,7 +307,7 @@ class Memory:
         return Items(tuple(parts))
 
     def remote_value(self, type_: Type, value: Value, behind: int) -> Argument:
-        """The value on top as a part of a request, converted to the type as far as it is known."""
+        """Return the value on top as a part of a request, converted if the type is known."""
         if type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes):
             return self.handed(value)
         type_ = self._emitter.closed(type_)
@@ -316,7 +322,7 @@ class Memory:
         return Input(Mode.REF, self._emitter.number(type_))
 
     def handed(self, value: Value) -> Argument:
-        """The value on top as a part of a request, as it is."""
+        """Return the value on top as a part of a request, without conversion."""
         match value:
             case Text(text):
                 return Constant(text)
@@ -326,10 +332,10 @@ class Memory:
                 return Input(Mode.REF, self._emitter.number(type_))
         return Input(Mode.VIEW, self._emitter.number(value.element), value.dimensions)
 
-    # ----------------------------------------------------------------------- telling
+    # ----------------------------------------------------------------------- trace
 
     def tell(self, place: Location) -> None:
-        """Tell the trace that a place was assigned, just now."""
+        """Generate the trace event of an assignment to a location."""
         match place:
             case FrameCells(offset, type_):
                 self._emit(Op.TELL_LOCAL, offset, self._emitter.number(type_))
@@ -351,6 +357,6 @@ _ELEMENTS = {Op.INDEX_LOCAL: Op.ELEMENT_LOCAL, Op.INDEX_DATA: Op.ELEMENT_DATA}
 
 
 def _pushed_by(place: SystemVariable) -> int:
-    """How many instructions push the indices of a path."""
+    """Return the number of instructions that push the indices of a path."""
     holes = [step for step in place.path if isinstance(step, IndexCell)]
     return sum(2 if hole.is_formal else 1 for hole in holes)

@@ -1,4 +1,4 @@
-"""Code of motions, triggers, interrupts and cyclic signals, which only send requests."""
+"""Code for motions, triggers, interrupts and cyclic signals, which consist of requests only."""
 
 from __future__ import annotations
 
@@ -38,21 +38,21 @@ from interp.values.faults import Fault, LinkError
 from interp.values.values import EnumValue, converted
 from interp.values.values import Value as Known
 
-#: What stands in a spline block.
+#: An item of a spline block.
 _Item = ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
 
 
 class Motions(CodeMaker):
-    """Makes the code of statements that ask the world to do something."""
+    """Generates code for statements that make the controller do something."""
 
     # ----------------------------------------------------------------------- motions
 
     def motion(self, node: ast.Motion) -> None:
-        """PTP, LIN, CIRC and all others."""
+        """Generate PTP, LIN, CIRC and all other motions."""
         self._emitter.ask("Move", *self._move(node))
 
     def _move(self, node: ast.Motion, *, is_early: bool = False) -> tuple[Argument, ...]:
-        """The parts of a motion; ``is_early`` where something may change before the request."""
+        """Return the parts of a motion; ``is_early`` if variables may change before the request."""
         auxiliary: FrameCells | None = None
         if node.auxiliary is not None:
             auxiliary = self._kept(node.auxiliary)
@@ -68,15 +68,16 @@ class Motions(CodeMaker):
         return tuple(parts)
 
     def _target(self, node: ast.Motion, *, is_early: bool) -> Value:
-        """The target; a copy where it could be changed before the request is made."""
+        """Generate the target; a copy of it if it could change before the request is made."""
         if is_early or self._disturbs((*_parts_of_values(node.values), node.angle)):
             return self._memory.load(self._kept(node.target))
         return self._expressions.value(node.target)
 
     def _disturbs(self, nodes: Iterable[ast.Expression | None]) -> bool:
-        """Whether variables may change when these are evaluated.
+        """Return whether variables may change while these expressions are evaluated.
 
-        What is called can change them. So can an action that is entered while the world is asked.
+        Called functions can change them. So can an action that is entered while a request is
+        answered.
         """
         named = [inner for node in nodes if node is not None for inner in walk(node)]
         return any(
@@ -85,7 +86,7 @@ class Motions(CodeMaker):
         )
 
     def _is_asked(self, node: ast.Variable) -> bool:
-        """Whether the world may be asked for a variable."""
+        """Return whether a variable may be read by a request."""
         found = self._context.unit.found(node.name)
         if found is None:
             return True
@@ -95,7 +96,7 @@ class Motions(CodeMaker):
         )
 
     def _kept(self, node: ast.Expression) -> FrameCells:
-        """A copy of a value, in the frame."""
+        """Generate a copy of a value in the frame."""
         behind = self._writer.here
         value = self._expressions.value(node)
         if not isinstance(value, Reference | Scalar):
@@ -103,7 +104,7 @@ class Motions(CodeMaker):
         return self._kept_value(value, behind)
 
     def _kept_value(self, value: Reference | Scalar, behind: int) -> FrameCells:
-        """A copy of what has been pushed since the code was ``behind`` instructions long."""
+        """Generate a copy of the value that was pushed by the code from ``behind`` on."""
         kept = FrameCells(self._writer.temporary(value.type), value.type)
         self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
         self._emit(
@@ -122,7 +123,7 @@ class Motions(CodeMaker):
         return Input(Mode.IN, self._emitter.number(REAL))
 
     def _values(self, nodes: tuple[ast.Assignment, ...], *, is_early: bool = False) -> Items:
-        """What stands behind WITH [SPL-08]; ``is_early`` as for `_move`."""
+        """Generate the assignments after WITH [SPL-08]; ``is_early`` as in `_move`."""
         found: list[Argument] = []
         for number, node in enumerate(nodes, 1):
             place = self._designators.place(node.target)
@@ -141,7 +142,7 @@ class Motions(CodeMaker):
         return Items(tuple(found))
 
     def emily_motion(self, node: ast.EmilyMotion) -> None:
-        """MOVE_EMI."""
+        """Generate MOVE_EMI."""
         parts = [self._word(node.device), self._word(node.action)]
         self._emitter.ask("MoveEmily", *parts, self._optional(node.number))
 
@@ -156,7 +157,7 @@ class Motions(CodeMaker):
     # ----------------------------------------------------------------------- spline blocks
 
     def spline_block(self, node: ast.SplineBlock, end: Label) -> None:
-        """SPLINE: what stands in it is evaluated first, then planned as one motion [SPL-01]."""
+        """Generate SPLINE: its items are evaluated first, then planned as one motion [SPL-01]."""
         places = enumerate(node.items, 1)
         last = max((at for at, one in places if self._disturbs(_parts_of(one))), default=0)
         values = self._values(node.values, is_early=last > 0)
@@ -197,7 +198,7 @@ class Motions(CodeMaker):
     # ----------------------------------------------------------------------- triggers
 
     def trigger(self, node: ast.Trigger) -> None:
-        """TRIGGER."""
+        """Generate TRIGGER."""
         self._emitter.ask("SetTrigger", *self._set_trigger(node))
 
     def _set_trigger(self, node: ast.Trigger) -> tuple[Argument, ...]:
@@ -216,11 +217,11 @@ class Motions(CodeMaker):
         return Input(Mode.IN, self._emitter.number(INT))
 
     def deferred(self, node: Deferred, kind: CodeKind) -> Handle:
-        """An action or a condition, as a part of a request."""
+        """Return an action or a condition as a part of a request."""
         return Handle(self._context.shared.codes.deferred(self._context, node, kind))
 
     def _output(self, action: ast.Assignment | ast.CallStatement) -> Argument:
-        """The assignment of a literal to a system variable with literal indices, if it is one."""
+        """Return the assignment as a constant output, if it is one: literal value and indices."""
         if not isinstance(action, ast.Assignment) or not is_constant_output(action):
             return Constant(None)
         before = self._writer.here
@@ -233,7 +234,7 @@ class Motions(CodeMaker):
         return Items((path, self._as_part(value)))
 
     def _forget(self, place: Location, behind: int) -> None:
-        """Take a place from the stack that was only looked for; its index may be wrong."""
+        """Remove an unused location from the stack; its index may still be out of range."""
         if isinstance(place, Pushed):
             kept = FrameCells(self._writer.temporary(place.type), place.type)
             self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
@@ -242,7 +243,7 @@ class Motions(CodeMaker):
             self._writer.cut(behind)
 
     def _known(self, node: ast.Expression, type_: Type) -> Known:
-        """The value of a literal as a system variable receives it."""
+        """Return the value of a literal converted to the type of a system variable."""
         try:
             value = literal_value(self._context.unit, node, type_)
             is_open = type_ == UNKNOWN or (isinstance(type_, Array) and None in type_.sizes)
@@ -262,21 +263,21 @@ class Motions(CodeMaker):
     # ----------------------------------------------------------------------- interrupts
 
     def interrupt_declaration(self, node: ast.InterruptDeclaration) -> None:
-        """INTERRUPT DECL [INT-01]."""
+        """Generate INTERRUPT DECL [INT-01]."""
         number = self._optional_integer(node.number)
         condition = self.deferred(node.condition, CodeKind.CONDITION)
         action = self.deferred(node.action, CodeKind.ACTION)
         self._emitter.ask("DeclareInterrupt", number, Constant(node.is_global), condition, action)
 
     def interrupt_switch(self, node: ast.InterruptSwitch) -> None:
-        """INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
+        """Generate INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
         number = self._optional_integer(node.number)
         self._emitter.ask("SwitchInterrupt", Constant(node.action), number)
 
     # ----------------------------------------------------------------------- cyclic signals
 
     def signal_on(self, node: ast.SignalOn) -> None:
-        """ANIN ON, ANOUT ON, DIGIN ON [IOT-05, IOT-09]."""
+        """Generate ANIN ON, ANOUT ON, DIGIN ON [IOT-05, IOT-09]."""
         source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
         name = self._signal_name(source)
         numbers = [self._optional(one) for one in (node.delay, node.minimum, node.maximum)]
@@ -285,12 +286,12 @@ class Motions(CodeMaker):
         self._emitter.ask("SwitchSignal", *words, cycle, *numbers)
 
     def signal_off(self, node: ast.SignalOff) -> None:
-        """ANIN OFF, ANOUT OFF, DIGIN OFF."""
+        """Generate ANIN OFF, ANOUT OFF, DIGIN OFF."""
         words = Constant(node.keyword), Constant(False), Constant(self._signal_name(node.variable))
         self._emitter.ask("SwitchSignal", *words, *[Constant(None)] * 4)
 
     def _signal_name(self, node: ast.Expression) -> str:
-        """The signal that is meant, by its name here."""
+        """Return the name of the signal that an expression denotes."""
         name = signal_name(self._context.unit, node)
         if name is None:
             raise self._emitter.unlinked("nothing says which signal is meant")
@@ -298,7 +299,7 @@ class Motions(CodeMaker):
 
 
 def _parts_of_values(nodes: Iterable[ast.Assignment]) -> Iterator[ast.Expression | None]:
-    """What is evaluated of assignments behind WITH: values, and indices of their targets."""
+    """Yield the expressions in assignments after WITH: values, and indices of targets."""
     for node in nodes:
         for inner in walk(node.target):
             if isinstance(inner, ast.Subscript):
@@ -307,7 +308,7 @@ def _parts_of_values(nodes: Iterable[ast.Assignment]) -> Iterator[ast.Expression
 
 
 def _parts_of(node: _Item) -> Iterator[ast.Expression | None]:
-    """What is evaluated of something in a spline block before the block is asked for."""
+    """Yield the expressions in a spline item that are evaluated before the request of the block."""
     match node:
         case ast.Motion():
             yield from (node.target, node.auxiliary, *_parts_of_values(node.values), node.angle)

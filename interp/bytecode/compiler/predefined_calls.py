@@ -1,7 +1,7 @@
-"""Calls of predefined functions: of what computes alone, and of what needs the world.
+"""Code for calls of predefined functions: pure ones, and ones that the controller executes.
 
-What is passed :OUT and is a variable is handed over by reference and assigned afterwards; a system
-variable cannot be referred to, so a copy is, which is written back.
+A variable that is passed :OUT is passed by reference and assigned afterwards. There are no
+references to system variables; a copy is passed instead and written back.
 """
 
 from __future__ import annotations
@@ -51,15 +51,15 @@ from interp.values.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
 from interp.values.faults import LinkError
 from interp.values.values import letters
 
-#: Functions that are given the name of a variable as a text [TYP-18].
+#: Functions that take the name of a variable as a text [TYP-18].
 BY_TEXT = frozenset({"VARSTATE", "VARTYPE"})
 
 
 class PredefinedCalls(CodeMaker):
-    """Makes the code of calls of predefined functions."""
+    """Generates code for calls of predefined functions."""
 
     def predefined(self, node: ast.Call, *, is_value: bool) -> Value | None:
-        """Call a function; gives its result, ``None`` where it has none."""
+        """Generate a call; return its result, or ``None`` if it has none."""
         name = node.name.key
         function = System.load().functions[name]
         is_builtin = name in BUILTINS
@@ -110,7 +110,7 @@ class PredefinedCalls(CodeMaker):
         *,
         is_builtin: bool,
     ) -> Argument:
-        """Push an argument; what is passed :OUT and is a variable is assigned afterwards."""
+        """Push an argument; a variable that is passed :OUT is assigned after the call."""
         if argument is None:
             return Constant(None)
         if parameter is not None:
@@ -133,9 +133,9 @@ class PredefinedCalls(CodeMaker):
         return self._memory.handed(value)
 
     def _name_to_find(self, text: str) -> str:
-        """A name as the machine finds it, which knows no IMPORT: what it stands for [ADV-05].
+        """Return the name under which the machine, which has no IMPORT, finds a variable [ADV-05].
 
-        Where the name of that means something else here, the text stays, and finds nothing.
+        If that name denotes something else here, return the text as it is; it will not be found.
         """
         root = text.partition("[")[0].partition(".")[0].strip()
         answer = self._context.scope.find(Space.VALUE, root.upper())
@@ -155,7 +155,7 @@ class PredefinedCalls(CodeMaker):
         return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
 
     def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
-        """The value of an argument :IN; for a text see `interp.values.builtins.reads_text`."""
+        """Generate an :IN argument; for texts see `interp.values.builtins.reads_text`."""
         if not (is_builtin and reads_text(type_) and is_variable(self._context.unit, argument)):
             return self._expressions.value(argument, type_)
         place = self._designators.place(argument)
@@ -180,7 +180,7 @@ class PredefinedCalls(CodeMaker):
         return Changed(given, through)
 
     def _changed_remote(self, place: SystemVariable) -> Argument:
-        """A copy of a system variable, which is written back if it has changed."""
+        """Push a copy of a system variable, which is written back if it has changed."""
         behind = self._writer.here
         value = self._memory.read(place)
         assert isinstance(value, Scalar | Reference), "what is read has a known type"

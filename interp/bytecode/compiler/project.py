@@ -1,4 +1,4 @@
-"""From a checked program to bytecode: routines are compiled as they are called."""
+"""Compiles a checked program: routines are compiled as they are called."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ from interp.values.faults import LinkError
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """A program, and what ends it when it is reached.
+    """A compiled program, and the places where it ends if they are executed.
 
-    ``starts`` are the code objects of the routines that it can begin with, by their symbols.
+    ``starts`` maps the routines with which the program can begin to their code objects.
     """
 
     program: Program
@@ -51,10 +51,10 @@ class Compiled:
 
 
 def compile_program(program: CheckedProgram, starts: Iterable[Routine] = ()) -> Compiled:
-    """Compile a program; raises `LinkError` where it cannot be run at all.
+    """Compile a program; raises `LinkError` if it cannot run at all.
 
-    It can begin with the routines without parameters of its first file and of the submit programs,
-    and with ``starts``. What none of them calls is not compiled.
+    It can begin with the routines without parameters of its first file and of submit programs, and
+    with ``starts``. Routines that none of them calls are not compiled.
     """
     submits = (unit for unit in program.units.values() if unit.module.suffix == ".sub")
     files = dict.fromkeys((program.main, *submits))
@@ -63,7 +63,7 @@ def compile_program(program: CheckedProgram, starts: Iterable[Routine] = ()) -> 
 
 
 class Project:
-    """One program that is compiled."""
+    """The compilation of one program."""
 
     def __init__(self, program: CheckedProgram) -> None:
         self._shared = Shared(program, self)
@@ -74,7 +74,7 @@ class Project:
         self._todo: deque[tuple[int, Routine, tuple[Binding, ...]]] = deque()
 
     def compiled(self, starts: Sequence[Routine]) -> Compiled:
-        """The whole program."""
+        """Return the compiled program."""
         declare_data(self._program, self._tables)
         main = self._program.main
         initial = initial_values(self._shared)
@@ -101,7 +101,7 @@ class Project:
         return Compiled(measured(program), tuple(self._shared.refusals), numbers)
 
     def _imports(self) -> Iterator[Import]:
-        """What modules and routines call data of other lists; what leads nowhere is left out."""
+        """Yield the imported names of modules and routines, except imports without a target."""
         program = self._program
         numbers = {symbol: number for number, symbol in enumerate(self._tables.places)}
         for unit in program.units.values():
@@ -121,7 +121,7 @@ class Project:
     # ----------------------------------------------------------------------- routines
 
     def code_of(self, routine: Routine, bindings: tuple[Binding, ...]) -> int:
-        """The number of the code object of a routine, called with these system variables."""
+        """Return the number of a routine's code object for these system variables as arguments."""
         key = routine.table.routine, bindings
         if key not in self._numbers:
             self._numbers[key] = self._reserved()
@@ -154,7 +154,7 @@ class Project:
         return writer
 
     def _give(self, context: Context, result: Type) -> None:
-        """What a function gives: a value, or something put where a hidden parameter leads."""
+        """Set the result of a function; a large one is stored through a hidden parameter."""
         context.result = self._tables.closed(result)
         if isinstance(context.result, Plain):
             context.writer.result = self._tables.number(result)
@@ -188,7 +188,7 @@ class Project:
         )
 
     def _declare(self, context: Context, routine: Routine, formals: set[Symbol]) -> None:
-        """The local data. What has no known type is refused where it is used."""
+        """Declare the local variables. One of unknown type is refused where it is used."""
         for statement in routine.node.body:
             if not isinstance(statement, ast.VariableDeclaration):
                 continue
@@ -206,7 +206,7 @@ class Project:
     # ----------------------------------------------------------------------- deferred
 
     def deferred(self, owner: Context, node: Deferred, kind: CodeKind) -> int:
-        """The number of an action or a condition, which uses variables of its owner."""
+        """Return the number of an action or a condition, which uses variables of its owner."""
         number = self._reserved()
         line = owner.unit.line(node)
         file = owner.unit.module.path
@@ -225,7 +225,7 @@ class Project:
         return number
 
     def _used(self, owner: Context, node: ast.Node) -> list[Symbol]:
-        """The variables of the owner that are named in a node, in the order of the text."""
+        """Return the variables of the owner that a node names, in the order of the text."""
         found: dict[Symbol, None] = {}
         for one in walk(node):
             if isinstance(one, ast.Variable):
@@ -237,7 +237,7 @@ class Project:
         return list(found)
 
     def _captured(self, writer: Writer, symbol: Symbol, place: Location) -> Location:
-        """A variable of the owner as a parameter."""
+        """Declare a parameter for a variable of the owner; return its location."""
         match place:
             case FrameCells(offset, type_) | ReferenceParameter(offset, type_):
                 writer.captures.append(offset)
@@ -265,7 +265,7 @@ class Project:
 
 
 def _named_by_text(owner: Context, call: ast.Call) -> list[Symbol]:
-    """The variables of the owner that such a call may mean: of a text that is known, the one."""
+    """Return the owner's variables that a call may name by a text: one if the text is known."""
     match call.arguments:
         case (ast.StringLiteral(text=text),):
             wanted = text.partition("[")[0].partition(".")[0].strip().upper()

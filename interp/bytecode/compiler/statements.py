@@ -1,7 +1,7 @@
-"""Code of routines and statements: which rule compiles which statement, and the simple ones.
+"""Code for routines and statements: which rule compiles which statement, and simple statements.
 
-A statement begins with LINE. If it ends early, by a fault that ON_ERROR_PROCEED takes or by RESUME,
-the routine continues after the whole statement.
+A statement begins with LINE. If it ends early, by a fault under ON_ERROR_PROCEED or by RESUME,
+execution continues after the whole statement.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from interp.values.faults import FAULTS
 
 
 class Statements(CodeMaker):
-    """Makes the code of statements, and of whole code objects."""
+    """Generates code for statements and for whole code objects."""
 
     def __init__(self, context: Context) -> None:
         self._calls = Calls(Emitter(context))
@@ -43,7 +43,7 @@ class Statements(CodeMaker):
     # ----------------------------------------------------------------------- routines
 
     def routine(self, node: ast.Routine) -> None:
-        """The body of a routine."""
+        """Generate the body of a routine."""
         try:
             self._initialise(node)
         except Ended:
@@ -55,18 +55,18 @@ class Statements(CodeMaker):
             self._emit(Op.FAIL, FAULTS["no_result"].code)
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> None:
-        """What an interrupt, a trigger or a cyclic signal does."""
+        """Generate the action of an interrupt, a trigger or a cyclic signal."""
         self.statement(node)
         self._emit(Op.RETURN)
 
     def condition(self, node: ast.Expression) -> None:
-        """What an interrupt or a conditional stop waits for."""
+        """Generate the condition of an interrupt or a conditional stop."""
         with suppress(Ended), self._writer.temporaries():
             self._expressions.truth(node)
             self._emit(Op.RETURN_VALUE)
 
     def _initialise(self, node: ast.Routine) -> None:
-        """Initial values of local data."""
+        """Generate the initial values of local variables."""
         for statement in node.body:
             if isinstance(statement, ast.VariableDeclaration):
                 for declarator in statement.declarators:
@@ -79,7 +79,7 @@ class Statements(CodeMaker):
     # ----------------------------------------------------------------------- statements
 
     def statement(self, node: ast.Statement) -> None:
-        """Any statement; a declaration does nothing."""
+        """Generate any statement; a declaration generates nothing."""
         rule = _RULES.get(type(node))
         if rule is None:
             return
@@ -111,7 +111,7 @@ class Statements(CodeMaker):
         self._emit(Op.PROCEED)
 
     def _wait_for(self, node: ast.WaitFor, end: Label) -> None:
-        """A request before each evaluation of the condition lets time pass [CTL-12]."""
+        """Generate WAIT FOR; a request before each evaluation lets time pass [CTL-12]."""
         test, again = Label(), Label()
         self._emitter.ask("Poll", Constant(True))
         self._writer.place(test)
@@ -122,7 +122,7 @@ class Statements(CodeMaker):
         self._emit(Op.JUMP, test)
 
     def _request(self, node: ast.Statement, _end: Label) -> None:
-        """A statement that only makes a request."""
+        """Generate a statement that only makes a request."""
         made = STATEMENT_REQUESTS[type(node)]
         parts: list[Argument] = []
         for part in made.parts:

@@ -1,4 +1,4 @@
-"""Tables shared by all code objects of a program: types, texts, requests, functions, data."""
+"""The tables of a program: types, texts, requests, functions, data."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Tables:
     # ----------------------------------------------------------------------- types
 
     def number(self, type_: Type) -> int:
-        """The number of a type; raises `LinkError` for what no variable can be of."""
+        """Return the number of a type; raises `LinkError` if no variable can have it."""
         number = self._numbers.get(type_)
         if number is None:
             made = self._made(type_)
@@ -47,11 +47,11 @@ class Tables:
         return number
 
     def closed(self, type_: Type) -> Type:
-        """The type as the program has it, which nothing can be added to."""
+        """Return the type as it is stored in the program; it cannot be extended."""
         return self.types[self.number(type_)]
 
     def _made(self, type_: Type) -> Type:
-        """The same object where nothing changes: types are compared all the time."""
+        """Return the type to store; the same object if unchanged, as types are often compared."""
         match type_:
             case Array():
                 element = self.closed(type_.element)
@@ -76,7 +76,7 @@ class Tables:
         raise LinkError(f"no variable can be of {type_}")
 
     def _named(self, name: str) -> str:
-        """The name, or another one where a different type has it already."""
+        """Return the name of a type, made unique if another type has the same name."""
         found, number = name, 1
         while found.upper() in self._names:
             number += 1
@@ -87,15 +87,15 @@ class Tables:
     # ----------------------------------------------------------------------- entries
 
     def text(self, text: str) -> int:
-        """The number of a text."""
+        """Return the number of a text."""
         return self._entry(self.texts, text)
 
     def ask(self, ask: Ask) -> int:
-        """The number of a request."""
+        """Return the number of a request."""
         return self._entry(self.asks, ask)
 
     def builtin(self, builtin: Builtin) -> int:
-        """The number of a call of a predefined function."""
+        """Return the number of a call of a predefined function."""
         return self._entry(self.builtins, builtin)
 
     def _entry(self, table: list[_T], entry: _T) -> int:
@@ -109,7 +109,7 @@ class Tables:
     # ----------------------------------------------------------------------- data
 
     def variable(self, symbol: Symbol, type_: Type, module: str, *, is_global: bool) -> None:
-        """Give a variable of a data list its cells; raises `LinkError` where it can have none."""
+        """Assign cells to a variable of a data list; raises `LinkError` if its type has no size."""
         number = self.number(type_)
         self.places[symbol] = self.cells, self.types[number]
         self.data.append(Data(module, symbol.name, number, is_global))
