@@ -1,1 +1,1 @@
-"""Bytecode as text: assembler and disassembler."""
+"""The text form of bytecode: assembler and disassembler."""

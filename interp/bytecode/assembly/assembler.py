@@ -1,8 +1,8 @@
-"""From the text form to a program; the form is described in ``docs/bytecode.md``.
+"""The assembler: reads the text form of a program, which ``docs/bytecode.md`` describes.
 
-What is written by hand may leave out what can be worked out: array types need no line of their own
-where an operand names them, ``stack`` no number, and texts, requests and predefined functions may
-have any label. `interp.bytecode.assembly.disassembler` writes the text with all of it.
+Text written by hand may omit what can be derived: array types need no line of their own if an
+operand names them, ``stack`` needs no number, and texts, requests and predefined functions may have
+any label. `interp.bytecode.assembly.disassembler` writes all of it.
 """
 
 from __future__ import annotations
@@ -44,15 +44,15 @@ from interp.values.faults import LinkError
 __all__ = ["AssemblyError", "assemble"]
 
 _MODES = {mode.value: mode for mode in Mode}
-#: What a word stands for among the parts of a request.
+#: The words among the parts of a request that are constants.
 _WORDS = {"nil": Constant(None), "TRUE": Constant(True), "FALSE": Constant(False)}
 _KINDS = {kind.value: kind for kind in CodeKind}
 
 
 def assemble(text: str) -> Program:
-    """The program that a text describes; raises `AssemblyError`.
+    """Return the program that a text describes; raises `AssemblyError`.
 
-    It is not verified: see `interp.bytecode.verifier.verify`.
+    The program is not verified; see `interp.bytecode.verifier.verify`.
     """
     return _Assembler(split(text)).program()
 
@@ -74,7 +74,7 @@ class _Assembler:
         self._codes: list[Code] = []
 
     def program(self) -> Program:
-        """All of the text."""
+        """Return the program."""
         sections: Mapping[str, Callable[[Line], None]] = {
             "struct": self._structure,
             "enum": self._enumeration,
@@ -113,7 +113,7 @@ class _Assembler:
         )
 
     def _with_stacks(self, program: Program) -> Program:
-        """The program with the sizes of stacks that the text leaves out."""
+        """Return the program with the stack sizes that the text omits."""
         if all(code.stack >= 0 for code in program.codes):
             return program
         pairs = zip(program.codes, stacks_needed(program), strict=True)
@@ -241,7 +241,7 @@ class _Assembler:
         self._imports.append(Import(module, routine, name, self._symbols.data_number(line)))
 
     def _initial_value(self, line: Line, type_: Type, offset: int) -> int:
-        """Reads one initial value, or a text; gives the offset behind it."""
+        """Read one initial value, or a text; return the offset after it."""
         if line.found("@"):
             return line.integer(offset)
         letters = [ord(one) for one in line.string()] if line.has("string") else [None]
@@ -299,7 +299,7 @@ class _Assembler:
         self._codes[-1] = replace(code, instructions=self._body(code))
 
     def _body(self, code: Code) -> tuple[Instruction, ...]:
-        """The instructions of a code object, up to ``end``."""
+        """Return the instructions of a code object, up to ``end``."""
         targets: dict[str, int] = {}
         written: list[Line] = []
         while not (line := self._line()).found("end"):

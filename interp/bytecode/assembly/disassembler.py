@@ -1,8 +1,8 @@
-"""From a program to its text form.
+"""The disassembler: writes a verified program as text.
 
-The text says all that the program holds, in one way only:
-`interp.bytecode.assembly.assembler.assemble` gives the same program again, and that one the same
-text. What a comment says follows from the rest. Only what was verified has a text form.
+The text contains everything in the program, and in one form only: the assembler returns the same
+program, and disassembling that returns the same text. Comments only repeat what follows from the
+rest.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _FAULTS = {kind.code: slug for slug, kind in FAULTS.items()}
 
 
 def disassemble(program: Program) -> str:
-    """The text form of a program."""
+    """Return the text form of a program."""
     return "".join(f"{line}\n" for line in _Writer(program).lines())
 
 
@@ -287,7 +287,7 @@ def _constant_operand(kind: str, operand: int) -> str:
 
 
 def _targets(code: Code) -> set[int]:
-    """The instructions that others continue at."""
+    """Return the instructions that are jump targets."""
     return {
         operand
         for instruction in code.instructions
@@ -299,7 +299,7 @@ def _targets(code: Code) -> set[int]:
 
 
 def _wanted(program: Program, instruction: Instruction) -> Type | None:
-    """The type that a place in the frame or the data lists has; ``None`` for a single cell."""
+    """Return the type at a place in the frame or the data lists; ``None`` for a single cell."""
     kinds = shape(instruction.op.name).operands
     is_typed = kinds[:2] in (("local", "type"), ("data", "type"))
     return program.types[instruction.operands[1]] if is_typed else None
@@ -310,7 +310,7 @@ def _dimensions(given: Input | Parameter) -> str:
 
 
 def _initial(type_: Type, base: int, words: Sequence[tuple[int, int]]) -> Iterator[str]:
-    """Initial values as they are written: ``1 2 @10 "text" 3.0``."""
+    """Yield initial values in text form: ``1 2 @10 "text" 3.0``."""
     expected, letters = base, ""
     for address, word in words:
         kind = kind_at(type_, address - base)

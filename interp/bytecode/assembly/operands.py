@@ -1,4 +1,4 @@
-"""Instructions and their operands, as the text form has them."""
+"""Reads instructions and their operands from assembly text."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _FAULTS = {slug: kind.code for slug, kind in FAULTS.items()}
 class Operands:
     """Reads the instructions of one code object.
 
-    ``targets`` are its labels, with the places of the instructions behind them; ``frame`` is where
-    its parameters and locals are.
+    ``targets`` maps its labels to instructions; ``frame`` has the positions of parameters and
+    locals.
     """
 
     def __init__(
@@ -30,7 +30,7 @@ class Operands:
         self._frame = frame
 
     def instruction(self, line: Line) -> Instruction:
-        """The instruction of a line."""
+        """Return the instruction in a line."""
         name = line.take("word", "an instruction")
         if name not in Op.__members__:
             raise line.error(f"there is no instruction {name}")
@@ -44,7 +44,7 @@ class Operands:
         return Instruction(Op[name], tuple(operands))
 
     def _operand(self, line: Line, kind: str) -> int:
-        """An operand by its name; any can be written as a number."""
+        """Return an operand given by name or as a number."""
         if line.found("#"):
             return line.integer()
         match kind:

@@ -52,7 +52,7 @@ from interp.program.variables import (
 
 @dataclass(frozen=True, slots=True)
 class Formals:
-    """The declared parameters of a routine: their symbols, their types, and whether they are :IN."""
+    """The declared parameters of a routine: symbols, types, and whether each is :IN."""
 
     found: tuple[Found, ...]
     types: tuple[Type, ...]
