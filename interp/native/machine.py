@@ -1,10 +1,10 @@
 """The machine in C as an executor.
 
-C carries out the instructions; what reaches beyond the cells is done by the same Python code as for
-`interp.bytecode.vm.executor`: requests and replies, the trace, the functions that C does not know,
-counting from one slice to the next. So both machines say the same. For that code the memory in C
-looks like the state of the machine in Python, and a run in C like an operation: it goes on until
-something is to be done outside, and gives the operation that does it.
+C executes the instructions. What goes beyond cells is done by the Python code of
+`interp.bytecode.vm.executor`: requests and replies, the trace, functions that C does not have, and
+the counting of slices. So both machines behave alike. To that code, the memory in C looks like the
+state of the Python machine, and a run in C looks like an operation: it runs until Python has to do
+something, and returns the operation that does it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from interp.values.faults import FAULTS, LinkError, fault
 
 
 class _Stop(IntEnum):
-    """Why C has stopped; as ``enum krl_stop`` has it."""
+    """Why C has stopped; must agree with ``enum krl_stop``."""
 
     STEP = 0
     LINE = 1
@@ -45,7 +45,7 @@ class _Stop(IntEnum):
 
 
 class _Matter(IntEnum):
-    """What a step for Python is about; as ``enum krl_matter`` has it."""
+    """What Python has to do at a step; must agree with ``enum krl_matter``."""
 
     INSTRUCTION = 0
     CALL = 1
@@ -62,9 +62,9 @@ _SLUGS = [slug for slug, _ in sorted(FAULTS.items(), key=lambda item: item[1].co
 
 
 class _Stack:
-    """The stack of operands of the frame that runs, while C has stopped: the cells below ``top``.
+    """The operand stack of the current frame while C has stopped: the cells below ``top``.
 
-    Only what lies on top is taken, as a slice that begins so many places below.
+    Only items at the top are accessed, as slices that begin at a negative index.
     """
 
     __slots__ = ("_core",)
@@ -94,14 +94,14 @@ class _Stack:
         core.top = (core.top if where.start < 0 else core.floor) + where.start
 
     def append(self, raw: Raw | None) -> None:
-        """Put something on top."""
+        """Push an item."""
         core = self._core
         core[core.top] = raw
         core.top += 1
 
 
 class _Calls:
-    """The open calls, as far as others than C have to do with them."""
+    """The open calls, as far as Python needs them."""
 
     __slots__ = ("_core",)
 
@@ -117,7 +117,7 @@ class _Calls:
 
 
 class _State(Core):
-    """What the machine works on, which lies in C, as `interp.bytecode.vm.state.State` shows it."""
+    """The state of the machine in C, with the interface of `interp.bytecode.vm.state.State`."""
 
     __slots__ = ("calls", "completion", "reader", "request", "site", "stack")
 
@@ -138,11 +138,11 @@ class _State(Core):
 
 
 def _nowhere() -> None:
-    """Where an open call goes on is C's affair."""
+    """Stand for the return address of an open call, which only C knows."""
 
 
 class _Body:
-    """The operations of a code object, by the places of instructions that are targets."""
+    """The operations of a code object, by index of the instruction."""
 
     __slots__ = ("_code", "_threaded")
 
@@ -155,7 +155,7 @@ class _Body:
 
 
 class _NativeCode:
-    """Runs in C, in place of `interp.bytecode.vm.threaded_code.ThreadedCode`."""
+    """Runs code objects in C, in place of `interp.bytecode.vm.threaded_code.ThreadedCode`."""
 
     def __init__(self, program: Program, state: _State, services: Services) -> None:
         self._program = program
@@ -165,11 +165,11 @@ class _NativeCode:
         self._outside: dict[int, Operation] = {}
 
     def body(self, number: int) -> _Body:
-        """The operations of a code object."""
+        """Return the operations of a code object."""
         return _Body(self, number)
 
     def at(self, code: int, place: int) -> Operation:
-        """The operation that runs from an instruction on."""
+        """Return the operation that runs from an instruction on."""
         return self._running(self._state.step(code, place))
 
     def _running(self, step: int, is_begun: bool = False) -> Operation:
@@ -177,7 +177,7 @@ class _NativeCode:
         return lambda: self._stopped(run(step, is_begun))
 
     def _stopped(self, stop: int) -> Operation | None:
-        """The operation that does what C has stopped for."""
+        """Return the operation for which C has stopped."""
         why = stop & 7
         if why <= _Stop.LINE:
             operation = self._outside.get(stop)
@@ -196,7 +196,7 @@ class _NativeCode:
         return self._services.finish if why == _Stop.END else None
 
     def _made(self, step: int, why: _Stop) -> Operation:
-        """What is to be done outside at a step, with the run that follows."""
+        """Return the operation for a step that Python executes; C continues after it."""
         matter, place, statement = self._state.about(step)
         services = self._services
         code = self._state.code
@@ -239,7 +239,7 @@ def _then(act: Callable[[], None], after: Operation) -> Operation:
 
 
 class Machine(vm.Machine):
-    """Runs a verified program in C; else like `interp.bytecode.vm.executor.Machine`."""
+    """Runs a verified program in C, otherwise like `interp.bytecode.vm.executor.Machine`."""
 
     def __init__(
         self,
@@ -270,7 +270,7 @@ class Machine(vm.Machine):
         return cast("_State", self._state)
 
     def break_at(self, places: Breaks) -> bool:
-        """Ask for time before statements that begin in these lines; whether it can do so."""
+        """Stop before statements in these lines; return whether the machine can do so."""
         if self._traced & _TRACED["line"]:
             return False
         steps = [
@@ -282,7 +282,7 @@ class Machine(vm.Machine):
         return self._core.break_at(steps) == len(steps)
 
     def _guarded(self, number: int, guard: Guard | None) -> tuple[int, int, bool, Raw]:
-        """What holds in a code object: relation, cell, whether of the frame, constant; see C."""
+        """Return a breakpoint's condition for C: relation, cell, whether in the frame, constant."""
         if guard is None or self._program.codes[number].kind is not CodeKind.ROUTINE:
             return _UNGUARDED
         found = Names(self._program, InFrame([], number, 0)).fixed(guard.name)

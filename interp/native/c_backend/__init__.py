@@ -1,1 +1,1 @@
-"""Register code as native code, by way of C and the compiler at hand."""
+"""Native code: register code as C, compiled by the installed compiler."""

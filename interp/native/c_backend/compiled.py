@@ -1,8 +1,8 @@
-"""Programs as native code: register code as C, made by the compiler at hand and kept.
+"""Compiles programs to native code: register code becomes C, which the installed compiler compiles.
 
-A step of the machine becomes a line of C that names it (``compiled.h``), so there is one
-description of what steps do, and a program that was compiled stops where the machine stops and asks
-what it asks. What is kept is found by the text that was compiled, with all headers.
+A step of the machine becomes a macro call in C that names the step (``compiled.h``). So the effect
+of each step is defined once, and a compiled program stops where the machine stops and makes the
+same requests. Shared objects are cached by the generated text and all headers.
 """
 
 from __future__ import annotations
@@ -35,33 +35,33 @@ _FLAGS: Final = tuple(
     "-std=c11 -O2 -fPIC -shared -ffp-contract=off -fno-math-errno -w"
     " --param=max-inline-insns-auto=200 --param=max-inline-insns-recursive-auto=1000".split()
 )
-_PATIENCE: Final = 600  # seconds that the compiler may take
+_PATIENCE: Final = 600  # limit of the compiler in seconds
 _MOST_KEPT: Final = 500
-#: Steps of a routine that is no call in C, if it calls none itself.
+#: The maximum number of steps of a routine that is inlined, if it calls no other.
 _SMALL: Final = 30
-#: And of one that is compiled twice, for calls and for the interpreter.
+#: The maximum number of steps of a routine that is compiled twice, for calls and the interpreter.
 _MOST_TWICE: Final = 150
-#: What is longer the interpreter runs: the C compiler takes time by the square of the steps.
+#: Longer routines are interpreted, because the time of the C compiler grows with the square.
 _MOST_STEPS: Final = 5_000
-#: What a cell of a type holds; of all others a number.
+#: The kinds of cells; cells of all other types hold an INT.
 _KINDS: Final[Mapping[Type, str]] = {REAL: "REAL", BOOL: "BOOL"}
-#: And that in C.
+#: The C types of the kinds.
 _IN_C: Final = {"INT": "int32_t", "BOOL": "int32_t", "REAL": "float"}
 
 
 def compiler() -> str | None:
-    """The C compiler of this machine: that of ``CC``, else one by its usual name."""
+    """Return the C compiler of this computer: ``CC``, or the first with a usual name."""
     names = (os.environ.get("CC", ""), "cc", "gcc", "clang")
     return next((found for name in names if name and (found := shutil.which(name))), None)
 
 
 def source_of(program: Program, core: Core) -> str:
-    """The register code of a program as C."""
+    """Return the register code of a program as C."""
     return "\n".join(_lines(program, core)) + "\n"
 
 
 def keep(verified: Verified) -> Path:
-    """The shared object of a program for runs without a trace, made where it is not kept yet.
+    """Return the shared object of a program for runs without a trace; compile it if necessary.
 
     Raises `OSError` as `library_of` does.
     """
@@ -69,9 +69,9 @@ def keep(verified: Verified) -> Path:
 
 
 def library_of(source: str) -> Path:
-    """The shared object of a source, which is kept for the user.
+    """Return the shared object of a C source, which is cached for the user.
 
-    Raises `OSError` where there is no compiler, it fails, or there is no place to keep it.
+    Raises `OSError` if there is no compiler, if it fails, or if there is no cache folder.
     """
     folder = user_cache()
     if folder is None:
@@ -108,9 +108,9 @@ def _headers() -> str:
 
 
 class CompiledMachine(Machine):
-    """Runs what was compiled of a verified program; else like `interp.native.machine.Machine`.
+    """Runs a program as native code, otherwise like `interp.native.machine.Machine`.
 
-    Raises `OSError` where it cannot be compiled.
+    Raises `OSError` if the program cannot be compiled.
     """
 
     def _begin(self, number: int) -> None:
@@ -120,7 +120,7 @@ class CompiledMachine(Machine):
 
 
 def _lines(program: Program, core: Core) -> Iterator[str]:
-    """The tables, a function for each routine, then what the module looks for."""
+    """Yield the tables, a function for each routine, and the symbols that the module looks up."""
     steps, arrays = [Step(*one) for one in core.steps()], core.arrays()
     firsts = [core.step(number, 0) for number in range(len(program.codes))]
     bodies = map(range, firsts, [*firsts[1:], len(steps)])
@@ -157,7 +157,7 @@ def _lines(program: Program, core: Core) -> Iterator[str]:
 
 
 def _find_valued(routines: Mapping[int, _Routine]) -> None:
-    """Take from ``valued`` of each routine what a call may hand over without a value."""
+    """Remove from ``valued`` of each routine the cells that a call may pass without a value."""
     todo = set(routines)
     while todo:
         for number, missing in routines[todo.pop()].given_without_value():
@@ -167,11 +167,11 @@ def _find_valued(routines: Mapping[int, _Routine]) -> None:
 
 
 class _Routine:
-    """Writes the function of a routine: the steps at the places of ``body``.
+    """Generates the function of a routine, whose steps are those in ``body``.
 
-    ``compiled`` are the routines that have a function. Steps work on copies of cells, which the
-    compiler keeps in registers of the processor. The cells themselves are what else looks at them:
-    where the machine stops or calls, and in variables that are reached by an address.
+    ``compiled`` are all routines that have a function. Steps work on copies of cells, which the C
+    compiler keeps in processor registers. Cells themselves are used where other code reads them: at
+    stops and calls, and for variables whose address is taken.
     """
 
     def __init__(
@@ -192,10 +192,10 @@ class _Routine:
         self._slots = program.slots(program.codes[number])
         self._kinds = dict(self._kinds_of_variables())
         result = program.codes[number].result
-        #: What it gives holds; ``None`` where it gives nothing.
+        #: The kind of its result; ``None`` if it has none.
         self._result = None if result is None else _KINDS.get(program.types[result], "INT")
         self._used = {one for place in body for one in steps[place].registers()}
-        #: What lies in cells only, and the copies of all other cells that steps name.
+        #: Registers that have no copy, and those that have one.
         self._in_frame = self._addressed(arrays)
         self._copies = self._used - self._in_frame
         self._variables = [one for one in self._copies if one < program.frames[number]]
@@ -203,16 +203,16 @@ class _Routine:
         self._live = self._flow.live(stack)
         self._restarts = self._flow.restarts(self._live, stack)
         self._counted, self._later = self._flow.blocks()
-        #: Cells of its parameters, and whether calls put them into the frame instead of handing
-        #: them over.
+        #: The number of cells of its parameters, and whether calls store them in the frame instead
+        #: of passing them.
         self._received = sum(
             one.cells for one in self._slots if isinstance(one.variable, Parameter)
         )
         self._is_copied = any(one.name == "CALL_COPY" and one.b == number for one in steps)
-        #: The cells that calls hand over, and those that have a value in all calls.
+        #: The cells that calls pass, and those that have a value in every call.
         self._given = range(0 if self._is_copied else self._received)
         self.valued = frozenset(self._given)
-        #: Steps that do not look whether their result is finite.
+        #: Steps that do not check whether their result is finite.
         self.deferred = self._flow.deferred(self._restarts, self._live)
 
     @property
@@ -221,12 +221,12 @@ class _Routine:
 
     @property
     def entries(self) -> set[int]:
-        """Where the interpreter may enter it: at its beginning, and where a loop begins."""
+        """The steps at which the interpreter may enter: the first one and loop heads."""
         return {self._body[0], *self._flow.loops}
 
     @property
     def _parameters(self) -> str:
-        """What calls hand over, as parameters in C."""
+        """The parameters of the C function, for the cells that calls pass."""
         return "".join(
             f", {_IN_C[self._kinds[one]] if one in self.valued else 'krl_cell'} p{one}"
             for one in self._given
@@ -237,7 +237,7 @@ class _Routine:
         return self._flow.assigned(self.valued, self._in_frame, giving)
 
     def given_without_value(self) -> Iterator[tuple[int, frozenset[int]]]:
-        """For calls: the routine, and which of its cells may have no value then."""
+        """Yield each called routine with the cells that may have no value in that call."""
         assigned = self._assigned()
         for place, valued in assigned.items():
             step = self._steps[place]
@@ -247,11 +247,11 @@ class _Routine:
                 yield step.b, frozenset(one - step.a for one in without)
 
     def _arguments(self, step: Step) -> int:
-        """How many cells a call hands over."""
+        """Return the number of cells that a call passes."""
         return sum(map(stack_cells, self._program.codes[step.b].parameters))
 
     def declarations(self) -> Iterator[str]:
-        """The function, as calls and as the interpreter have it; what is small is no call in C."""
+        """Yield the declarations for calls and for the interpreter; small functions are inlined."""
         number, parameters = self._number, self._parameters
         is_small = len(self._body) <= _SMALL and not any(
             self._steps[place].name in CALLS for place in self._body
@@ -274,7 +274,7 @@ class _Routine:
         yield "}"
 
     def lines(self) -> Iterator[str]:
-        """The function itself."""
+        """Yield the definition of the function."""
         number, frame, received = self._number, self._program.frames[self._number], self._received
         is_owner = any(code.owner == number for code in self._program.codes if code.captures)
         yield f"BODY({self._kind}, {number}{self._parameters}) {{"
@@ -322,7 +322,7 @@ class _Routine:
             yield f"goto do_{place};"
 
     def _kinds_of_variables(self) -> Iterator[tuple[int, str]]:
-        """What cells of variables hold, if they hold anything."""
+        """Yield the cells of variables with the kind of value that they hold."""
         for slot in self._slots:
             variable, type_ = slot.variable, self._program.types[slot.variable.type]
             for place in range(slot.cells):
@@ -331,11 +331,11 @@ class _Routine:
                 yield slot.offset + place, kind
 
     def _each(self, word: str, registers: Iterable[int]) -> str:
-        """A macro for each register, with what it holds."""
+        """Return a macro call for each register, with its kind."""
         return "".join(f"{word}({one}, {self._kinds.get(one, 'ANY')})" for one in sorted(registers))
 
     def _addressed(self, arrays: Sequence[Sequence[int]]) -> frozenset[int]:
-        """The cells of variables whose address is taken."""
+        """Return the cells of variables whose address is taken."""
         reached = set()
         for place in self._body:
             name, _, b, c, *_ = self._steps[place]
@@ -378,7 +378,7 @@ class _Routine:
                 yield f"DO({name}, {place}, {out}, {written}, {jump})"
 
     def _call(self, place: int, out: int) -> str:
-        """A call, which hands over cells, and is put back if the interpreter goes on within it."""
+        """Return a call; cells are restored if the interpreter continues inside it."""
         step = self._steps[place]
         cells = range(step.a, step.a + self._arguments(step))
         frame, prepare = step.a, ""
@@ -398,7 +398,7 @@ class _Routine:
         )
 
     def _handed(self, step: Step, register: int) -> str:
-        """What a call hands over of a register."""
+        """Return the C argument for a register that a call passes."""
         callee, is_copy = self._compiled[step.b], register in self._copies
         if register - step.a in callee.valued:
             where = f"registers[{register}]" if is_copy else f"krl_register_at(&fp[{register}])"
@@ -409,12 +409,12 @@ class _Routine:
 
 
 def _blank_cells(cells: set[int]) -> Iterator[str]:
-    """Cells that lie one behind the other, together."""
+    """Yield one macro call for each run of adjacent cells."""
     for first in sorted(cell for cell in cells if cell - 1 not in cells):
         end = next(end for end in count(first) if end not in cells)
         yield f"BLANK_CELLS({first}, {end})"
 
 
 def _int(number: int) -> str:
-    """A number as C has it: the smallest one is no literal."""
+    """Return a number as C text; the smallest one has no literal."""
     return str(number) if number > -(2**31) else "INT32_MIN"

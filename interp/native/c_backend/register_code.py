@@ -1,4 +1,4 @@
-"""Register code as the machine in C made it: which registers its steps read and write; as text."""
+"""The register code of the machine in C: which registers a step reads and writes, and a listing."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from interp.bytecode.program import Program
 from interp.native._core import Core
 
 CALLS: Final = ("CALL", "CALL_COPY")
-#: Behind these the next step does not follow.
+#: Steps that are not followed by the next one.
 ENDS: Final = ("JUMP", "RETURN", "RETURN_VALUE", "END_ACTION", "FAIL")
-#: The operands that are registers: those that a step reads, and those that it writes; ``e`` is the
-#: third index, or the one behind ``c``, ``f`` the next behind ``c``. What is not listed works on
-#: cells that lie one behind the other.
+#: The register operands that steps read, and those that they write. ``e`` is a third index or the
+#: register after ``c``, ``f`` the second one after ``c``. Steps that are not listed work on ranges
+#: of cells.
 _ROLES: Final = {
     ("", ""): "JUMP NOP FAIL PUT_DATA_K REMEMBER_LOCAL REMEMBER_DATA CHECK_CALL",
     ("", "a"): "SET_K GET_DATA REFER",
@@ -49,7 +49,7 @@ _BINARY: Final = re.compile(
 
 
 def roles_of(name: str) -> tuple[str, str] | None:
-    """The operands that a step reads and writes, by their letters; ``None`` where not listed."""
+    """Return the letters of the operands that a step reads and writes, or ``None``."""
     match = _BINARY.fullmatch(name)
     if match is None:
         return _ROLE_OF.get(name)
@@ -57,9 +57,9 @@ def roles_of(name: str) -> tuple[str, str] | None:
 
 
 class Step(NamedTuple):
-    """A step as `Core.steps` gives it; ``line`` is the place of the LINE that it begins, or -1.
+    """A step as returned by `Core.steps`; ``line`` is the index of the LINE that it begins, or -1.
 
-    ``e`` is the register of a third index, else the one behind ``c``.
+    ``e`` is the register of a third index, otherwise the one after ``c``.
     """
 
     name: str
@@ -73,26 +73,26 @@ class Step(NamedTuple):
 
     @property
     def is_jump(self) -> bool:
-        """Whether ``d`` is a step to go on at."""
+        """Whether ``d`` is a jump target."""
         return self.name.startswith(("JUMP", "UNLESS_", "CASE", "FOR_", "TEXT"))
 
     def named(self, operands: str) -> set[int]:
-        """The numbers of registers by their letters; ``f`` is the second one behind ``c``."""
+        """Return the registers for operand letters; ``f`` is the second register after ``c``."""
         values = {"a": self.a, "b": self.b, "c": self.c, "d": self.d, "e": self.e, "f": self.c + 2}
         return {values[one] for one in operands}
 
     def registers(self) -> set[int]:
-        """All registers that it names by themselves."""
+        """Return all registers that the step accesses individually."""
         if self.name in CALLS:
             return {self.a}
         return self.named("".join(roles_of(self.name) or ""))
 
 
 def listing(program: Program, image: bytes) -> Iterator[str]:
-    """The steps that a program without a trace executes, a line each, by code objects.
+    """Yield the steps that a program without a trace executes, one line each, by code object.
 
-    The line of the source that begins with a step stands before its name. Raises `ValueError` for
-    an image that is refused.
+    The source line that begins with a step precedes its name. Raises `ValueError` for an invalid
+    image.
     """
     core = Core(image, 0, 0, None)
     steps = [Step(*one) for one in core.steps()]

@@ -1,6 +1,6 @@
-"""Static analysis of a routine's steps: their successors, and the contents of registers.
+"""Data-flow analysis of a routine's steps: successors, and the contents of registers.
 
-Classical data-flow analyses, over single steps: each goes on until nothing changes any more.
+The classical analyses, over single steps: each iterates until nothing changes.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from collections.abc import Collection, Container, Mapping, Sequence
 
 from interp.native.c_backend.register_code import CALLS, ENDS, Step, roles_of
 
-#: Steps that are left to the interpreter.
+#: Steps that the interpreter executes.
 INTERPRETED = ("PYTHON", "END_ACTION", "CHECK_CALL", "FAIL")
-#: NEG_REAL is not among them: it does not look at its result.
+#: NEG_REAL is not among them, because it does not check its result.
 _FINDS_INFINITE = re.compile("(ADD|SUB|MUL)_REAL(_K)?")
 
 
 def _finds_infinite(taker: Step, operand: int) -> bool:
-    """Whether a step that takes this operand faults with an overflow where it is not finite."""
+    """Return whether a step that reads this operand raises an overflow if it is not finite."""
     return bool(_FINDS_INFINITE.fullmatch(taker.name)) or (
         taker.name in ("DIV_REAL", "DIV_REAL_K")
         and (taker.name == "DIV_REAL_K" or taker.c != operand)
@@ -25,25 +25,25 @@ def _finds_infinite(taker: Step, operand: int) -> bool:
 
 
 class RegisterFlow:
-    """The steps at the places of ``body``, out of all ``steps`` of a program."""
+    """The flow between the steps of ``body``, a range of all ``steps`` of a program."""
 
     def __init__(self, steps: Sequence[Step], body: range) -> None:
         self._steps = steps
         self._body = body
         jumps = [(place, steps[place].d) for place in body if steps[place].is_jump]
-        #: Where ways meet.
+        #: Jump targets.
         self.targets = {target for _, target in jumps}
-        #: Where loops begin.
+        #: Loop heads.
         self.loops = sorted({target for place, target in jumps if target <= place})
 
     def after(self, place: int) -> list[int]:
-        """The places that may come next, within the routine."""
+        """Return the steps that can come next in the routine."""
         step = self._steps[place]
         jump = [step.d] if step.is_jump else []
         return jump if step.name in ENDS else [*jump, place + 1]
 
     def live(self, stack: Collection[int]) -> dict[int, frozenset[int]]:
-        """Liveness: by place, which of the stack of operands is read before it is written."""
+        """Liveness: return by step the stack registers that are read before they are written."""
         whole = frozenset(stack)
         found: dict[int, frozenset[int]] = dict.fromkeys(self._body, frozenset())
         before: dict[int, list[int]] = {place: [] for place in self._body}
@@ -69,10 +69,10 @@ class RegisterFlow:
         return found
 
     def restarts(self, live: Mapping[int, Collection[int]], stack: Collection[int]) -> list[int]:
-        """By steps of the body, a place not behind it where a step that faults can be begun again.
+        """Return for each step an earlier step at which execution can restart after a fault.
 
-        Since then nothing has changed but operands on the ``stack`` that were not ``live`` there,
-        and no statement has begun.
+        From there on, nothing has changed except registers of the ``stack`` that were not ``live``
+        there, and no statement has begun.
         """
         found: list[int] = []
         only_operands = False
@@ -88,10 +88,11 @@ class RegisterFlow:
         return found
 
     def deferred(self, restarts: Sequence[int], live: Mapping[int, Collection[int]]) -> set[int]:
-        """Sums and products whose overflow the step that takes them finds.
+        """Return the sums and products whose overflow is detected by the step that uses them.
 
-        What is not finite stays so in sums, products and numerators; a step that faults on it is
-        begun again before the overflow. No jump may lie between: it may lead past that step.
+        A value that is not finite stays so in sums, products and numerators. The step that raises
+        the fault is restarted before the overflow. No jump may lie between, as it could lead past
+        that step.
         """
         found = set()
         for place in self._body:
@@ -120,10 +121,10 @@ class RegisterFlow:
     def assigned(
         self, given: Collection[int] = (), aliased: Container[int] = (), giving: Container[int] = ()
     ) -> dict[int, frozenset[int]]:
-        """Definite assignment: by place, the registers with a value on every way there.
+        """Definite assignment: return for each step the registers with a value on every path.
 
-        ``given`` have one from the beginning; ``giving`` are the routines with a result. What is
-        ``aliased`` may lose its value by its address.
+        ``given`` have a value from the beginning; ``giving`` are the routines with a result.
+        ``aliased`` registers can lose their value through their address.
         """
         start = self._body[0]
         found: dict[int, frozenset[int]] = {start: frozenset(given)}
@@ -150,10 +151,10 @@ class RegisterFlow:
         return found
 
     def blocks(self) -> tuple[dict[int, int], dict[int, int]]:
-        """Basic blocks: statements that count together, as nothing but a fault can come between.
+        """Basic blocks: statements that are counted together, since only a fault can come between.
 
-        How many a block has, by the first step of its first statement; and how many of its block
-        have not begun yet, by step.
+        Return the number of statements of each block, by the first step of its first statement; and
+        for each step the number of statements of its block that have not begun yet.
         """
         counted: dict[int, int] = {}
         begun: dict[int, tuple[int, int]] = {}
