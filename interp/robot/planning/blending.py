@@ -1,10 +1,10 @@
-"""Approximate positioning: where a blend begins and ends, and what it is [BLD-01 to BLD-15].
+"""Approximate positioning: where a blend begins and ends, and its shape [BLD-01 to BLD-15].
 
-A zone takes a share of the path before the point and of the path behind it, neither more than half
-[BLD-07]. How much is said by the criteria behind the first motion. Where both motions are
-paths of the tool in the same frames, the blend is one as well; else it is one of the axes. So a
-motion has up to three parts [MOT-17], and the point itself is not passed [BLD-08]. Whether the two
-sides are alike is not known [CON-08].
+A blend zone replaces a share of the path before the point and of the path after it, at most half of
+each [BLD-07]. The criteria of the first motion determine these shares. If both motions are CP
+motions in the same frames, the blend is a path of the tool, too; otherwise it is a curve of the
+axes. So a motion has up to three parts [MOT-17], and the point itself is not passed [BLD-08].
+Whether both sides are equal is not known [CON-08].
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ from interp.robot.planning.tracks import Piece, Track, reduced_paths
 
 _HALF = 0.5
 _SMALLEST = 1e-6
-"""Share of a path below which there is nothing to blend."""
+"""Share of a path below which motions are not blended."""
 _METRE = 1000.0
 _PARABOLA, _SMOOTH = 1.0, 2.0
-"""Slopes of roundings; the first is nearly a parabola, which is said of lines [BLD-12]."""
+"""Slopes of roundings; the first is nearly a parabola, which BLD-12 states for lines."""
 _SOONER = 0.95
-"""Share of a duration from which on a transition nearer to a parabola is preferred."""
+"""Share of a duration above which the transition nearer to a parabola is preferred."""
 _SAVED = 0.97
-"""Share of the duration with an exact stop that such a transition has to keep below."""
+"""Share of the duration with an exact stop that such a transition must not exceed."""
 _TINY = 1e-9
 _STRAIGHT = 1e-3
-"""Relative difference of directions that counts as none."""
+"""Relative difference below which directions count as equal."""
 _BACK = -0.99
-"""The least cosine of an angle at which speed may be kept: a way back has a point of no length."""
+"""The smallest cosine of a corner whose speed is kept; a reversal has no finite curve."""
 _EVEN = 1e-6
 _GRID = np.linspace(0.0, 1.0, 65)
 _STEP = 1.0 / 64.0
@@ -56,14 +56,14 @@ _STEP = 1.0 / 64.0
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """The shares of the first path and of the second that a blend takes the place of."""
+    """The shares of the first and the second path that a blend replaces."""
 
     before: float
     after: float
 
 
 def wants_blend(motion: Motion) -> bool:
-    """Whether a motion asks to be blended into the next, with more than a zone of nothing."""
+    """Return whether a motion is approximated, with a zone larger than zero."""
     values = motion.settings.approximation
     if not motion.criteria:
         return False
@@ -79,12 +79,13 @@ def wants_blend(motion: Motion) -> bool:
 
 
 def zone_of(first: Track, second: Track) -> Zone | None:
-    """The zone between two motions, or ``None`` where they cannot be blended [BLD-14].
+    """Return the zone between two motions, or ``None`` if they cannot be blended [BLD-14].
 
-    On a path of the tool the first criterion counts on both sides; behind PTP the second one, if
-    there is one, for the path of the tool that follows. On the side of a PTP, C_PTP takes the
-    first motion's value before the point and the second's behind it [BLD-04], C_DIS the first
-    motion's for both [BLD-05]. SPTP takes the smaller of both zones [SPL-09].
+    Between CP motions the first criterion determines both sides; after a PTP, the second criterion,
+    if there is one, determines the side of the CP motion that follows. On the side of a PTP, C_PTP
+    uses the value of the first motion before the point and that of the second after it [BLD-04];
+    C_DIS uses the value of the first for both [BLD-05]. SPTP uses the smaller of both zones
+    [SPL-09].
     """
     if first.is_still or second.is_still or not wants_blend(first.motion):
         return None
@@ -107,11 +108,11 @@ def zone_of(first: Track, second: Track) -> Zone | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Joint:
-    """A blend: its curve, how fast that may be travelled, and how it joins what it is between.
+    """A blend: its curve, the bounds along it, and its connection to both motions.
 
-    ``zone`` is what it takes of both, which may be less than was asked for. ``into`` and ``out``
-    are gear and bend at its start and at its end, as in `GearedStretch`. ``straight`` is the
-    straight way that both motions are parts of, if they are.
+    ``zone`` is what it replaces of both, which may be less than the zone requested. ``into`` and
+    ``out`` are gear and bend at its start and at its end, as in `GearedStretch`. ``straight`` is
+    the straight run of which both motions are parts, if they are.
     """
 
     zone: Zone
@@ -130,12 +131,12 @@ def blend_of(
     limits: AxisLimits,
     run: StraightRun | None = None,
 ) -> Joint:
-    """The blend of a zone; ``run`` is the straight way that ends in the first motion, if any.
+    """Return the blend of a zone; ``run`` is the straight run that ends with the first motion.
 
-    Of the transitions that are about as soon over, its shape is the one nearest to a parabola.
-    ``limits`` are those of the machine data, which hold for all axes; on the path of the tool the
-    acceleration is at most $ACC_MA.CP (an assumption: no rule says). So the speed may drop
-    [BLD-15]. Raises `Fault` where the blend leads out of the working range.
+    Among the transitions with about the same duration, the one nearest to a parabola is used.
+    ``limits`` are the machine data of all axes; along the path of the tool the acceleration is at
+    most $ACC_MA.CP (an assumption, no rule says so). The speed may therefore drop [BLD-15]. Raises
+    `Fault` if the blend leaves the working range.
     """
     one, other = first.pieces[-1].curve, second.pieces[0].curve
     common = _common_curves(first, second)
@@ -175,10 +176,10 @@ def _ceiling(
     machine: MachineData,
     slowest: float = math.inf,
 ) -> Ceiling:
-    """The bounds of a blend with such derivatives of the axes.
+    """Return the bounds of a blend with these derivatives of the axes.
 
-    The tool is no faster than beside the blend, and has no more acceleration than the machine's
-    [BLD-15]; between PTP no axis is faster than programmed.
+    The tool is not faster than on both sides of the blend, and its acceleration does not exceed
+    that of the machine data [BLD-15]. Between PTP motions no axis exceeds its programmed speed.
     """
     one, other = first.pieces[-1], second.pieces[0]
     (gear, bend), out = _gears(transition)
@@ -209,9 +210,9 @@ def _straight_on(
     limits: AxisLimits,
     run: StraightRun | None,
 ) -> Joint | None:
-    """The joint of two straight ways of which the second continues where the first leads.
+    """Return the joint of two straight motions of which the second continues in the same direction.
 
-    It is a piece of straight way itself. ``None`` where that would miss the point between.
+    The joint is straight, too. Return ``None`` if it would miss the point between them.
     """
     one, other = first.pieces[-1], second.pieces[0]
     parts = StraightPart.of(one.curve), StraightPart.of(other.curve)
@@ -243,11 +244,11 @@ def _straight_on(
 def _soonest(
     first: Track, second: Track, zone: Zone, weights: tuple[float, float], machine: MachineData
 ) -> Transition:
-    """The transition with which both motions are soonest over.
+    """Return the transition with the shortest total duration of both motions.
 
-    Of an overlap of which one side takes much longer than the other, or which costs time, it is as
-    much as is on at once. C_VEL keeps the speed where two lines meet [BLD-12]: the curve is
-    travelled evenly, and what brakes is left for where that costs time.
+    If an overlap has one side that takes much longer than the other, or if it costs time, only the
+    part is used in which both motions run. C_VEL keeps the speed where two lines meet [BLD-12]: the
+    curve is travelled at constant speed, and overlapping is used only if that costs time.
     """
     one, other = first.pieces[-1], second.pieces[0]
     common = _common_curves(first, second)
@@ -297,9 +298,9 @@ def _course(
     zone: Zone,
     limits: AxisLimits,
 ) -> tuple[tuple[float, float], bool]:
-    """The lengths of both sides of a zone, and whether the second path continues the first.
+    """Return the lengths of both sides of a zone, and whether the second path continues the first.
 
-    Lengths are mm of the tool where both have that, else seconds of axes.
+    Lengths are mm of the tool if both motions are paths of the tool, otherwise seconds of the axes.
     """
     (leaving,), _, _ = one.rates(np.ones(1))
     (joining,), _, _ = other.rates(np.zeros(1))
@@ -319,7 +320,7 @@ def _course(
 
 
 def _duration(one: Piece, other: Piece, transition: Transition, ceiling: Ceiling) -> float:
-    """How long both pieces take from rest to rest with a blend of such bounds."""
+    """Return the duration of both pieces from rest to rest with a blend in these bounds."""
     into, out = _gears(transition)
     (zone,) = ceiling.stretches
     before = one.ceiling.between(0.0, 1.0 - transition.before)
@@ -334,7 +335,7 @@ def _duration(one: Piece, other: Piece, transition: Transition, ceiling: Ceiling
 
 
 def _gears(transition: Transition) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Gear and bend at both ends of a blend."""
+    """Return gear and bend at both ends of a blend."""
     leaving, joining = transition.rates(np.array([0.0, 1.0]))
     gear_in, bend_in = 1.0 / leaving[0, 0], -leaving[1, 0] / leaving[0, 0] ** 3
     gear_out, bend_out = joining[0, 1], joining[1, 1]
@@ -348,13 +349,13 @@ def _gears(transition: Transition) -> tuple[tuple[float, float], tuple[float, fl
 def _beside(
     one: Piece, other: Piece, into: tuple[float, float], out: tuple[float, float]
 ) -> tuple[Bounds, Bounds]:
-    """The bounds on both sides in units of the blend."""
+    """Return the bounds on both sides in units of the blend."""
     before, after = one.ceiling.stretches[-1].bounds(1.0), other.ceiling.stretches[0].bounds(1.0)
     return before.scaled(into[0]), after.scaled(1.0 / out[0])
 
 
 def _common_curves(first: Track, second: Track) -> tuple[PosePathCurve, PosePathCurve] | None:
-    """The curves of both, where both are paths of the tool in the same frames."""
+    """Return both curves if both are paths of the tool in the same frames."""
     one, other = first.pieces[-1].curve, second.pieces[0].curve
     if (
         isinstance(one, PosePathCurve)
@@ -375,7 +376,7 @@ def _piece(track: Track, *, at_end: bool) -> Piece:
 
 
 def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: bool) -> float:
-    """The share of a path of the tool; all of it where there is nothing to measure by."""
+    """Return the share of a CP motion; 1 if it has no length for this criterion."""
     curve = _piece(track, at_end=at_end).curve
     pose_path = curve.pose_path
     if pose_path is None and criterion not in {"C_VEL", "C_ORI"}:
@@ -392,7 +393,7 @@ def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: 
 
 
 def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
-    """The share in which a part of the programmed speed is braked away or reached [BLD-13]."""
+    """Return the share on which a part of the programmed speed is lost or gained [BLD-13]."""
     stretches = _piece(track, at_end=at_end).ceiling.stretches
     stretch = stretches[-1] if at_end else stretches[0]
     bounds = stretch.bounds(1.0)
@@ -405,7 +406,7 @@ def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
 def _axis_share(
     track: Track, criterion: str, values: Approximation, own: Approximation, *, at_end: bool
 ) -> float:
-    """The share of a PTP: by $APO_DIS_PTP of each axis, by the way of the tool, or by both."""
+    """Return the share of a PTP: by $APO_DIS_PTP of each axis, distance of the tool, or both."""
     curve = _piece(track, at_end=at_end).curve
     by_way = criterion in {"C_DIS", "C_SPL"}
     takes_both = track.motion.kind == "SPTP"
@@ -418,7 +419,7 @@ def _axis_share(
 
 
 def _turning_share(curve: Curve, share: float) -> float:
-    """Where no axis is farther from the point than a share of $APO_DIS_PTP [BLD-03]."""
+    """Return the share on which no axis is farther away than a part of $APO_DIS_PTP [BLD-03]."""
     (travel,), _, _ = curve.rates(np.ones(1))
     machine = curve.arm.machine
     reach = np.array([axis.approximation for axis in (*machine.axes, *machine.externals)])
@@ -426,7 +427,7 @@ def _turning_share(curve: Curve, share: float) -> float:
 
 
 def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
-    """The share in which the tool travels a distance."""
+    """Return the share on which the tool travels a distance."""
     way = Way(lambda u: tool_tangents(curve, u))
     if distance >= way.length:
         return 1.0

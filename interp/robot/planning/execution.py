@@ -1,4 +1,4 @@
-"""A route travelled: legs laid from where the arm is, to its end or to a stop."""
+"""Executes a route: adds legs to the timeline from the current state to the end or to a stop."""
 
 from __future__ import annotations
 
@@ -10,41 +10,42 @@ from interp.robot.planning.schedule import GearedStretch, PathState, braking, sc
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
 _THERE = 1e-9
-"""Of u: a section whose rest is shorter has been travelled."""
+"""A section whose rest is shorter than this, in u, counts as travelled."""
 _INSTANT = 2e-9
-"""Seconds by which whole microseconds may fall short of what happens in them."""
+"""Seconds by which a time in whole microseconds may be before the event in it."""
 
 #: A section and a step of it; ``None`` for a motion of no length.
 Entry = tuple[Section, GearedStretch | None]
 
 
 class PathExecution:
-    """Lays the legs of a timeline. Times are seconds; a route is what lies ahead at a time.
+    """Adds the legs of a timeline.
 
-    What was travelled before a time is never touched.
+    Times are seconds; a route is the path that lies ahead at a time. What was travelled before that
+    time is never changed.
     """
 
     def __init__(self, timeline: Timeline) -> None:
         self._timeline = timeline
 
-    # --------------------------------------------------------------------------- what is behind
+    # --------------------------------------------------------------------------- progress
 
     def ahead(self, route: Sequence[Section], time: float) -> tuple[Section, ...]:
-        """What of a route is not yet travelled at a time."""
+        """Return the part of a route that is not travelled yet at a time."""
         travelled = 0
         while travelled < len(route) and self._is_travelled(route[travelled], time):
             travelled += 1
         return tuple(route[travelled:])
 
     def reached(self, section: Section, time: float) -> float:
-        """The parameter up to which a section is travelled at a time."""
+        """Return the parameter that is reached on a section at a time."""
         leg = self._timeline.leg_at(time)
         if leg is None or leg.section.key != section.key:
             return section.start
         return leg.state(time).u
 
     def stood_at(self, section: Section) -> float:
-        """The parameter at which a section was left standing."""
+        """Return the parameter at which the arm stopped on a section."""
         legs = self._timeline.of(section.key)
         return legs[-1].last if legs else section.start
 
@@ -56,10 +57,10 @@ class PathExecution:
         return legs[-1].ends <= time + _INSTANT and legs[-1].last >= section.end - _THERE
 
     def is_moving(self, time: float) -> bool:
-        """Whether the arm is on its way at a time."""
+        """Return whether the arm moves at a time."""
         return self._under_way(time) is not None
 
-    # -------------------------------------------------------------------------- going and stopping
+    # -------------------------------------------------------------------------- motion and stops
 
     def go(
         self,
@@ -69,10 +70,10 @@ class PathExecution:
         *,
         new_behind: Section | None = None,
     ) -> bool:
-        """Travel a route from a time on, from whatever the arm does then.
+        """Travel a route from a time on, starting in the state of the arm at that time.
 
-        ``new_behind``: what follows this section is new. Then nothing is done, and the result is
-        false, where a seam would be passed faster than is allowed.
+        If ``new_behind`` is given, the route after this section is new. Then nothing changes and
+        the result is false if a seam would be passed faster than is allowed.
         """
         is_strict = new_behind is not None
         if not route:
@@ -92,7 +93,7 @@ class PathExecution:
         return False
 
     def halt(self, route: Sequence[Section], time: float, *, is_hard: bool) -> None:
-        """Stop on the route as soon as can be."""
+        """Stop on the route as soon as possible."""
         leg = self._under_way(time)
         if leg is None or not route:
             past = self._timeline.leg_at(time)
@@ -105,7 +106,7 @@ class PathExecution:
             self._timeline.append(each)
 
     def stop_from(self, route: Sequence[Section], time: float) -> tuple[Key, float] | None:
-        """Where a stop that begins at a time would end; ``None`` where the arm stands then."""
+        """Return where a stop that begins at a time would end; ``None`` if the arm stands then."""
         leg = self._timeline.leg_at(time)
         if leg is None or leg.ends <= time:
             return None
@@ -114,14 +115,14 @@ class PathExecution:
         return last.section.key, last.last
 
     def _under_way(self, time: float) -> Leg | None:
-        """The leg that is not over at a time, but for less than a microsecond."""
+        """Return the leg at a time, unless it ends within a microsecond."""
         leg = self._timeline.leg_at(time + _INSTANT)
         return leg if leg is not None and leg.ends > time + _INSTANT else None
 
     def _waiting(self, section: Section, time: float) -> tuple[float, float]:
-        """When and where on a section to continue, with an arm that stands, or will do before that.
+        """Return the time and the parameter at which an arm that stands or stops continues.
 
-        Legs that are planned behind the stop are those of an earlier plan, and count for nothing.
+        Legs planned after the stop belong to an earlier plan and are ignored.
         """
         legs = self._timeline.of(section.key)
         begins = next((leg.begins for leg in legs if leg.begins > time), self._timeline.end)
@@ -131,9 +132,9 @@ class PathExecution:
     def _ahead_of(
         self, leg: Leg, route: Sequence[Section], time: float
     ) -> Iterator[tuple[PathState, float, tuple[Section, ...]]]:
-        """Where a plan may begin: now, or at the end of a leg that is under way or follows.
+        """Yield the points at which a new plan may begin: now, or at the end of a leg.
 
-        The state there, the time, and what is left of the route.
+        Each has its state, its time, and the remaining route.
         """
         yield leg.state(time), time, tuple(route)
         following = self._timeline.after(leg)
@@ -150,7 +151,7 @@ class PathExecution:
     def _ramp_down(
         self, leg: Leg, route: Sequence[Section], time: float, is_hard: bool
     ) -> tuple[float, list[Leg]]:
-        """Legs to a stop for a brake at a time on a leg, and when the first of them begins."""
+        """Return the legs of a stop that begins at a time, and the start of the first leg."""
         while route and route[0].key < leg.section.key:
             route = route[1:]
         # What is planned is no faster than allowed, so a brake that would be begins later.
@@ -177,7 +178,7 @@ class PathExecution:
         override: float,
         is_strict: bool,
     ) -> bool:
-        """Schedule a route from a state on and put its legs behind what is kept of the timeline."""
+        """Schedule a route from a state and append its legs to the timeline."""
         entries = _entries(route, state.u)
         steps = _steps(entries)
         profiles = schedule(steps, state, override, is_strict=is_strict) if steps else []
@@ -199,7 +200,7 @@ def _steps(entries: Sequence[Entry]) -> list[GearedStretch]:
 
 
 def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], PathState]:
-    """What of a route is left when a leg has ended, and the state there."""
+    """Return the route that remains after a leg, and the state there."""
     state = leg.state(leg.ends)
     if leg.last < route[0].end - _THERE:
         return tuple(route), replace(state, u=leg.last)
@@ -213,9 +214,9 @@ def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], Pa
 
 
 def _entries(route: Sequence[Section], start: float) -> list[Entry]:
-    """The steps of a route from a parameter of its first section on.
+    """Return the steps of a route from a parameter of its first section on.
 
-    A section that two blends have used up has no step; how it changes speeds counts for the next.
+    A section that two blends have used up has no step; its gear is passed to the next step.
     """
     entries: list[Entry] = []
     gear, bend = 1.0, 0.0

@@ -1,9 +1,9 @@
-"""Speed limits along a curve, so that no axis exceeds what the machine data allow.
+"""Speed limits along a curve such that no axis exceeds its machine data.
 
-With u(t) along a curve q(u), an axis has the speed ``q'·u̇`` and the acceleration
-``q''·u̇² + q'·ü``. Where ``|q''|·v² + |q'|·a`` stays below the limit of each axis, every profile
-with speeds up to v and accelerations up to a keeps it. So each stretch of a curve gets one v and
-one a of that kind, from samples of it; a curve whose samples differ much is cut into stretches.
+For u(t) along a curve q(u), an axis has the speed ``q'·u̇`` and the acceleration ``q''·u̇² +
+q'·ü``. If ``|q''|·v² + |q'|·a`` is below the limit of every axis, every profile with speeds up to v
+and accelerations up to a respects the limits. So each stretch of a curve gets one v and one a,
+computed from samples; a curve whose samples differ much is divided into several stretches.
 """
 
 from __future__ import annotations
@@ -21,25 +21,24 @@ from interp.robot.path.axis_path import Curve, Rates
 from interp.robot.planning.profile import Bounds
 
 _MARGIN = 0.97
-"""Share of a limit that is used, for what lies between samples."""
+"""Share of a limit that is used, because limits are checked at samples only."""
 _ROUNDING = 1.0 - 1e-9
 _SHARE = 0.5
-"""Share of an axis's acceleration that a change of speed may take on a curve; the rest is left for
-the bends of the curve."""
+"""Share of an axis's acceleration for changes of speed on a curve; the rest is for curvature."""
 _BENT = 0.25
-"""Share of an axis's jerk that the bends of a curve may take, and as much of it changes of speed in
-the bends; the rest is left for how quickly an acceleration builds up."""
+"""Share of an axis's jerk for curvature, and again for changes of speed on a curve; the rest is for
+building up accelerations."""
 _EASED = 0.8
-"""Share of the speed at which a blend can be passed evenly, where speeds change in it."""
+"""Share of the constant speed of a blend, if the speed changes in it."""
 _UNEVEN = 1.25
-"""Ratio of speeds within a stretch above which it is worth cutting."""
+"""Ratio of speeds in a stretch above which it is cut."""
 _SHORTEST = 4  # samples of a stretch
 _RAMP = 0.08
 """Seconds over which a path acceleration builds up: an assumption, no rule has a figure."""
 
 _ROTARY = Dynamics(180.0, 450.0, 4500.0)
 _LINEAR = Dynamics(1000.0, 2500.0, 25000.0)
-"""What an axis may do whose machine data do not say: assumed, of the size of other arms'."""
+"""The dynamics of an axis without machine data: assumed, similar to those of other arms."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,14 +50,14 @@ class AxisLimits:
     jerk: Array
 
     def equals(self, other: AxisLimits) -> bool:
-        """Whether all limits are the same."""
+        """Return whether all limits are equal."""
         names = ("velocity", "acceleration", "jerk")
         return all(np.array_equal(getattr(self, n), getattr(other, n)) for n in names)
 
     def scaled(
         self, velocity: Sequence[float], acceleration: Sequence[float], jerk: Sequence[float]
     ) -> AxisLimits:
-        """With shares in per cent of each [MOT-02]; what lies outside 0 to 100 counts as 100."""
+        """Return limits scaled by percentages; one outside 0 to 100 counts as 100 [MOT-02]."""
         count = len(self.velocity)
         return AxisLimits(
             self.velocity * _shares(velocity, count),
@@ -67,7 +66,7 @@ class AxisLimits:
         )
 
     def merged(self, other: AxisLimits, choose: Callable[[Array, Array], Array]) -> AxisLimits:
-        """For each axis the lower or the higher of two limits."""
+        """Return the lower or the higher limit for each axis."""
         return AxisLimits(
             choose(self.velocity, other.velocity),
             choose(self.acceleration, other.acceleration),
@@ -77,11 +76,10 @@ class AxisLimits:
 
 @dataclass(frozen=True, slots=True)
 class PathLimits:
-    """A length that u stands for, how fast it may grow, and how fast its speed may change.
+    """The length that u represents, and the maximum speed, acceleration and jerk along it.
 
-    Millimetres or degrees: the path, the swivel and the rotation of the tool each have one
-    [ORI-06]. The slowest of them decides. Where ``jerk`` is infinite, acceleration builds up over
-    a fixed time.
+    There is one for each of path (mm), swivel and rotation of the tool (degrees) [ORI-06]; the
+    slowest is decisive. If ``jerk`` is infinite, acceleration builds up over a fixed time.
     """
 
     length: float
@@ -92,13 +90,13 @@ class PathLimits:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A part of a curve with one set of bounds, all per unit of u.
+    """A part of a curve with one set of bounds, in units of u.
 
-    ``velocity`` is what the axes allow, ``programmed`` the speed that the override takes shares of.
-    ``hardest`` and ``sharpest`` are acceleration and jerk for the hardest ramp there is [INT-09].
-    ``size`` is a length in mm or degrees that u stands for: it keeps numbers of a sensible size.
-    A blend may be passed at one speed up to ``even``, more than ``velocity``; ``hardest``
-    and ``sharpest`` are what is left at that speed, so less than at others.
+    ``velocity`` is what the axes allow; ``programmed`` is the speed that the override scales.
+    ``hardest`` and ``sharpest`` are acceleration and jerk of the hardest possible braking ramp
+    [INT-09]. ``size`` is the length in mm or degrees that u represents; it keeps numbers in a
+    sensible range. A blend may be passed at constant speed up to ``even``, which is more than
+    ``velocity``; for a blend ``hardest`` and ``sharpest`` are what remains at that speed.
     """
 
     start: float
@@ -113,24 +111,24 @@ class Stretch:
     even: float = 0.0
 
     def bounds(self, override: float, is_hard: bool = False) -> Bounds:
-        """Bounds under an override of 0 to 1."""
+        """Return the bounds at an override of 0 to 1."""
         speed = min(self.velocity, self.programmed * override)
         if is_hard and not self.even:
             return Bounds(speed, self.hardest, self.sharpest)
         return Bounds(speed, self.acceleration, self.jerk)
 
     def even_bounds(self, override: float) -> Bounds:
-        """Bounds of a blend that is passed at one speed, or is left at that."""
+        """Return the bounds of a blend at constant speed."""
         return Bounds(min(self.even, self.programmed * override), self.hardest, self.sharpest)
 
     def between(self, start: float, end: float) -> Stretch:
-        """The part of it between two parameters."""
+        """Return the part between two parameters."""
         if start <= self.start and end >= self.end:
             return self
         return replace(self, start=max(start, self.start), end=min(end, self.end))
 
     def part(self, start: float, share: float) -> Stretch:
-        """The same over the parameter of a share of the curve from a start on."""
+        """Return the stretch in the parameter of a part of the curve, given its start and share."""
         rates = ("velocity", "programmed", "acceleration", "jerk", "hardest", "sharpest", "even")
         scaled = {name: getattr(self, name) / share for name in rates}
         ends = {"start": (self.start - start) / share, "end": (self.end - start) / share}
@@ -144,7 +142,7 @@ class Ceiling:
     stretches: tuple[Stretch, ...]
 
     def between(self, start: float, end: float) -> tuple[Stretch, ...]:
-        """The stretches of a part of the curve, cut at its ends."""
+        """Return the stretches of a part of the curve, cut at its ends."""
         parts = (
             stretch.between(start, end)
             for stretch in self.stretches
@@ -153,13 +151,13 @@ class Ceiling:
         return tuple(part for part in parts if part.end > part.start)
 
     def part(self, start: float, end: float) -> Ceiling:
-        """That of a part of the curve, whose own parameter goes from 0 to 1."""
+        """Return the stretches of a part of the curve; its own parameter goes from 0 to 1."""
         share = end - start
         return Ceiling(tuple(each.part(start, share) for each in self.between(start, end)))
 
 
 def axis_limits(machine: MachineData) -> AxisLimits:
-    """What the machine data allow [MOT-05, MOT-06]."""
+    """Return the limits in the machine data [MOT-05, MOT-06]."""
     known = [_dynamics(axis) for axis in (*machine.axes, *machine.externals)]
     return AxisLimits(
         np.array([one.velocity for one in known]),
@@ -171,11 +169,11 @@ def axis_limits(machine: MachineData) -> AxisLimits:
 def ceiling_of(
     curve: Curve, machine: AxisLimits, programmed: AxisLimits, paths: Sequence[PathLimits]
 ) -> Ceiling:
-    """The bounds of a curve.
+    """Return the bounds along a curve.
 
-    ``machine`` is never exceeded; ``programmed`` holds for its speeds like a programmed speed, and
-    for accelerations. ``paths`` are those that take part, and may be empty. ``jerk`` is one of the
-    path in mm/s³; where it is infinite, accelerations build up over a fixed time.
+    ``machine`` is never exceeded. ``programmed`` limits accelerations, and limits speeds like a
+    programmed speed, which the override scales. ``paths`` are the components of a CP motion, or
+    empty.
     """
     grid = curve.grid
     first, second, third = (np.abs(rates) for rates in curve.rates(grid))
@@ -225,11 +223,11 @@ def even_ceiling(
     most: float,
     size: float,
 ) -> Ceiling:
-    """The bounds of a blend with such derivatives, which may be passed at one speed.
+    """Return the bounds of a blend with these derivatives, which may be passed at constant speed.
 
-    ``beside`` are the bounds of what it joins, in the units of its own u; ``programmed`` is a
-    speed of which the override takes shares, ``most`` one that holds under any. Where speed changes
-    in it, it is no more than a share of what it may be otherwise.
+    ``beside`` are the bounds on both sides in the units of the blend; ``programmed`` is a speed
+    that the override scales, ``most`` one that is never exceeded. If the speed changes in the
+    blend, it is limited to a share of the constant speed.
     """
     programmed = min(programmed, *(bounds.velocity for bounds in beside))
     sampled = _Sampled(rates, limits)
@@ -253,7 +251,7 @@ def even_ceiling(
 
 
 class _Sampled:
-    """Samples of a curve, and what they leave of limits."""
+    """Samples of a curve, and what they leave of the limits."""
 
     def __init__(self, rates: Rates, limits: AxisLimits) -> None:
         first, second, third = (np.abs(each) for each in rates)
@@ -265,14 +263,15 @@ class _Sampled:
         self._quickest = math.cbrt((limits.jerk / _positive(third)).min())
 
     def steady_speed(self, share: float) -> float:
-        """The greatest speed at which the curve can be travelled evenly.
+        """Return the largest constant speed at which the curve can be travelled.
 
-        No more than a share of that at which its bends alone take all of an acceleration or jerk.
+        It is limited to a share of the speed at which the curvature alone uses all of an axis's
+        acceleration or jerk.
         """
         return min(self._fastest * _ROUNDING, share * self._sharpest, share * self._quickest)
 
     def left(self, speed: float, beside: Sequence[Bounds]) -> tuple[float, float]:
-        """Acceleration and jerk that are left at a speed, and no more than beside the curve."""
+        """Return the acceleration and jerk that remain at a speed, at most those beside it."""
         limits, straight = self._limits, self._straight
         acceleration = float(((limits.acceleration - self._second * speed**2) / straight).min())
         turned = limits.jerk - self._third * speed**3
@@ -284,7 +283,7 @@ class _Sampled:
 
 
 def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> Stretch:
-    """The stretch between two samples, with what the sample beside it on either side allows."""
+    """Return the stretch between two samples; it also respects the next sample on either side."""
     least = columns[max(low - 1, 0) : high + 2].min(axis=0)
     velocity, programmed, acceleration, jerk, hardest, sharpest = (float(value) for value in least)
     return Stretch(
@@ -301,7 +300,7 @@ def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> S
 
 
 def _cuts(speeds: Array, low: int, high: int) -> list[int]:
-    """Places of samples at which to cut, both ends included."""
+    """Return the indices of samples at which to cut, including both ends."""
     part = speeds[low : high + 1]
     if high - low < 2 * _SHORTEST or float(part.max()) <= _UNEVEN * float(part.min()):
         return [low, high]

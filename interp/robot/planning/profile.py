@@ -1,8 +1,8 @@
-"""Motion profile of a stretch of path: position, speed and acceleration over time.
+"""Jerk-limited profiles: position, speed and acceleration over time on a stretch of path.
 
-A profile has one degree of freedom and bounded jerk. Ruckig finds it; here it becomes a row of
-cubics that can be evaluated at many times at once. Positions are in whatever unit the caller has,
-times in seconds.
+A profile has one degree of freedom. Ruckig computes it; here it becomes a sequence of cubic
+polynomials, which can be evaluated at many times at once. Positions have the unit of the caller;
+times are in seconds.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ import ruckig
 from interp.robot.kinematics.solver import Array
 
 _SLACK = 1e-7
-"""Share of a length within which speeding up or braking all the way is what fills it."""
+"""Relative difference within which a change of speed fills a length."""
 _EXACT = 1e-9
-"""Share of a length by which Ruckig's answer may miss it."""
+"""Relative error of a length that is accepted from Ruckig."""
 _ROUNDS = 60
 _INSTANT = 1e-12  # seconds
 
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """The most that a profile may have: speed, acceleration, jerk."""
+    """The maximum speed, acceleration and jerk of a profile."""
 
     velocity: float
     acceleration: float
     jerk: float
 
     def merged(self, other: Bounds, choose: Callable[[float, float], float]) -> Bounds:
-        """Of each the lower or the higher one."""
+        """Return the lower or the higher of each pair of bounds."""
         return Bounds(
             choose(self.velocity, other.velocity),
             choose(self.acceleration, other.acceleration),
@@ -42,18 +42,18 @@ class Bounds:
         )
 
     def scaled(self, share: float) -> Bounds:
-        """The same in another unit."""
+        """Return the bounds in another unit."""
         return Bounds(self.velocity * share, self.acceleration * share, self.jerk * share)
 
 
 class SpeedProfile:
-    """Cubics one after the other, each with its start: time, position, speed, acceleration, jerk.
+    """A sequence of cubics, each with its start: time, position, speed, acceleration, jerk.
 
     It begins at time 0 and position 0.
     """
 
     def __init__(self, speed: float, pieces: Iterable[tuple[float, float, float]]) -> None:
-        """From a speed on, with pieces of duration, acceleration at their start, and jerk."""
+        """Create it from a speed and pieces of duration, initial acceleration, and jerk."""
         time = position = last = 0.0
         knots: list[tuple[float, ...]] = []
         for duration, acceleration, jerk in pieces:
@@ -68,7 +68,7 @@ class SpeedProfile:
 
     @property
     def lowest(self) -> float:
-        """The lowest speed at a start of a piece or at the end."""
+        """The lowest speed at the start of a piece or at the end."""
         return min(self.final, *(knot[2] for knot in self.knots))
 
     @cached_property
@@ -76,7 +76,7 @@ class SpeedProfile:
         return np.array(self.knots).T
 
     def at(self, times: Array) -> Array:
-        """Positions; before the start and behind the end as there."""
+        """Return positions at times; before the start and after the end those of start and end."""
         clipped = np.minimum(np.maximum(times, 0.0), self.duration)
         starts, positions, speeds, accelerations, jerks = self._columns
         place = np.searchsorted(starts, clipped, side="right") - 1
@@ -86,7 +86,7 @@ class SpeedProfile:
         return found
 
     def state(self, time: float) -> tuple[float, float, float]:
-        """Position, speed and acceleration at a time, as `at`."""
+        """Return position, speed and acceleration at a time; outside as in `at`."""
         clipped = min(max(time, 0.0), self.duration)
         start, position, speed, acceleration, jerk = self.knots[0]
         for knot in self.knots[1:]:
@@ -101,7 +101,7 @@ class SpeedProfile:
         )
 
     def time_at(self, position: float) -> float:
-        """When a position is reached first; the nearest end where it never is."""
+        """Return the first time at which a position is reached, or the time of the nearest end."""
         if position <= 0.0:
             return 0.0
         if position >= self.length:
@@ -128,11 +128,11 @@ class SpeedProfile:
         return origin + dt
 
     def stretched(self, length: float) -> SpeedProfile:
-        """The same with its end at a length that differs in rounding only."""
+        """Return the profile with an end position that differs only by rounding."""
         return self if self.length <= 0.0 else self.scaled(length / self.length, length)
 
     def scaled(self, share: float, length: float | None = None) -> SpeedProfile:
-        """The same with positions in another unit."""
+        """Return the profile with positions in another unit."""
         other = SpeedProfile(0.0, ())
         other.knots = [
             (t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots
@@ -143,7 +143,7 @@ class SpeedProfile:
         return other
 
     def split(self, ends: Sequence[float]) -> list[SpeedProfile]:
-        """The parts up to each of some rising positions; the last of them is the end."""
+        """Return the parts up to each of these increasing positions; the last one is the end."""
         parts: list[SpeedProfile] = []
         before, place = 0.0, 0.0
         for number, end in enumerate(ends, start=1):
@@ -165,9 +165,9 @@ class SpeedProfile:
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """The quickest change of speed and acceleration.
+    """The fastest change of speed and acceleration.
 
-    ``pieces`` are up to three of duration, acceleration at the start, and jerk.
+    ``pieces`` are up to three tuples of duration, initial acceleration, and jerk.
     """
 
     duration: float
@@ -181,9 +181,9 @@ _NONE = Ramp(0.0, 0.0, ())
 def ramp(
     speed: float, acceleration: float, target: float, bounds: Bounds, final: float = 0.0
 ) -> Ramp:
-    """The change from a speed and acceleration to a target speed, and a final acceleration.
+    """Return the change from a speed and acceleration to a target speed and final acceleration.
 
-    Where one of both is beyond the bound of acceleration, that is the bound.
+    If one of these accelerations exceeds its bound, it replaces the bound.
     """
     jerk, most = bounds.jerk, max(bounds.acceleration, abs(acceleration), abs(final))
     slew = abs(final - acceleration) / jerk
@@ -222,10 +222,10 @@ def travel(
     bounds: Bounds,
     final: float = 0.0,
 ) -> SpeedProfile:
-    """The quickest way over a length, from a speed and acceleration to others.
+    """Return the fastest profile over a length, from a speed and acceleration to others.
 
-    The caller has seen by `ramp` that it can be done; where the length is just what the change of
-    speed takes, that change is all there is.
+    The caller has checked with `ramp` that it is possible. If the change of speed just fits into
+    the length, it is the whole profile.
     """
     direct = ramp(speed, acceleration, target, bounds, final)
     if direct.distance >= length * (1.0 - _SLACK):
@@ -238,21 +238,21 @@ def travel(
 
 
 def stop(speed: float, acceleration: float, bounds: Bounds) -> SpeedProfile:
-    """The quickest way to stand still, however far that is."""
+    """Return the fastest profile to standstill, over any length."""
     return SpeedProfile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
 
 
 def standing(duration: float) -> SpeedProfile:
-    """No motion at all."""
+    """Return a profile without motion."""
     return SpeedProfile(0.0, ((duration, 0.0, 0.0),))
 
 
 def _solved(
     length: float, speed: float, acceleration: float, target: float, bounds: Bounds, final: float
 ) -> SpeedProfile | None:
-    """What Ruckig finds, if anything.
+    """Return the profile that Ruckig finds, or ``None``.
 
-    It is asked in units in which the speed is at most 1, since its tolerances are absolute.
+    Ruckig has absolute tolerances, so it is called in units in which the speed is at most 1.
     """
     unit = max(bounds.velocity, target)
     asked = ruckig.InputParameter(1)
@@ -283,7 +283,7 @@ def _solved(
 def _searched(
     length: float, speed: float, acceleration: float, target: float, bounds: Bounds, final: float
 ) -> SpeedProfile:
-    """The same by trying speeds to cruise at, where rounding keeps Ruckig from an answer."""
+    """Return the profile by a search for the cruise speed, if rounding makes Ruckig fail."""
 
     def parts(cruise: float) -> tuple[Ramp, Ramp]:
         return (ramp(speed, acceleration, cruise, bounds), ramp(cruise, 0.0, target, bounds, final))

@@ -1,12 +1,12 @@
-"""When the path is passed where: speeds at the ends of spans of path, then a profile for each span.
+"""The time schedule of a path: speeds at the ends of spans, and a jerk-limited profile for each.
 
-Stretches whose bounds are alike are one span, over as many motions as there are: within it the
-arm speeds up and brakes as if there were no seams. Between spans the acceleration is zero. A blend
-that bends is a span that is passed at one speed; where it was made of the end of one motion and the
-start of the next, it is entered while braking and left while speeding up.
+A span is a row of stretches with similar bounds, over any number of motions; within a span the arm
+accelerates and brakes as if it were one stretch. The acceleration is zero between spans. A curved
+blend is a span that is passed at constant speed; a blend that overlaps the end of one motion with
+the start of the next is entered while braking and left while accelerating.
 
-What speed the end of a span is passed with follows from two looks: backwards, from what can still
-be braked down to what comes; forwards, from what can be reached until there.
+The speed at the end of each span follows from a backward pass, from which speed the arm can still
+brake for what follows, and a forward pass, which speed it can reach.
 """
 
 from __future__ import annotations
@@ -23,29 +23,29 @@ from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import Bounds, SpeedProfile, ramp, stop, travel
 
 _SPARE = 1.0 - 1e-6
-"""Share of a length that changes of speed may fill, so that rounding never makes one impossible."""
+"""Share of a length that changes of speed may use, so that rounding makes none impossible."""
 _ALIKE = 1.0 - 1e-3
-"""Ratio of speeds that counts as 1."""
+"""Ratio above which two speeds count as equal."""
 _LOOSE = 0.6
-"""Ratio of speeds from which the lower one may be no loss, since neither is reached."""
+"""Ratio of speeds above which the lower one may cost nothing, as neither is reached."""
 _ABOUT = 0.8
-"""Ratio of accelerations or jerks from which it is better to have the lower one than a seam."""
+"""Ratio of accelerations or jerks above which the lower one is better than a seam."""
 _JUMP = 0.01
-"""Share of the acceleration by which that of the path may jump where two blends touch."""
+"""Share of the maximum acceleration by which it may jump where two blends meet."""
 _HELD = 0.8
-"""Share of the speed at which a blend could be passed evenly below which it is held up."""
+"""Share of its constant speed below which a blend counts as slowed down by its neighbours."""
 _STANDS = 1e-3
-"""Speed in mm/s or deg/s that rounding may leave where the arm stands at the end."""
+"""Speed in mm/s or deg/s at the end that counts as standstill."""
 _HALVINGS = 48
 
 
 @dataclass(frozen=True, slots=True)
 class GearedStretch:
-    """A stretch, and how its speed and acceleration follow from those of the one before.
+    """A stretch, and how its speed and acceleration follow from those at the end of the one before.
 
-    Both count in units of their own parameter: the speed is ``gear`` times that before, the
-    acceleration ``gear`` times that before plus ``bend`` times the square of the speed before. A
-    gear of 0 is where the arm stands between them.
+    Both stretches have a parameter u of their own. The speed du/dt is ``gear`` times the one
+    before; the acceleration is ``gear`` times the one before plus ``bend`` times the square of the
+    speed before. A gear of 0 means that the arm stops between them.
     """
 
     stretch: Stretch
@@ -55,14 +55,14 @@ class GearedStretch:
 
 @dataclass(frozen=True, slots=True)
 class PathState:
-    """Where on the first stretch, with what speed and acceleration, all per unit of u."""
+    """The position on the first stretch, with speed and acceleration in units of u."""
 
     u: float
     speed: float
     acceleration: float
 
     def behind(self, start: float, gear: float, bend: float) -> PathState:
-        """The state behind a seam, at the start of what comes there."""
+        """Return the state after a seam, at the start of the next stretch."""
         acceleration = gear * self.acceleration + bend * self.speed**2
         return PathState(start, self.speed * gear, acceleration)
 
@@ -72,14 +72,14 @@ AtRest = PathState(0.0, 0.0, 0.0)
 
 @dataclass(slots=True)
 class _Span:
-    """Stretches travelled as one, all in the unit of the first span behind a stop.
+    """Stretches that are travelled as one, in the unit of the first span after a stop.
 
-    ``scales`` are what the parameters of its stretches are multiplied with, ``ends`` where each of
-    them ends. A blend that is a span of its own ``is_blend``; ``even`` are its bounds where it is
-    passed at one speed, as it ``is_even``, or entered faster than ``eased``. ``bend`` times the
-    square of the speed at its start is by how much more the acceleration is there than at the end
-    of the span before; ``stands``: the arm stands before it. ``highest`` are the greatest bounds of
-    its stretches.
+    ``scales`` convert the parameters of its stretches to that unit, ``ends`` are the positions of
+    their ends. ``is_blend`` marks a blend, which is a span of its own; ``even`` are its bounds at
+    constant speed, which apply if it ``is_even`` or is entered faster than ``eased``. The
+    acceleration at the start of the span differs from that at the end of the span before by
+    ``bend`` times the square of the speed. ``stands`` if the arm stops before it. ``highest`` are
+    the largest bounds among its stretches.
     """
 
     bounds: Bounds
@@ -106,7 +106,7 @@ class _Span:
         self.ends.append((self.ends[-1] if self.ends else 0.0) + length)
 
     def takes(self, bounds: Bounds, is_loose: bool) -> bool:
-        """Whether a stretch with such bounds can be travelled with it as one; then it will be."""
+        """Add a stretch with these bounds if they are similar; return whether it was added."""
         ratio = _LOOSE if is_loose else _ALIKE
         if not _is_about(self.highest, bounds, ratio) or not _is_about(bounds, self.bounds, ratio):
             return False
@@ -118,12 +118,11 @@ class _Span:
 def schedule(
     steps: Sequence[GearedStretch], state: PathState, override: float, *, is_strict: bool = False
 ) -> list[SpeedProfile] | None:
-    """A profile for each step from a state on, to stand still in the end of the last.
+    """Return a profile for each step, from a state to standstill at the end of the last step.
 
-    Positions of a profile are u from its start times `Stretch.size`. Returns ``None`` where it
-    cannot be done: the acceleration cannot be taken back in time, the end is too near to stand
-    still there, or, with ``is_strict``, the end of a span would be passed faster than what follows
-    allows.
+    Positions of a profile are u from its start times `Stretch.size`. Return ``None`` if that is
+    impossible: the acceleration cannot be reduced in time, the end is too near to stop there, or,
+    if ``is_strict``, the end of a span would be passed faster than what follows allows.
     """
     best: _Plan | None = None
     known: list[list[float]] = []
@@ -142,9 +141,9 @@ def schedule(
 
 @dataclass(frozen=True, slots=True)
 class _Speeds:
-    """The speed at the end of each span, and the way on which they are above what is allowed.
+    """The speed at the end of each span, and the length on which speeds exceed what is allowed.
 
-    That happens where the override has dropped: braking takes its way.
+    They exceed it after the override was reduced, while the arm is still braking.
     """
 
     ends: list[float]
@@ -153,7 +152,7 @@ class _Speeds:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """Spans, a profile for each of their stretches, and the seconds that all of them take."""
+    """Spans, a profile for each of their stretches, and the total duration in seconds."""
 
     spans: Sequence[_Span]
     profiles: list[SpeedProfile]
@@ -164,7 +163,7 @@ class _Plan:
 def _better(
     best: _Plan | None, spans: Sequence[_Span], start: tuple[float, float], found: _Speeds | None
 ) -> _Plan | None:
-    """Of a plan and one of other speeds that with less way above them, else the quicker."""
+    """Return the better plan: less length at excessive speed, then shorter duration."""
     if found is None or (best is not None and best.over < found.over):
         return best
     speed, acceleration = start
@@ -181,7 +180,7 @@ def _better(
 
 
 def _settled(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool) -> _Speeds | None:
-    """Speeds with which no blend is entered too fast for how its speed changes."""
+    """Return speeds at which no blend is entered too fast for the changes of speed inside it."""
     found = _speeds(spans, start, is_strict)
     while found is not None and found.over and _slow(spans, found.ends):
         found = _speeds(spans, start, is_strict)
@@ -210,13 +209,13 @@ def _speeds(spans: Sequence[_Span], start: tuple[float, float], is_strict: bool)
 def braking(
     steps: Sequence[GearedStretch], state: PathState, *, is_hard: bool, is_strict: bool = False
 ) -> list[SpeedProfile] | None:
-    """Profiles that stand still as soon as can be; the last ends within its step.
+    """Return profiles that stop the arm as soon as possible; the last one ends within its step.
 
-    The override has no part in it, as it scales no acceleration [MOT-09]. Speeds change in blends
-    ahead only where else one would be entered too fast.
+    The override is ignored, because it does not scale accelerations [MOT-09]. Blends ahead are
+    passed at constant speed unless the arm would enter one too fast.
 
-    ``None`` where the acceleration cannot be taken back on the first span, or, with ``is_strict``,
-    a span would be passed faster than what follows allows.
+    Return ``None`` if the acceleration cannot be reduced on the first span, or, if ``is_strict``,
+    if a span would be passed faster than what follows allows.
     """
     for is_loose in (True, False):
         spans = _spans(steps, state, 1.0, is_hard=is_hard, is_loose=is_loose)
@@ -232,7 +231,7 @@ def braking(
 def _braked(
     spans: Sequence[_Span], start: tuple[float, float], is_strict: bool
 ) -> list[SpeedProfile] | None:
-    """Profiles of all stretches up to that on which the arm stands still, as `braking`."""
+    """Return the profiles of all stretches up to the one on which the arm stops; see `braking`."""
     allowed = _allowed(spans) if is_strict else [math.inf] * len(spans)
     speed, acceleration = start
     profiles: list[SpeedProfile] = []
@@ -252,13 +251,13 @@ def _braked(
 
 
 def _keeps(speed: float, allowed: float) -> bool:
-    """Whether a speed is no more than is allowed, but for rounding."""
+    """Return whether a speed is allowed, up to rounding errors."""
     return speed <= allowed * (1.0 + 1e-6) + 1e-9
 
 
 @lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
 def alone(ceiling: Ceiling) -> Cubics | None:
-    """The parameter of a curve over time from rest to rest; ``None`` where it cannot be."""
+    """Return the parameter of a curve over time, from rest to rest, or ``None`` if impossible."""
     steps = [GearedStretch(stretch, 1.0) for stretch in ceiling.stretches]
     profiles = schedule(steps, AtRest, 1.0)
     if profiles is None:
@@ -283,7 +282,10 @@ def _spans(
     is_hard: bool = False,
     is_loose: bool = True,
 ) -> list[_Span]:
-    """The spans of a row of stretches; loosely, where a lower speed is taken for fewer seams."""
+    """Return the spans of a row of stretches.
+
+    If ``is_loose``, stretches with less similar bounds are joined: a lower speed for fewer seams.
+    """
     spans: list[_Span] = []
     scale = 0.0
     for place, step in enumerate(steps):
@@ -307,9 +309,10 @@ def _spans(
 
 
 def _ease(spans: Sequence[_Span], found: _Speeds | None) -> bool:
-    """Let speeds change in blends that what is beside them holds up; whether there are any.
+    """Allow changes of speed in blends that their neighbours slow down; return if there are any.
 
-    All of them where else speeds are above what is allowed: who brakes can end within a blend.
+    If speeds exceed what is allowed, this applies to all blends, since braking may end within a
+    blend.
     """
     is_eased = False
     is_over = found is None or found.over > 0.0
@@ -322,7 +325,7 @@ def _ease(spans: Sequence[_Span], found: _Speeds | None) -> bool:
 
 
 def _slow(spans: Sequence[_Span], ends: Sequence[float]) -> bool:
-    """Let speeds change, and slowly, in blends that are entered too fast; whether there are any."""
+    """Allow slow changes of speed in blends that are entered too fast; return if there are any."""
     is_any = False
     for speed, span in zip(ends, spans[1:], strict=False):
         if span.is_even and not _fits(speed, span.even.velocity):
@@ -334,7 +337,7 @@ def _slow(spans: Sequence[_Span], ends: Sequence[float]) -> bool:
 
 
 def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
-    """Whether some bounds are no more than others, but for what is not worth a seam."""
+    """Return whether bounds exceed others only by differences that are not worth a seam."""
     return (
         inner.velocity * ratio <= outer.velocity
         and inner.acceleration * _ABOUT <= outer.acceleration
@@ -365,7 +368,7 @@ def _own_units(
 
 
 def _allowed(spans: Sequence[_Span]) -> list[float]:
-    """The greatest speed at the end of each span from which all that follows can be braked for."""
+    """Return the largest speed at the end of each span from which the arm can still brake."""
     allowed = [0.0] * len(spans)
     for place in range(len(spans) - 1, 0, -1):
         span, before = spans[place], spans[place - 1]
@@ -383,7 +386,10 @@ def _allowed(spans: Sequence[_Span]) -> list[float]:
 
 
 def _into(spans: Sequence[_Span], place: int, out: float, most: float) -> float:
-    """The greatest speed at the start of a span, up to a given one, to leave it with a speed."""
+    """Return the largest speed at the start of a span to leave it at speed ``out``.
+
+    It is at most ``most``.
+    """
     span = spans[place]
     if not _entering(spans, place, 1.0) and not _leaving(spans, place, 1.0):
         return min(_other_end(out, span.length * _SPARE, span.bounds), most)
@@ -406,10 +412,10 @@ def _reached(
     *,
     stood: bool = False,
 ) -> float | None:
-    """The speed in which a span ends: at best the allowed one, else the nearest that can be.
+    """Return the speed at the end of a span: the allowed one, or the nearest possible one.
 
-    Lower where that can be; ``None`` where not even the acceleration can be taken back. An arm that
-    ``stood`` has nothing else that it could do, so more is tried for it.
+    A lower speed is preferred. Return ``None`` if not even the acceleration can be reduced to zero.
+    If the arm ``stood`` there is no alternative plan, so more candidates are tried.
     """
     span = spans[place]
     if span.is_even:
@@ -440,7 +446,7 @@ def _reached(
 
 
 def _turned_to(final: float, speed: float, acceleration: float, jerk: float) -> float:
-    """The speed at which the greatest jerk has turned an acceleration into another."""
+    """Return the speed after the maximum jerk has changed one acceleration to another."""
     return speed + (final + acceleration) * abs(final - acceleration) / (2.0 * jerk)
 
 
@@ -455,12 +461,12 @@ def _travelled(
 
 
 def _behind(spans: Sequence[_Span], place: int, speed: float) -> float:
-    """The acceleration with which the next span begins."""
+    """Return the acceleration at the start of the next span."""
     return _entering(spans, place + 1, speed) if place + 1 < len(spans) else 0.0
 
 
 def _entering(spans: Sequence[_Span], place: int, speed: float) -> float:
-    """The acceleration at the start of a span behind a blend."""
+    """Return the acceleration at the start of a span after a blend."""
     span = spans[place]
     if not place or span.is_blend or not spans[place - 1].is_blend:
         return 0.0
@@ -468,16 +474,16 @@ def _entering(spans: Sequence[_Span], place: int, speed: float) -> float:
 
 
 def _leaving(spans: Sequence[_Span], place: int, speed: float) -> float:
-    """The acceleration at the end of a span before a blend."""
+    """Return the acceleration at the end of a span before a blend."""
     if place + 1 == len(spans) or spans[place].is_blend or not spans[place + 1].is_blend:
         return 0.0
     return -spans[place + 1].bend * speed**2
 
 
 def _most_with(bend: float, bounds: Bounds) -> float:
-    """The greatest speed at which an acceleration of ``bend`` times its square can be taken back.
+    """Return the largest speed for which an acceleration of ``bend`` times its square can end.
 
-    Without being faster than the bound in doing so.
+    The speed must not exceed its bound while the acceleration is reduced.
     """
     if not bend:
         return bounds.velocity
@@ -493,7 +499,7 @@ def _most_with(bend: float, bounds: Bounds) -> float:
 
 
 def _bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
-    """The speed nearest to one that does not fit which still fits."""
+    """Return the speed that still fits and is nearest to one that does not."""
     for _ in range(_HALVINGS):
         middle = (beyond + within) / 2.0
         if fits(middle):
@@ -504,15 +510,15 @@ def _bisected(fits: Callable[[float], bool], within: float, beyond: float) -> fl
 
 
 def _fits(way: float, length: float) -> bool:
-    """Whether a ramp is no longer than a length, but for rounding; both in mm or degrees."""
+    """Return whether a ramp is not longer than a length, up to rounding; both in mm or degrees."""
     return way <= length * (1.0 + 1e-9) + 1e-9
 
 
 def _other_end(speed: float, length: float, bound: Bounds) -> float:
-    """The greatest speed at the other end of a length that begins or ends with a speed.
+    """Return the largest speed at the other end of a length, given the speed at one end.
 
-    With a change of speed Δ: up to a²/j it takes ``2·√(Δ/j)``, above that ``Δ/a + a/j`` seconds, at
-    the mean of both speeds.
+    A change of speed Δ takes ``2·√(Δ/j)`` seconds up to a²/j, and ``Δ/a + a/j`` above that, at the
+    mean of both speeds.
     """
     a, j = bound.acceleration, bound.jerk
     threshold = a * a / j

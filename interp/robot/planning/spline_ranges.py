@@ -1,6 +1,6 @@
-"""CONST_VEL and TIME_BLOCK: parts of a spline block with a constant speed, or a given duration.
+"""CONST_VEL and TIME_BLOCK: parts of a spline block with constant speed or with a given duration.
 
-Where a range begins or ends is given in mm from the end of the segment behind it, or from its start
+The start or end of a range is given in mm from the end of the next segment, or from its start
 [SPL-07].
 """
 
@@ -22,17 +22,17 @@ from interp.values.faults import Fault
 
 _ROUNDS = 60
 _SAME = 1e-6
-"""Relative difference of speeds or durations that counts as none."""
+"""Relative difference below which speeds or durations count as equal."""
 
 Pieces = tuple[Piece, ...]
 
 
 def with_ranges(motion: Motion, pieces: Pieces) -> Pieces:
-    """The pieces of a block with the speeds that its ranges leave.
+    """Return the pieces of a block with the speeds that its ranges require.
 
-    Raises `Fault`: 3214 where the programmed speed cannot be kept in a range of constant speed,
-    3215 where the arm stands in it, 3216 or 3217 where the way before or behind it is too short to
-    speed up or brake [SPL-05]; and where both kinds of range are in one block [SPL-10].
+    Raises `Fault`: 3214 if the programmed speed cannot be kept in a range of constant speed, 3215
+    if the arm stops in it, 3216 or 3217 if the path before or after it is too short to accelerate
+    or brake [SPL-05]; and if a block has both kinds of ranges [SPL-10].
     """
     marks = list(_marks(motion))
     keywords = {mark.range.keyword for mark in marks}
@@ -48,7 +48,7 @@ def with_ranges(motion: Motion, pieces: Pieces) -> Pieces:
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """A range's word, and the number of the segment it is written before."""
+    """A START, PART or END of a range, and the number of the segment before which it is written."""
 
     range: SplineRange
     number: int
@@ -81,7 +81,7 @@ def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
 
 
 def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
-    """The pieces with one programmed speed from a length of the path to another."""
+    """Return the pieces with one programmed speed between two positions along the path."""
     inside = [
         number
         for number in range(len(pieces))
@@ -132,9 +132,9 @@ def _check_reached(
 
 
 def _timed(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
-    """The pieces slowed down so that the parts of a TIME_BLOCK take their shares of its duration.
+    """Return the pieces slowed down so that parts of a TIME_BLOCK take their shares of the time.
 
-    Speeds are sought by trying. Parts that cannot be so quick are travelled as quickly as can be.
+    Speeds are found by iteration. Parts that cannot be that fast are travelled as fast as possible.
     """
     groups: list[range] = []
     shares: list[float] = []
@@ -179,7 +179,7 @@ def _slowed(pieces: Pieces, groups: Sequence[range], wanted: Sequence[float]) ->
 
 
 def _slower(piece: Piece, share: float) -> Piece:
-    """A piece with a share of its speed, and with the acceleration and jerk that go with it."""
+    """Return a piece with its speed scaled by a share; acceleration and jerk match."""
     return replace(
         piece,
         ceiling=Ceiling(
@@ -201,7 +201,7 @@ def _slower(piece: Piece, share: float) -> Piece:
 
 
 def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedProfile]]:
-    """The stretches of a block travelled from rest to rest: number of the piece, and how."""
+    """Yield the stretches of a block travelled from rest to rest, with the number of the piece."""
     numbers, steps = [], []
     for number, piece in enumerate(pieces):
         if piece.is_still:

@@ -1,7 +1,7 @@
-"""Collinear motions that follow one another, planned as one.
+"""Straight runs: consecutive collinear motions, planned as one.
 
-How fast a straight way may be travelled is seen from all of it, so points on it cost no time: the
-bounds of its motions, and of the blends between them, are parts of those of the whole.
+The speed limits of a straight path are computed for its whole length, so points on it cost no time.
+Each motion and each blend gets its part of these limits.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, reduced_paths
 
 _BESIDE = 2e-5
-"""Share of a straight way by which a point on it may lie beside it: no axis feels such a bend."""
+"""Distance of a point from a straight run, as a share of its length, that no axis can notice."""
 _TINY = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StraightPart:
-    """A curve and its end, worked out once: a run is looked at again for each motion more.
+    """A curve with its end pose, computed once because a run is examined again for each new motion.
 
-    ``way`` is its length in what it goes by, mm or degrees; 0 where it is bent. ``point`` and
-    ``turn`` are the pose of the tool at its end; ``None`` for one of axes.
+    ``way`` is its length in mm or degrees; 0 if it is not straight. ``point`` and ``turn`` are the
+    pose of the tool at its end; ``None`` for a line in axis space.
     """
 
     curve: Curve
@@ -41,7 +41,7 @@ class StraightPart:
 
     @classmethod
     def of(cls, curve: Curve) -> StraightPart:
-        """That of a curve."""
+        """Return the part for a curve."""
         if isinstance(curve, JointLine):
             return cls(curve, float(np.linalg.norm(curve.end - curve.start)))
         line = curve.pose_path
@@ -53,10 +53,10 @@ class StraightPart:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StraightRun:
-    """Motions in a row along one straight way.
+    """Consecutive motions along one straight line.
 
-    ``places`` are where each of their sections, and of the blends between them, would start and end
-    in mm or degrees of the whole ``length`` if it were travelled from u = 0 to 1.
+    ``places`` are the start and the end of each section, and of the blends between them, in mm or
+    degrees from the start of the whole ``length``.
     """
 
     parts: tuple[StraightPart, ...]
@@ -65,13 +65,13 @@ class StraightRun:
     ceiling: Ceiling
 
     def bounded(self, section: Section) -> Section:
-        """A section with the bounds that the whole has there; one beside it as it is."""
+        """Return a section with the limits of the run; unchanged if it is not part of the run."""
         if section.key not in self.places:
             return section
         return replace(section, ceiling=self.ceiling_of(section.key))
 
     def ceiling_of(self, key: Key) -> Ceiling:
-        """The bounds of one of its sections."""
+        """Return the limits of a section."""
         start, end = (where / self.length for where in self.places[key])
         return self.ceiling.part(start, end)
 
@@ -84,10 +84,10 @@ def extended(
     machine: MachineData,
     limits: AxisLimits,
 ) -> StraightRun | None:
-    """A run with one motion more, or where it does not lead there, the run of the last two.
+    """Return a run with one more motion; if that does not continue it, the run of the last two.
 
-    ``shares`` are those that the blend takes of both. ``None`` where they are no straight way, or
-    different speeds are programmed. Raises `Fault` as `PosePathCurve`.
+    ``shares`` are the shares of both motions that the blend replaces. Return ``None`` if they are
+    not collinear or have different programmed speeds. Raises `Fault` as `PosePathCurve`.
     """
     one, other = first.pieces[-1], second.pieces[0]
     if first.motion.parts or second.motion.parts:  # a block has bounds of its own
@@ -125,10 +125,10 @@ def extended(
 def straight_through(
     parts: Sequence[StraightPart], start: float = 0.0, end: float = 1.0
 ) -> JointLine | PosePathCurve | None:
-    """The straight way from a parameter of the first curve to one of the last.
+    """Return the straight line from a parameter of the first curve to one of the last.
 
-    ``None`` where they are not straight, or a point between two of them would lie beside it. Raises
-    `Fault` as `PosePathCurve`.
+    Return ``None`` if they are not straight, or if a point between two of them does not lie on it.
+    Raises `Fault` as `PosePathCurve`.
     """
     one, other = parts[0].curve, parts[-1].curve
     ways = np.array([part.way for part in parts])

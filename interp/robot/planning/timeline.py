@@ -1,4 +1,4 @@
-"""Timeline of the arm: sections of path, and the legs in which they are travelled."""
+"""The timeline of the arm: sections of path, and the legs in which they are travelled."""
 
 from __future__ import annotations
 
@@ -28,13 +28,14 @@ _NOTHING = 1e-9  # of u
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A part of the path: of one motion, or the blend from one into the next.
+    """A part of the path: of one motion, or the blend between two.
 
-    ``number`` is that of the motion, of a blend's first; ``following`` that of its second, else
-    ``None``. ``start`` and ``end`` are the parameters of the curve between which it is travelled.
-    ``gear`` and ``bend`` give the speed and acceleration in which this one begins from those in
-    which the section before ends, as in `GearedStretch`. ``is_still`` is a motion of length zero,
-    which takes no time. The segments of a spline block have a ``part`` from 0 on.
+    ``number`` is the number of the motion, or of the first motion of a blend; ``following`` is the
+    second motion of a blend, otherwise ``None``. ``start`` and ``end`` are the parameters of the
+    curve between which it is travelled. ``gear`` and ``bend`` relate its speed and acceleration at
+    the start to those at the end of the previous section, as in `GearedStretch`. ``is_still`` marks
+    a motion of length zero, which takes no time. The segments of a spline block have a ``part``
+    from 0 on.
     """
 
     number: int
@@ -50,7 +51,7 @@ class Section:
 
     @property
     def key(self) -> Key:
-        """What stays the same when the section is cut anew; in the order of the path."""
+        """An identity that does not change when the section is cut; in the order of the path."""
         return self.number, self.following is not None, self.part
 
     @property
@@ -59,7 +60,7 @@ class Section:
         return self.end - self.start <= _NOTHING and not self.is_still
 
     def steps(self, start: float) -> list[GearedStretch]:
-        """The stretches from a parameter on; at the start of the section its gear counts."""
+        """Return the stretches from a parameter on; the first one has the gear of the section."""
         parts = () if self.is_used_up else self.ceiling.between(start, self.end)
         return [
             GearedStretch(part, 1.0) if place else GearedStretch(part, self.gear, self.bend)
@@ -68,15 +69,15 @@ class Section:
 
     @cached_property
     def way(self) -> Way:
-        """How far the tool travels along the curve, from u = 0 on."""
+        """The distance that the tool travels along the curve from u = 0 on."""
         return Way(lambda u: tool_tangents(self.curve, u))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Leg:
-    """A section travelled from ``begins`` on, in seconds; cut off at ``ends``.
+    """A section that is travelled from ``begins`` on, in seconds; it is cut off at ``ends``.
 
-    The profile's positions count from ``stretch.start`` in units of ``stretch.size``.
+    Positions of the profile count from ``stretch.start`` in units of ``stretch.size``.
     """
 
     section: Section
@@ -86,12 +87,12 @@ class Leg:
     ends: float
 
     def at(self, times: Array) -> Array:
-        """Parameters u at times."""
+        """Return the parameters u at times."""
         position = self.profile.at(np.minimum(times, self.ends) - self.begins)
         return self.stretch.start + position / self.stretch.size
 
     def state(self, time: float) -> PathState:
-        """The state at a time."""
+        """Return the state at a time."""
         position, speed, acceleration = self.profile.state(min(time, self.ends) - self.begins)
         stretch = self.stretch
         u = min(stretch.start + position / stretch.size, stretch.end)
@@ -108,13 +109,13 @@ class Leg:
         return self.state(self.ends).u
 
     def time_at(self, u: float) -> float:
-        """When a parameter is passed, in seconds."""
+        """Return the time in seconds at which a parameter is passed."""
         passed = self.profile.time_at((u - self.stretch.start) * self.stretch.size)
         return min(self.begins + passed, self.ends)
 
 
 class Timeline:
-    """Legs in the order of time. Between legs, before and behind them the arm stands."""
+    """Legs in the order of time. Between legs, and before and after them, the arm stands."""
 
     def __init__(self, start: Array) -> None:
         self.start = start
@@ -128,7 +129,7 @@ class Timeline:
         return self.legs[-1].ends if self.legs else 0.0
 
     def append(self, leg: Leg) -> None:
-        """A leg behind all others."""
+        """Append a leg."""
         self.legs.append(leg)
         self._begins.append(leg.begins)
         self._of.setdefault(leg.section.key, []).append(leg)
@@ -144,13 +145,13 @@ class Timeline:
         return removed
 
     def restore(self, legs: Sequence[Leg]) -> None:
-        """These legs in place of all others."""
+        """Replace all legs by these."""
         self._dropped(0)
         for leg in legs:
             self.append(leg)
 
     def _dropped(self, place: int) -> list[Leg]:
-        """The legs from a place on, which are then no longer in it."""
+        """Remove the legs from an index on, and return them."""
         removed = self.legs[place:]
         for leg in removed:
             own = self._of[leg.section.key]
@@ -162,20 +163,20 @@ class Timeline:
         return removed
 
     def leg_at(self, time: float) -> Leg | None:
-        """The last leg that begins at a time or before; ``None`` if the arm has not moved yet."""
+        """Return the last leg that begins by a time, or ``None`` if the arm has not moved yet."""
         place = bisect_right(self._begins, time)
         return self.legs[place - 1] if place else None
 
     def after(self, leg: Leg) -> Sequence[Leg]:
-        """The legs that begin where a leg ends, or later."""
+        """Return the legs that begin at the end of a leg or later."""
         return self.legs[bisect_left(self._begins, leg.ends) :]
 
     def of(self, key: Key) -> Sequence[Leg]:
-        """The legs of a section, in their order."""
+        """Return the legs of a section, in order."""
         return self._of.get(key, ())
 
     def axes_at(self, time: float) -> Array:
-        """All axes at a time."""
+        """Return all axes at a time."""
         leg = self.leg_at(time)
         if leg is None:
             return self.start
@@ -183,7 +184,7 @@ class Timeline:
         return axes
 
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
-        """Set-points at rising times in µs."""
+        """Return the set-points at increasing times in µs."""
         seconds: Array = np.asarray(times, dtype=np.float64) * MICROSECOND
         axes = np.empty((len(times), len(self.start)))
         places = np.searchsorted(np.array(self._begins), seconds, side="right") - 1
@@ -195,7 +196,7 @@ class Timeline:
     def _grouped(
         self, places: npt.NDArray[np.intp], seconds: Array
     ) -> Iterator[tuple[Curve, slice, list[Array]]]:
-        """Samples by curve: its slice of the times, and the parameters on its legs there."""
+        """Yield for each curve its slice of the times, and the parameters on its legs there."""
         first = int(np.searchsorted(places, 0))
         while first < len(places):
             curve = self.legs[places[first]].section.curve
@@ -209,5 +210,5 @@ class Timeline:
 
 
 def micros(seconds: float) -> int:
-    """The whole microsecond at which something has happened."""
+    """Return the whole microsecond in which an event is reported."""
     return math.ceil(seconds / MICROSECOND - 1e-3)
