@@ -39,7 +39,7 @@ class DeferredArm:
         return self._arm.plan(now, motion)
 
     def mark(self) -> object:
-        """What `rewind` takes."""
+        """Return a mark for `rewind`."""
         return self._arm.mark()
 
     def rewind(self, mark: object) -> None:
@@ -63,11 +63,11 @@ class DeferredArm:
         return self._arm.target()
 
     def position(self, time: int) -> Position:
-        """The set-point."""
+        """Return the set-point."""
         return self._arm.position(time)
 
     def speed(self, time: int) -> float:
-        """The speed of the tool."""
+        """Return the speed of the tool."""
         return self._arm.speed(time)
 
     def distances(self, time: int) -> tuple[float, float]:

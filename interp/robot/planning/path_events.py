@@ -1,7 +1,7 @@
-"""Events of planned motions, and the times at which the path passes their places.
+"""The events of planned motions, and the times at which the path passes their places.
 
-Times follow from the legs of a timeline, so they change when the plan does. An event that was taken
-never comes again.
+Times follow from the legs of a timeline, so they change with the plan. An event that was taken
+never occurs again.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Taken = tuple[str, int | None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Passage:
-    """A motion on the path: its sections, and the blends on either side of it, if any."""
+    """A motion on the path: its sections, and the blends on both sides, if any."""
 
     motion: Motion
     body: tuple[Section, ...]
@@ -46,7 +46,7 @@ class Passage:
         return self.motion.number
 
     def parts(self) -> Iterator[tuple[Section, float, float]]:
-        """Sections with the parameters between which the motion itself runs."""
+        """Yield the sections with the parameters between which they belong to the motion."""
         if self.into is not None:
             yield self.into, _APEX, 1.0
         for section in self.body:
@@ -56,7 +56,7 @@ class Passage:
 
     @property
     def is_over(self) -> bool:
-        """Whether all of its events are taken."""
+        """Whether all of its events were taken."""
         motion = self.motion
         places = [("place", place.key) for place, _ in (*_places(motion), *_stop_places(motion))]
         wanted = {("motion_start", None), ("motion_end", None), *places}
@@ -67,7 +67,7 @@ class Passage:
         return wanted <= self.taken
 
     def distances(self, key: Key, u: float) -> tuple[float, float]:
-        """The mm travelled and the mm left at a parameter of one of its sections [MOT-18]."""
+        """Return the mm travelled and left at a parameter of one of its sections [MOT-18]."""
         sums, here = [0.0], 0.0
         for section, start, end in self.parts():
             if section.key == key:
@@ -85,9 +85,9 @@ StopFrom = Callable[[float], tuple[Key, float] | None]
 def events_of(
     passage: Passage, timeline: Timeline, now: int, stop_from: StopFrom
 ) -> list[tuple[int, int, ArmEvent]]:
-    """The events of a motion that are not taken, with time and rank; those that have a time yet.
+    """Return the events of a motion that have a time and were not taken, with time and rank.
 
-    None of them lies before ``now``.
+    No time is before ``now``.
     """
     clock = _Clock(passage, timeline)
     found: list[tuple[int, int, ArmEvent]] = []
@@ -119,7 +119,7 @@ def events_of(
 
 
 def _places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
-    """The places of a motion, those in a spline block with the segment they are given for."""
+    """Yield the places of a motion; in a spline block with the segment to which they refer."""
     for place in motion.places:
         yield place, None
     for number, part in enumerate(motion.parts):
@@ -128,7 +128,7 @@ def _places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
 
 
 def _stop_places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
-    """STOP WHEN PATH of a block, those for a segment with its number."""
+    """Yield the places of STOP WHEN PATH in a block; those of a segment with its number."""
     for place in motion.stop_places:
         yield place, None
     for number, part in enumerate(motion.parts):
@@ -137,7 +137,7 @@ def _stop_places(motion: Motion) -> Iterator[tuple[Place, int | None]]:
 
 
 class _Clock:
-    """When a motion passes what."""
+    """The times at which a motion passes its places."""
 
     def __init__(self, passage: Passage, timeline: Timeline) -> None:
         self._passage = passage
@@ -145,7 +145,7 @@ class _Clock:
 
     @property
     def start(self) -> float | None:
-        """When the motion begins: at the apex of the blend into it, if there is one."""
+        """The start of the motion in seconds; the apex of the blend before it, if any."""
         passage = self._passage
         if passage.into is not None:
             return self.time(passage.into, _APEX)
@@ -153,14 +153,14 @@ class _Clock:
 
     @property
     def end(self) -> float | None:
-        """When the motion ends."""
+        """The end of the motion in seconds."""
         passage = self._passage
         if passage.out is not None:
             return self.time(passage.out, _APEX)
         return self.time(passage.body[-1], passage.body[-1].end)
 
     def time(self, section: Section, u: float) -> float | None:
-        """When a section's parameter is passed, in seconds; ``None`` if not as planned today."""
+        """Return the time in seconds at which a parameter is passed; ``None`` if not planned."""
         legs = self._timeline.of(section.key)
         if legs and u <= legs[0].stretch.start:
             return legs[0].begins
@@ -171,7 +171,7 @@ class _Clock:
         return None
 
     def place(self, place: Place, part: int | None) -> float | None:
-        """When a place is passed, its delay included, moved into the admissible range."""
+        """Return the time of a place with its delay, moved into the admissible range."""
         passage = self._passage
         earliest = self.start if passage.into is None else self.time(passage.into, 0.0)
         latest = self.end if passage.out is None else self.time(passage.out, 1.0)
@@ -200,9 +200,9 @@ class _Clock:
     def last_chance(
         self, place: Place, part: int | None, now: int, stop_from: StopFrom
     ) -> float | None:
-        """When the arm has to brake at the latest to stand at a place; at once if it is too late.
+        """Return the latest time to brake for a stop at a place; now if it is too late.
 
-        ``None`` where the path does not go there as planned today.
+        Return ``None`` if the path is not planned up to there.
         """
         section, u = self._on_path(place, part)
         passed, start = self.time(section, u), self.start
@@ -221,11 +221,11 @@ class _Clock:
         return high
 
     def _path_place(self, place: Place, part: int | None) -> float | None:
-        """When the tool passes a place."""
+        """Return the time at which the tool passes a place."""
         return self.time(*self._on_path(place, part))
 
     def _on_path(self, place: Place, part: int | None) -> tuple[Section, float]:
-        """The section and parameter so many mm from the end or the start [TRG-04, TRG-11]."""
+        """Return section and parameter of a place in mm from end or start [TRG-04, TRG-11]."""
         passage = self._passage
         sections = [
             (section, *section.way.at(np.array(range_)))
@@ -250,7 +250,7 @@ class _Clock:
 
     @staticmethod
     def _extended(passage: Passage) -> Sequence[tuple[Section, tuple[float, float]]]:
-        """The sections on which places may lie: the blends on either side as a whole [TRG-11]."""
+        """Return the sections on which places may lie, with the blends on both sides [TRG-11]."""
         parts = [(section, (section.start, section.end)) for section in passage.body]
         if passage.into is not None:
             parts.insert(0, (passage.into, (0.0, 1.0)))

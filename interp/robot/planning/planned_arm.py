@@ -1,9 +1,9 @@
-"""The arm as it is planned: motions in, one unbroken path out, and the time of each point on it.
+"""The planned arm: takes motions and plans one continuous path with a time for each point.
 
-Each motion becomes a section of path, and so does each blend between two. From where the arm is
-at a call, all that lies ahead is scheduled anew; what has been travelled stays. So a motion that is
-appended in time turns the stop at the end of the last one into a blend, and one that comes too late
-leaves the stop as it is.
+Each motion becomes a section of path, and so does each blend between two. At every call, everything
+that lies ahead is scheduled again; what was travelled is kept. A motion that is appended in time
+therefore turns the stop at the end of the previous one into a blend; one that comes too late leaves
+the stop as it is.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the pla
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Plan:
-    """All that is planned and not yet travelled. ``last`` is the motion that the next follows.
+    """Everything that is planned and not travelled yet; the next motion follows ``last``.
 
-    ``programmed`` is the target that the next motion starts from, ``straight`` the straight way
-    that ends in the last motion, if it is more than that.
+    ``programmed`` is the target from which the next motion starts, ``straight`` the straight run
+    that ends with the last motion, if it has more than one motion.
     """
 
     programmed: Programmed
@@ -138,7 +138,7 @@ class PlannedArm:
         self._agenda = None
 
     def _append_blended(self, track: Track, programmed: Programmed) -> bool:
-        """Append a motion with a blend from the last one into it, if there is a way and time."""
+        """Append a motion with a blend into it, if a blend exists and there is time for it."""
         before = self._plan
         if before.last is None or not before.route or not before.passages:
             return False
@@ -184,7 +184,7 @@ class PlannedArm:
         return True
 
     def _standing_plan(self) -> _Plan:
-        """An empty plan from where the arm stops."""
+        """Return an empty plan that starts where the arm stops."""
         legs = self._timeline.legs
         axes = self._timeline.axes_at(max(legs[-1].ends, self._now * MICROSECOND))
         return _Plan(Programmed(self._tracks.arm, axes))
@@ -197,7 +197,7 @@ class PlannedArm:
         return agenda[-1] if agenda else None
 
     def take(self) -> ArmEvent:
-        """As `interp.robot.arm.Arm.take`. Raises `IndexError` where nothing lies ahead."""
+        """Take the next event as `interp.robot.arm.Arm.take`; raises `IndexError` without one."""
         event = self._events().pop()
         self._now = max(self._now, event.time)
         if event.kind == "stopped":
@@ -214,7 +214,7 @@ class PlannedArm:
         )
 
     def _taken(self, passages: tuple[Passage, ...], event: ArmEvent) -> tuple[Passage, ...]:
-        """With an event taken; a motion with no events left is dropped, unless it is the last."""
+        """Return passages without an event; one without events is dropped unless it is the last."""
         found = []
         for passage in passages:
             known = passage
@@ -225,7 +225,7 @@ class PlannedArm:
         return tuple(found)
 
     def _events(self) -> list[ArmEvent]:
-        """All events ahead, the earliest last."""
+        """Return all events ahead, the earliest last."""
         if self._agenda is None:
             found = [
                 (time, passage.number, rank, event)
@@ -245,7 +245,7 @@ class PlannedArm:
     # ------------------------------------------------------------------------------ where it is
 
     def target(self) -> Position:
-        """Where the motion planned last leads, or where the arm stands if there was none."""
+        """Return the target of the last planned motion, or the position of an arm without one."""
         programmed = self._plan.programmed
         return Position(tuple(programmed.axes.tolist()), programmed.flange)
 
@@ -285,10 +285,10 @@ class PlannedArm:
         return self._timeline.sample(np.asarray(times, dtype=np.int64))
 
     def path(self) -> tuple[Leg, ...]:
-        """The legs of path from the first that is remembered to the last that is planned.
+        """Return the legs of the path, from the oldest that is kept to the last planned one.
 
-        Each has its `Section` with the curve: its parameters, for a path of the tool its path
-        with kind and control points, and when it is travelled.
+        Each leg has its `Section` with the curve, its parameters, the path of the tool with kind
+        and control points, and its times.
         """
         return tuple(self._timeline.legs)
 
@@ -356,16 +356,16 @@ class PlannedArm:
         self._agenda = None
 
     def _end(self) -> float:
-        """When the last leg ends, or now."""
+        """Return the end of the last leg in seconds, or now."""
         return max(self._timeline.end, self._now * MICROSECOND)
 
     @property
     def _is_braked(self) -> bool:
-        """Whether the last brake still holds what it interrupted."""
+        """Whether the last brake still holds what it has interrupted."""
         return bool(self._brakes) and self._brakes[-1] is None
 
     def _observe(self, now: int) -> None:
-        """Time has gone on: what was travelled is no longer ahead."""
+        """Advance the time: remove from the route what was travelled."""
         self._now = max(self._now, now)
         route = self._plan.route
         ahead = self._execution.ahead(route, self._now * MICROSECOND)
@@ -373,7 +373,7 @@ class PlannedArm:
             self._plan = replace(self._plan, route=ahead)
 
     def _left_at(self, plan: _Plan) -> Array:
-        """The axes where a plan was interrupted."""
+        """Return the axes at which a plan was interrupted."""
         if not plan.route:
             return plan.programmed.axes
         section = plan.route[0]
@@ -381,9 +381,10 @@ class PlannedArm:
         return axes
 
     def _reschedule(self, route: Sequence[Section], *, new_behind: Section | None = None) -> bool:
-        """Lay legs for a route from now on; with an override of 0, once that is greater.
+        """Plan a route from now on, unless the override is 0.
 
-        Where it is new behind a section, only if no seam is overrun.
+        If the route is new after a section, do so only if no seam is passed too fast; return
+        whether it was done.
         """
         self._agenda = None
         if self._override == 0.0:
@@ -397,14 +398,14 @@ class PlannedArm:
         self._execution.halt(self._plan.route, self._now * MICROSECOND, is_hard=is_hard)
 
     def _stop_from(self, time: float) -> tuple[Key, float] | None:
-        """Where a brake at a time would end; ``None`` where the arm stands then."""
+        """Return where a brake at a time would end; ``None`` if the arm stands then."""
         if self._is_braked:
             return None
         return self._execution.stop_from(self._plan.route, time)
 
 
 def _sections(track: Track) -> tuple[Section, ...]:
-    """The sections of a motion that nothing is blended into or out of."""
+    """Return the sections of a motion without blends."""
     return tuple(
         Section(
             track.motion.number,

@@ -1,7 +1,7 @@
-"""Spline blocks as tracks: each segment a piece, with the speeds that its ranges ask for.
+"""Spline blocks as tracks: each segment becomes a piece, with the speeds that its ranges require.
 
-A block is planned as a whole [SPL-01]. Its points are given in the frames that are in force for the
-block; speeds may differ by segment.
+A block is planned as a whole [SPL-01]. Its points are given in the frames of the block; speeds can
+differ between segments.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _MOST_SEGMENTS = 1000
 
 
 def block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
-    """The track of a spline block, and the target it leads to.
+    """Return the track of a spline block, and the target to which it leads.
 
-    Raises `Fault`: 2359 or 2380 for a segment of the other type [SPL-04], 3273 for too many, 3214
-    to 3217 where a constant speed cannot be kept [SPL-05], and as `Tracks.track` does.
+    Raises `Fault`: 2359 or 2380 for a segment of the wrong type [SPL-04], 3273 for too many
+    segments, 3214 to 3217 if a constant speed cannot be kept [SPL-05], and as `Tracks.track` does.
     """
     is_ptp = motion.kind == "PTP_SPLINE"
     for part in motion.parts:
@@ -83,7 +83,7 @@ def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track
 def _segment(
     part: SplinePart, start: Knot, end: Knot, before: Programmed, settings: Settings
 ) -> Segment:
-    """A segment of a block; SCIRC ends as far along its circle as its angle says."""
+    """Return a segment of a block; SCIRC ends on its circle at the angle that it states."""
     if part.kind != "SCIRC":
         return Segment(part.kind, start, end)
     placement = settings.placement
@@ -97,7 +97,7 @@ def _segment(
 def _pieces(
     tracks: Tracks, motion: Motion, segments: Sequence[Segment], externals: Array, start: Array
 ) -> tuple[Piece, ...]:
-    """A piece for each segment, unbroken from the axes of the start on."""
+    """Return a piece for each segment, continuous from the axes at the start on."""
     keeps = motion.settings.orientation == "#CONSTANT"
     pieces: list[Piece] = []
     axes = start[:ROBOT_AXES]
@@ -129,7 +129,7 @@ def _pieces(
 
 
 def _kept(chain: Sequence[Segment], first: Knot) -> list[Segment]:
-    """The segments with the orientation in which the block begins."""
+    """Return the segments with the orientation at the start of the block."""
     return [
         replace(
             segment,
@@ -141,7 +141,7 @@ def _kept(chain: Sequence[Segment], first: Knot) -> list[Segment]:
 
 
 def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> Others:
-    """The external axes along a segment: a spline over the length of the chain."""
+    """Return the external axes along a segment: a spline over the length of the chain."""
     if len(pose_paths) == 1 or not externals.shape[1]:
         return InStep(externals[place], externals[place + 1])
     knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
@@ -160,7 +160,7 @@ def _knot(pose: Pose) -> Knot:
 
 
 def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
-    """A spline of all axes through the targets of the SPTP, over the times of the leading axes."""
+    """Return a spline of all axes through the targets, over the times of the leading axes."""
     target, points, spans = before, [before.axes], []
     for part in motion.parts:
         own = part.settings or motion.settings
@@ -202,7 +202,7 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
 
 
 def _runs(spans: Sequence[float]) -> list[tuple[int, int]]:
-    """Segments in rows that are passed without standing still; one of no length is its own row."""
+    """Return the runs of segments without a stop in between; one of length zero is its own run."""
     cuts = {0, len(spans)}
     for place, span in enumerate(spans):
         if span == 0.0:

@@ -1,4 +1,4 @@
-"""From a motion instruction to its path: a curve, its speed, and its events [MOT-11]."""
+"""Tracks: the path of a motion instruction as a curve with its limits [MOT-11]."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ _SPLINE_JERKS = (500e3, 50e3)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
-    """A part of a motion's path that is one curve: all of it, but for spline blocks.
+    """A part of a motion's path that is one curve; only spline blocks have more than one piece.
 
-    ``paths`` are its limits along the path; none for PTP. ``gear`` times the speed in which the
-    piece before ends is that in which this one begins; 0 where the arm stands between them.
+    ``paths`` are its limits along the path; none for PTP. The speed at its start is ``gear`` times
+    that at the end of the previous piece; 0 if the arm stops between them.
     """
 
     curve: Curve
@@ -55,9 +55,9 @@ class Piece:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Track:
-    """One motion's own path, from the target before it to its own.
+    """The path of one motion, from the previous target to its own.
 
-    ``axis_limits`` are what its percentages leave of the machine data.
+    ``axis_limits`` are the machine data scaled by its percentages.
     """
 
     motion: Motion
@@ -67,12 +67,12 @@ class Track:
 
     @property
     def is_still(self) -> bool:
-        """Whether it has a length of zero [MOT-11]."""
+        """Whether the path has length zero [MOT-11]."""
         return all(piece.is_still for piece in self.pieces)
 
     @property
     def notices(self) -> tuple[int, ...]:
-        """Numbers of messages that stop nothing."""
+        """The numbers of notification messages."""
         return (
             (_ZERO_LENGTH,) * self.is_still
             + (_SINGULAR,) * self.is_singular
@@ -81,7 +81,7 @@ class Track:
 
     @property
     def _is_turned_variably(self) -> bool:
-        """Whether #JOINT is taken as #VAR: in spline blocks, with a fixed tool [ORI-03]."""
+        """Whether #JOINT is treated as #VAR: in spline blocks, and with a fixed tool [ORI-03]."""
         motion = self.motion
         every = [part.settings or motion.settings for part in motion.parts] or [motion.settings]
         is_fixed = motion.settings.placement.mode is IpoMode.TCP
@@ -90,12 +90,12 @@ class Track:
 
     @property
     def is_cp(self) -> bool:
-        """Whether the path of the tool is what was programmed."""
+        """Whether the motion is a CP motion, whose tool path is programmed."""
         return self.motion.kind not in (*AXIS_MOTIONS, "PTP_SPLINE")
 
 
 class Tracks:
-    """Makes tracks for one arm."""
+    """Creates the tracks of one arm."""
 
     def __init__(self, machine: MachineData) -> None:
         self.machine = machine
@@ -106,11 +106,11 @@ class Tracks:
     def track(
         self, motion: Motion, before: Programmed, *, is_after_abort: bool = False
     ) -> tuple[Track, Programmed]:
-        """The track of a motion behind a target, and the target it leads to.
+        """Return the track of a motion from a target on, and the target to which it leads.
 
-        After an aborted motion CIRC is executed as LIN, since its start is not where it was
-        [INT-14]. Raises `Fault`, with 3094 for #IGNORE, which only segments of a spline block may
-        have (where it is allowed is unconfirmed) [ORI-03].
+        After an aborted motion CIRC is executed as LIN, since it does not start where it should
+        [INT-14]. Raises `Fault`, with 3094 for #IGNORE, which is only allowed in segments of a
+        spline block (where exactly is unconfirmed) [ORI-03].
         """
         is_cp = motion.kind not in AXIS_MOTIONS
         if is_cp and motion.settings.orientation == "#IGNORE":
@@ -168,7 +168,7 @@ class Tracks:
     def _along(
         self, motion: Motion, before: Programmed, pose_path: PosePath, point: tuple[float, ...]
     ) -> tuple[Track, Programmed]:
-        """The track of a path; its last pose is the target, except for an angle of its own."""
+        """Return the track of a path; its end pose is the target unless the motion has an angle."""
         settings = motion.settings
         externals = before.externals(motion.target, motion.is_relative)
         travel = np.abs(externals - before.axes[ROBOT_AXES:]).max(initial=0.0)
@@ -186,7 +186,7 @@ class Tracks:
     def along(
         self, pose_path: PosePath, start: Array, others: Others, kind: str, settings: Settings
     ) -> Piece:
-        """The piece of a path from axes of the robot on. Raises `Fault`."""
+        """Return the piece for a path, from the axes of the robot at its start. Raises `Fault`."""
         curve: Curve
         if settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE:
             curve = WristCurve(self.arm, settings.placement, pose_path, start, others)
@@ -200,7 +200,7 @@ class Tracks:
         return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
 
     def still(self, axes: Array, settings: Settings) -> Piece:
-        """A piece of no length."""
+        """Return a piece of length zero."""
         curve = JointLine(self.arm, settings.placement, axes, axes)
         return Piece(curve, ceiling_of(curve, self.limits, self.limits, ()), is_still=True)
 
@@ -211,7 +211,7 @@ class Tracks:
     # ----------------------------------------------------------------------------------- limits
 
     def programmed(self, settings: Settings) -> AxisLimits:
-        """What percentages and T1 leave of the machine data [MOT-02, MOT-07]."""
+        """Return the limits scaled by percentages and by the reduction in T1 [MOT-02, MOT-07]."""
         percent = settings.axis_velocity
         if settings.is_reduced:
             share = self.machine.t1_reduction
@@ -227,9 +227,10 @@ class Tracks:
         *,
         is_spline: bool = False,
     ) -> tuple[PathLimits, ...]:
-        """The limits along a path of so many mm, degrees and degrees [MOT-04, MOT-05, MOT-07].
+        """Return the limits for a path of this length, swivel and rotation.
 
-        Spline motions have the jerk that controllers are delivered with.
+        See [MOT-04, MOT-05, MOT-07]. Units are mm and degrees. Spline motions have the jerk with
+        which controllers are delivered.
         """
         velocity, acceleration = self.machine.velocity, self.machine.acceleration
         speed = min(_above(settings.velocity, "$VEL.CP"), velocity.path)
@@ -249,10 +250,10 @@ class Tracks:
         return tuple(limit for limit in limits if limit.length > _STILL)
 
     def check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
-        """Raise `Fault` 1102 where an axis would be too fast and $CP_VEL_TYPE forbids to slow down.
+        """Raise `Fault` 1102 if an axis is too fast and $CP_VEL_TYPE forbids to slow down.
 
-        The speed looked at is the programmed one, or what can be reached from standstill at the
-        nearer end; with a neighbour to blend into it would be slowed down there all the same.
+        The speed is the programmed one, or what can be reached from standstill at the nearer end:
+        if the motion is blended into a neighbour, it would be slowed down there anyway.
         """
         may_reduce = settings.speed_type in {"#VAR_ALL", "#VAR_ALL_MODEL"}
         if may_reduce or (settings.speed_type == "#VAR_T1" and settings.is_reduced) or not paths:
@@ -272,9 +273,9 @@ class Tracks:
 def reduced_paths(
     curve: Curve, machine: MachineData, *settings: Settings
 ) -> tuple[PathLimits, ...]:
-    """What holds for a curve of axes where one of some settings is of T1.
+    """Return the limits of a curve in axis space if one of the settings is for T1.
 
-    The tool is no faster than $VEL_CP_T1 there either [MOT-07].
+    The speed of the tool is limited to $VEL_CP_T1 there, too [MOT-07].
     """
     if curve.pose_path is not None or not any(each.is_reduced for each in settings):
         return ()
@@ -286,16 +287,16 @@ def reduced_paths(
 
 
 def _turning(settings: Settings, start: Array, end: Array) -> Turning:
-    """The orientation along a line; #CONSTANT keeps that of the start [ORI-01]."""
+    """Return the orientation along a line; #CONSTANT keeps the one at the start [ORI-01]."""
     if settings.orientation == "#CONSTANT":
         return turning(start[:3, :3], start[:3, :3])
     return turning(start[:3, :3], end[:3, :3])
 
 
 def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) -> Orientation:
-    """The orientation along an arc, given in space or in the frame of the path [ORI-04].
+    """Return the orientation along an arc, in space or relative to the path [ORI-04].
 
-    The programmed end point has its orientation where it lies on the circle [MOT-13].
+    The programmed end point has its orientation at its place on the circle [MOT-13].
     """
     extent = circle.angle / circle.programmed
     if settings.circle != "#PATH":
@@ -307,7 +308,7 @@ def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) 
 
 
 def _above(value: float, name: str) -> float:
-    """A speed or acceleration that is one. Raises `Fault` 1422."""
+    """Return a speed or acceleration if it is positive; otherwise raises `Fault` 1422."""
     if not value > 0.0 or not math.isfinite(value):
         raise Fault("invalid", f"{name} is {value:g}", number=1422, rules=("MSG-11",))
     return value
