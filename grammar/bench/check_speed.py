@@ -91,7 +91,7 @@ def measure_check(
 
 
 def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
-    """How often `measure_check` calls ``on_step``."""
+    """Return how often `measure_check` calls ``on_step``."""
     return rounds + 3 + len(sizes)
 
 
@@ -99,7 +99,7 @@ def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
 
 
 def _timed(roots: Sequence[Path], cache: Path | None = None) -> dict[str, Any]:
-    """A check as `krl check` makes it."""
+    """Return the figures of a check as `krl check` does it."""
     began = time.perf_counter()
     found = check_paths(roots, CheckOptions(), jobs=1, cache=cache)
     seconds = time.perf_counter() - began
@@ -140,7 +140,7 @@ def _one_changed(roots: Sequence[Path]) -> float | None:
 
 
 def _scaled(size: float, seed: int) -> dict[str, Any]:
-    """A check of a synthetic corpus of ``size`` MB, written for it and removed again."""
+    """Check a temporary synthetic corpus of ``size`` MB."""
     with tempfile.TemporaryDirectory() as folder:
         write_cells(Path(folder), round(size * MB), seed)
         timed = call_isolated(_timed, [Path(folder)])

@@ -1,1 +1,1 @@
-"""The language server: what `krl check` and `krl format` know, in an editor, while one types."""
+"""The language server: the checks of `krl check` and the layout of `krl format` in an editor."""

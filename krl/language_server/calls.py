@@ -1,4 +1,4 @@
-"""Calls in an editor: what the routine takes, while one types its arguments and afterwards."""
+"""Signature help and inlay hints for the arguments of calls."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NAME = re.compile(r"[$A-Za-z_][\w$]*")
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """A routine that is being called; ``active`` is the index of the argument one types."""
+    """A routine that is being called; ``active`` is the index of the current argument."""
 
     label: str
     parameters: tuple[str, ...]
@@ -28,14 +28,14 @@ class Signature:
 
 @dataclass(frozen=True, slots=True)
 class ArgumentHint:
-    """The name of the parameter that an argument at an offset is given to."""
+    """The name of the parameter for the argument at an offset."""
 
     offset: int
     name: str
 
 
 def signature_at(looked: Looked, offset: int) -> Signature | None:
-    """The routine whose arguments stand at an offset, also in a line that cannot be read yet."""
+    """Return the routine whose arguments are at an offset, even in an incomplete line."""
     line, column = looked.source.place(offset)
     called = _open_call(looked.source.line(line)[: column - 1])
     scope = looked.scope(line)
@@ -52,7 +52,7 @@ def signature_at(looked: Looked, offset: int) -> Signature | None:
 
 
 def _open_call(before: str) -> tuple[str, int] | None:
-    """The innermost name whose bracket is open at the end of a line, and the commas since."""
+    """Return the innermost name with an open bracket, and the number of commas after it."""
     stack: list[tuple[str, int]] = []
     last = ""
     for found in _TOKEN.finditer(before):
@@ -74,7 +74,7 @@ def _open_call(before: str) -> tuple[str, int] | None:
 
 
 def argument_hints(looked: Looked, first: int, last: int) -> Iterator[ArgumentHint]:
-    """The parameters that arguments in some lines are given to, but for those named alike."""
+    """Yield the parameters of arguments in some lines, except where the argument has that name."""
     if looked.checked is None:
         return
     source, resolution = looked.source, looked.checked.resolution

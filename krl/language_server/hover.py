@@ -1,4 +1,4 @@
-"""Hover: the meaning of a name in words, and where it is declared."""
+"""Hover texts: the meaning of a name, and where it is declared."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _TIERS = {
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """Where something is declared."""
+    """The place of a declaration."""
 
     path: str
     region: Region
 
 
 def definition(project: OpenProject, looked: Looked, offset: int) -> Definition | None:
-    """Where the name at an offset is declared; ``None`` for what no file declares."""
+    """Return the declaration of the name at an offset, or ``None`` if no file declares it."""
     found = found_at(looked, offset)
     if found is None or found.module is None:
         return None
@@ -48,9 +48,9 @@ def definition(project: OpenProject, looked: Looked, offset: int) -> Definition 
 
 
 def hover(project: OpenProject, looked: Looked, offset: int) -> tuple[str, Region] | None:
-    """What to say of the word at an offset, as Markdown, and the region of that word.
+    """Return the hover text for the word at an offset as Markdown, and the region of the word.
 
-    Findings there are explained first, with the number of the controller's message.
+    Findings at that place are explained first, with the message number of the controller.
     """
     found = _findings(looked, offset)
     word = _word_at(looked.source, offset)
@@ -97,7 +97,7 @@ def _word_at(source: Source, offset: int) -> tuple[str, Region] | None:
 
 
 def found_at(looked: Looked, offset: int) -> Found | None:
-    """What the name at an offset means, its end included: that is where a cursor often stands."""
+    """Return the declaration of the name at an offset or ending there, or ``None``."""
     return next(
         (found for name, found in looked.names() if name.span[0] <= offset <= name.span[1]), None
     )
@@ -123,7 +123,7 @@ def _declared(project: OpenProject, looked: Looked, found: Found) -> str:
 
 
 def _predefined(key: str) -> str | None:
-    """A system variable, a predefined routine or a keyword, with the rules that speak of it."""
+    """Return the text for a system variable, predefined routine or keyword, with its rules."""
     system = System.load()
     variable, function = system.variables.get(key), system.functions.get(key)
     if variable is not None:
@@ -163,7 +163,7 @@ def _function(function: PredefinedFunction) -> list[str]:
 
 
 def _cited(source: Sequence[str], word: str) -> list[str]:
-    """The rules of a table's row, then those that name the word, each with how well it is known."""
+    """Return the rules in a table row, then those that mention the word, with their tiers."""
     rules = registry()
     named = re.compile(rf"(?<![\w$]){re.escape(word)}(?!\w)")
     wanted = [rules[key] for key in source if key in rules]

@@ -1,7 +1,7 @@
-"""Names in an editor: all places of one, another one in its place, and those that can be written.
+"""Names in an editor: their places, renaming, and completion.
 
-Only what a file of the project declares has places; what the controller brings along is completed
-and never renamed.
+Only names that a file of the project declares have places and can be renamed; predefined names are
+completed, too.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ _MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*
 
 
 class RenameError(ValueError):
-    """A name that cannot be had; the text says why."""
+    """A name that is not possible; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A name that can stand somewhere: what it is, and its type if it has one.
+    """A name for completion, with its kind and its type if it has one.
 
     ``kind`` is ``None`` for a keyword.
     """
@@ -50,9 +50,9 @@ class Candidate:
 
 
 def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str, Region]]:
-    """All places of the name at an offset, declarations too, in the order of paths and lines.
+    """Return all places of the name at an offset, including declarations, by path and line.
 
-    Empty for what no file declares.
+    The list is empty if no file declares the name.
     """
     found = found_at(looked, offset)
     if found is None or found.module is None:
@@ -70,7 +70,7 @@ def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str,
 
 
 def highlights(looked: Looked, found: Found) -> set[Region]:
-    """The places in one file of what a name means."""
+    """Return the places of a declared name in one file."""
     return {
         Region.of(looked.source, name.span)
         for name, other in looked.names()
@@ -81,7 +81,10 @@ def highlights(looked: Looked, found: Found) -> set[Region]:
 def renaming(
     project: OpenProject, looked: Looked, offset: int, name: str
 ) -> list[tuple[str, Region]]:
-    """The places to write ``name`` at, in place of the name at an offset; raises `RenameError`."""
+    """Return the places at which to write ``name`` instead of the name at an offset.
+
+    Raises `RenameError`.
+    """
     found = found_at(looked, offset)
     if found is None or found.module is None:
         raise RenameError("no file of the project declares it")
@@ -107,7 +110,7 @@ def renaming(
 
 
 def _is_taken(looked: Looked, key: str) -> bool:
-    """Whether a file uses or declares a name, or sees one."""
+    """Return whether a file uses, declares or can see a name."""
     if key in words_of(looked.source.text):
         return True
     if looked.project is None or looked.module is None:
@@ -123,10 +126,10 @@ _SPACES = (Space.VALUE, Space.ROUTINE, Space.TYPE)
 
 
 def completions(looked: Looked, offset: int) -> list[Candidate]:
-    """The words that can be written at an offset, each once: keywords, then names, nearby first.
+    """Return the words that can be written at an offset: keywords, then names, nearest first.
 
-    Behind ``#`` the constants of all enumerations, behind a dot the members of the structure,
-    behind GOTO the labels of the routine; none in a comment or a text.
+    After ``#`` these are the constants of all enumerations, after a dot the members of the
+    structure, after GOTO the labels of the routine. There are none in comments and texts.
     """
     line, column = looked.source.place(offset)
     before = looked.source.line(line)[: column - 1]
@@ -145,7 +148,7 @@ def completions(looked: Looked, offset: int) -> list[Candidate]:
 
 
 def _keywords(before: str) -> Iterator[Candidate]:
-    """The keywords that the grammar has behind a text whose last line can be read."""
+    """Yield the keywords that the grammar allows after a text whose last line is valid so far."""
     failures, recognizer = builder().failures.find(before), builder().failures.recognizer
     if failures and failures[-1].text:  # the line fails before
         return
@@ -188,7 +191,7 @@ def _visible(looked: Looked, line: int) -> Iterator[Candidate]:
 
 
 def _declared(table: Table, file: str | None = None) -> Iterator[Candidate]:
-    """What a table has; of another file's what is seen from everywhere."""
+    """Yield the symbols in a table; of another file only those that are visible everywhere."""
     for _, symbol in table.symbols():
         is_seen = file is None or seen_everywhere(symbol, file)
         if is_seen and symbol.kind is not Kind.LABEL:
@@ -209,7 +212,7 @@ def _constants(looked: Looked) -> Iterator[Candidate]:
 
 
 def _members(looked: Looked, line: int, chain: str) -> Iterator[Candidate]:
-    """The members of what ``A.B[1]`` is."""
+    """Yield the members of an expression such as ``A.B[1]``."""
     scope = looked.scope(line)
     if scope is None:
         return

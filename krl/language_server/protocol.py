@@ -1,6 +1,6 @@
-"""Conversion between the server's data and the types of the protocol.
+"""Conversion between the project's data and the types of the protocol.
 
-Editors count lines and characters from 0, and characters in the units of UTF-16; the project counts
+Editors count lines and characters from 0, and characters in UTF-16 code units; the project counts
 both from 1, in characters.
 """
 
@@ -48,7 +48,7 @@ _COMPLETED: dict[Kind | None, lsp.CompletionItemKind] = {
 def action(
     title: str, uri: str, edit: lsp.TextEdit, of: lsp.Diagnostic, *, is_preferred: bool = False
 ) -> lsp.CodeAction:
-    """An edit that a finding offers."""
+    """Return the edit of a finding as a code action."""
     return lsp.CodeAction(
         title=title,
         kind=lsp.CodeActionKind.QuickFix,
@@ -59,13 +59,13 @@ def action(
 
 
 def path_of(uri: str) -> str:
-    """The path of a file, or the address itself for what is no file."""
+    """Return the path of a file, or the URI itself if it is not a file."""
     path = to_fs_path(uri)
     return uri if path is None else Path(path).absolute().as_posix()
 
 
 def characters(line: str, units: int) -> int:
-    """So many units of UTF-16, as characters of a line."""
+    """Return the number of characters in the first ``units`` UTF-16 code units of a line."""
     count = 0
     for place, character in enumerate(line):
         if count >= units:
@@ -75,7 +75,7 @@ def characters(line: str, units: int) -> int:
 
 
 def _units(line: str, characters: int) -> int:
-    """So many characters of a line, as units of UTF-16."""
+    """Return the number of UTF-16 code units in the first ``characters`` of a line."""
     return sum(1 + (ord(character) > 0xFFFF) for character in line[:characters])
 
 
@@ -85,7 +85,7 @@ def _position(source: Source, line: int, column: int) -> lsp.Position:
 
 
 def range_of(source: Source, region: Region) -> lsp.Range:
-    """A region as an editor has it."""
+    """Return a region as a range of the protocol."""
     return lsp.Range(
         start=_position(source, region.line, region.column),
         end=_position(source, region.end_line, region.end_column),
@@ -93,7 +93,7 @@ def range_of(source: Source, region: Region) -> lsp.Range:
 
 
 def diagnostic(source: Source, found: Diagnostic) -> lsp.Diagnostic:
-    """A finding with its reason, its remedy and the rules that say so."""
+    """Return a finding with its reason, its fix and its rules."""
     said = [found.message, found.reason, found.fix.text if found.fix else ""]
     rules = f" [{', '.join(found.rules)}]" if found.rules else ""
     return lsp.Diagnostic(
@@ -106,7 +106,7 @@ def diagnostic(source: Source, found: Diagnostic) -> lsp.Diagnostic:
 
 
 def document_symbol(source: Source, found: Outline) -> lsp.DocumentSymbol:
-    """A routine or a declaration, with what stands in it."""
+    """Return a routine or a declaration with its inner declarations."""
     return lsp.DocumentSymbol(
         name=found.name,
         kind=_KINDS.get(found.kind, lsp.SymbolKind.Variable),
@@ -118,7 +118,7 @@ def document_symbol(source: Source, found: Outline) -> lsp.DocumentSymbol:
 
 
 def workspace_symbol(source: Source, found: Outline) -> lsp.WorkspaceSymbol | None:
-    """A declaration with its file; ``None`` for a path that is no address."""
+    """Return a declaration with its file, or ``None`` if its path has no URI."""
     place = location(source, found.region)
     if place is None:
         return None
@@ -131,13 +131,13 @@ def workspace_symbol(source: Source, found: Outline) -> lsp.WorkspaceSymbol | No
 
 
 def location(source: Source, region: Region) -> lsp.Location | None:
-    """A region of a file; ``None`` for a path that is no address."""
+    """Return a region of a file, or ``None`` if its path has no URI."""
     uri = from_fs_path(source.path)
     return None if uri is None else lsp.Location(uri=uri, range=range_of(source, region))
 
 
 def completion_item(found: Candidate, place: int) -> lsp.CompletionItem:
-    """A name that can be written, the ``place``-th of them."""
+    """Return a completion item; ``place`` is its rank."""
     return lsp.CompletionItem(
         label=found.name,
         kind=_COMPLETED.get(found.kind, lsp.CompletionItemKind.Variable),
@@ -147,12 +147,12 @@ def completion_item(found: Candidate, place: int) -> lsp.CompletionItem:
 
 
 def position_of(source: Source, offset: int) -> lsp.Position:
-    """An offset as a place in an editor."""
+    """Return an offset as a position of the protocol."""
     return _position(source, *source.place(offset))
 
 
 def encoded(source: Source, tokens: Iterable[tuple[int, int, int, int]]) -> list[int]:
-    """Semantic tokens as the protocol has them: five numbers each, relative to the one before."""
+    """Return semantic tokens as encoded by the protocol: five relative numbers each."""
     data: list[int] = []
     line = character = 0
     for offset, length, type_, modifiers in tokens:

@@ -1,4 +1,4 @@
-"""Semantic tokens: the kind of each name in a file; words and signs are the grammar's."""
+"""Semantic tokens: the kind of each name in a file. Keywords are left to the editor's grammar."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _TYPE_OF: Final = {
 
 
 def semantic_tokens(looked: Looked) -> Iterator[tuple[int, int, int, int]]:
-    """Offset, length, number of the type, and modifiers as bits, of each name that is known.
+    """Yield offset, length, token type and modifier bits of each known name, in order.
 
-    In the order of the file. Labels have no colour.
+    Labels have no token.
     """
     for name, found in sorted(looked.names(), key=lambda one: one[0].span):
         symbol = found.symbol

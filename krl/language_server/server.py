@@ -1,4 +1,4 @@
-"""The language server: requests of an editor, answered by the modules of this folder."""
+"""The language server: handles the requests of an editor with the modules of this folder."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _AtPlace = (
 
 
 def server() -> LanguageServer:
-    """A server that has not begun yet: `start_io` runs it."""
+    """Return a server that is not running yet; `start_io` runs it."""
     made = LanguageServer(
         "krl",
         metadata.version("krl-workbench"),
@@ -58,20 +58,20 @@ def server() -> LanguageServer:
 
 
 class _InUtf16(LanguageServerProtocol):
-    """Counts characters as every client can, also for one that would rather have bytes."""
+    """Uses UTF-16 positions, which every client supports, even if a client prefers bytes."""
 
     @lsp_method(lsp.INITIALIZE)
     def lsp_initialize(
         self, params: lsp.InitializeParams
     ) -> Generator[Any, Any, lsp.InitializeResult]:
-        """What this server can do."""
+        """Answer ``initialize`` with the capabilities of this server."""
         if params.capabilities.general is not None:
             params.capabilities.general.position_encodings = None
         return (yield from super().lsp_initialize(params))
 
 
 class _Handlers:
-    """One editor's session: its files, and the answers to what it asks."""
+    """The session of one editor: its files, and the handlers of its requests."""
 
     def __init__(self, server: LanguageServer) -> None:
         self._server = server
@@ -124,7 +124,7 @@ class _Handlers:
     # -- what happens to files
 
     async def initialised(self, _given: lsp.InitializedParams) -> None:
-        """Take in the folders that the editor has open; what is asked meanwhile is answered."""
+        """Read the folders that the editor has open; requests are answered meanwhile."""
         folders: list[lsp.WorkspaceFolder] = []
         with suppress(RuntimeError):  # an editor that did not say `initialize` first
             folders += self._server.workspace.folders.values()
@@ -140,7 +140,7 @@ class _Handlers:
         self._publish()
 
     def opened(self, given: lsp.DidOpenTextDocumentParams) -> None:
-        """A file is open in the editor: its text counts, not the disk's."""
+        """Use the editor's text of a file instead of the text on disk."""
         path = path_of(given.text_document.uri)
         self._open.add(path)
         self._project.change(path, given.text_document.text)
@@ -148,13 +148,13 @@ class _Handlers:
         self._publish()
 
     def changed(self, given: lsp.DidChangeTextDocumentParams) -> None:
-        """Something was typed."""
+        """Use the new text of a file."""
         document = self._server.workspace.get_text_document(given.text_document.uri)
         self._project.change(path_of(document.uri), document.source)
         self._publish()
 
     def closed(self, given: lsp.DidCloseTextDocumentParams) -> None:
-        """A file is closed: what is on the disk counts again."""
+        """Use the text on disk again."""
         path = path_of(given.text_document.uri)
         self._open.discard(path)
         self._project.reload(path)
@@ -162,7 +162,7 @@ class _Handlers:
         self._publish()
 
     def changed_on_disk(self, given: lsp.DidChangeWatchedFilesParams) -> None:
-        """Files changed outside the editor."""
+        """Read the files that changed outside the editor."""
         for change in given.changes:
             path = path_of(change.uri)
             if Path(path).name == FILE_NAME:
@@ -172,9 +172,9 @@ class _Handlers:
         self._publish()
 
     def _publish(self) -> None:
-        """Findings of all open files: a declaration in one may be missed in another.
+        """Publish the findings of all open files, since a change in one can affect the others.
 
-        Not before the folder has been read, or names would be missed that are there.
+        Nothing is published before the folder is read, because names would be reported as missing.
         """
         if not self._is_read:
             return
@@ -184,7 +184,7 @@ class _Handlers:
         self._catching_up = asyncio.get_running_loop().create_task(self._catch_up())
 
     async def _catch_up(self) -> None:
-        """Once nothing is typed, ask all files that the change concerns."""
+        """Check all files that a change affects, after a pause in typing."""
         if self._is_graded:
             await asyncio.sleep(_PAUSE)
         count = 0
@@ -212,7 +212,7 @@ class _Handlers:
     # -- what is asked
 
     def hover(self, given: lsp.HoverParams) -> lsp.Hover | None:
-        """What the word under the pointer means, with rule and source."""
+        """Return the meaning of the word under the pointer, with rule and source."""
         asked = self._asked(given)
         if asked is None:
             return None
@@ -225,7 +225,7 @@ class _Handlers:
         return lsp.Hover(contents=content, range=range_of(looked.source, region))
 
     def definition(self, given: lsp.DefinitionParams) -> lsp.Location | None:
-        """Where the name under the cursor is declared."""
+        """Return the declaration of the name under the cursor."""
         asked = self._asked(given)
         found = None if asked is None else definition(self._project, *asked)
         if found is None:
@@ -234,19 +234,19 @@ class _Handlers:
         return None if source is None else location(source, found.region)
 
     def symbols(self, given: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
-        """Routines and data of a file."""
+        """Return the routines and data of a file."""
         looked = self._project.look(path_of(given.text_document.uri))
         if looked is None:
             return []
         return [protocol.document_symbol(looked.source, one) for one in outline(looked)]
 
     def workspace_symbols(self, given: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
-        """Routines and data of all files whose names fit what is typed."""
+        """Return the routines and data of all files that match a query."""
         found = (protocol.workspace_symbol(*one) for one in wanted(self._project, given.query))
         return [one for one in found if one is not None]
 
     def folds(self, given: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
-        """The ;FOLD … ;ENDFOLD of a file, its routines and blocks."""
+        """Return the folding ranges of a file: ;FOLD … ;ENDFOLD, routines and blocks."""
         looked = self._project.look(path_of(given.text_document.uri))
         return [
             lsp.FoldingRange(start_line=first - 1, end_line=last - 1)
@@ -254,7 +254,7 @@ class _Handlers:
         ]
 
     def formatting(self, given: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
-        """The file set out as `krl format` does; nothing for one that cannot be read."""
+        """Return the edit that lays the file out as `krl format`; nothing if it cannot be read."""
         source = self._project.source(path_of(given.text_document.uri))
         if source is None:
             return None
@@ -271,13 +271,13 @@ class _Handlers:
         return [lsp.TextEdit(range=whole, new_text=text)]
 
     def completion(self, given: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        """The names that can be written where one types."""
+        """Return the names that can be written at the cursor."""
         asked = self._asked(given)
         found = [] if asked is None else completions(*asked)
         return [protocol.completion_item(one, place) for place, one in enumerate(found)]
 
     def signature(self, given: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
-        """What the routine takes whose arguments one types."""
+        """Return the parameters of the routine whose arguments are being typed."""
         asked = self._asked(given)
         found = None if asked is None else signature_at(*asked)
         if found is None:
@@ -287,7 +287,7 @@ class _Handlers:
         return lsp.SignatureHelp([said], active_signature=0, active_parameter=found.active)
 
     def hints(self, given: lsp.InlayHintParams) -> list[lsp.InlayHint]:
-        """The parameters that arguments are given to."""
+        """Return parameter names as inlay hints for arguments."""
         looked = self._project.look(path_of(given.text_document.uri))
         if looked is None:
             return []
@@ -303,14 +303,14 @@ class _Handlers:
         ]
 
     def tokens(self, given: lsp.SemanticTokensParams) -> lsp.SemanticTokens:
-        """What each name is."""
+        """Return the semantic token of each name."""
         looked = self._project.look(path_of(given.text_document.uri))
         if looked is None:
             return lsp.SemanticTokens([])
         return lsp.SemanticTokens(protocol.encoded(looked.source, semantic_tokens(looked)))
 
     def highlight(self, given: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
-        """The places in this file of the name under the cursor."""
+        """Return the places in this file of the name under the cursor."""
         asked = self._asked(given)
         found = None if asked is None else found_at(*asked)
         if asked is None or found is None:
@@ -319,7 +319,7 @@ class _Handlers:
         return [lsp.DocumentHighlight(range_of(asked[0].source, one)) for one in regions]
 
     def references(self, given: lsp.ReferenceParams) -> list[lsp.Location]:
-        """All places of a name."""
+        """Return all places of a name."""
         asked = self._asked(given)
         found = [] if asked is None else places(self._project, *asked)
         return [
@@ -329,7 +329,7 @@ class _Handlers:
         ]
 
     def can_be_renamed(self, given: lsp.PrepareRenameParams) -> lsp.Range | None:
-        """The name to be renamed, if a file declares it; an editor says no otherwise."""
+        """Return the range of the name to rename, or ``None`` if no file declares it."""
         asked = self._asked(given)
         found = None if asked is None else found_at(*asked)
         if asked is None or found is None or found.module is None:
@@ -342,7 +342,7 @@ class _Handlers:
         return None
 
     def rename(self, given: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-        """Another name in all places of one; an invalid one is reported to the editor."""
+        """Return the edits that rename a name; an invalid new name is reported to the editor."""
         asked = self._asked(given)
         if asked is None:
             return None
@@ -359,7 +359,7 @@ class _Handlers:
         return lsp.WorkspaceEdit(changes=changes)
 
     def actions(self, given: lsp.CodeActionParams) -> list[lsp.CodeAction]:
-        """The edits of findings in a range, and comments that silence these."""
+        """Return the fixes of findings in a range, and comments that suppress them."""
         uri = given.text_document.uri
         looked = self._project.look(path_of(uri))
         if looked is None:
@@ -383,7 +383,7 @@ class _Handlers:
         return found
 
     def _asked(self, given: _AtPlace) -> tuple[Looked, int] | None:
-        """The file that is asked about, and the offset in it; ``None`` for a place it has not."""
+        """Return the file and the offset of a request; ``None`` if the file has no such place."""
         looked = self._project.look(path_of(given.text_document.uri))
         if looked is None or given.position.line >= len(looked.source.lines):
             return None
@@ -393,7 +393,7 @@ class _Handlers:
 
 
 def _plain(answer: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """A function of its own: the server marks what it is given, and a method cannot be marked."""
+    """Wrap a method in a function, because pygls sets attributes on handlers."""
 
     def ask(given: Any) -> Any:
         return answer(given)

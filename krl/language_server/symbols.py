@@ -1,4 +1,4 @@
-"""Declarations as an editor lists them, and the lines that it folds."""
+"""Declarations for an editor's outline and symbol search, and folding ranges."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _BLOCKS = (
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A routine or a declaration of a file, with what stands in it.
+    """A routine or declaration of a file, with its inner declarations.
 
-    ``whole`` is the region of all of it, ``region`` that of its name.
+    ``whole`` is its region, ``region`` the region of its name.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Outline:
 
 
 def outline(looked: Looked) -> tuple[Outline, ...]:
-    """The routines of a program with their data, or the data of a list."""
+    """Return the routines of a program with their data, or the data of a data list."""
     module, source = looked.module, looked.source
     if module is None or module.table is None or module.syntax is None:
         return ()
@@ -63,9 +63,9 @@ def outline(looked: Looked) -> tuple[Outline, ...]:
 
 
 def wanted(project: OpenProject, query: str) -> Iterator[tuple[Source, Outline]]:
-    """Routines and data of all files whose names have the letters of a query in their order.
+    """Yield the routines and data of all files that contain the letters of a query in order.
 
-    Those that begin with it come first; `_MOST_SYMBOLS` at most. Local data are left out.
+    Names that begin with the query come first, at most `_MOST_SYMBOLS`. Local data are left out.
     """
     letters = query.upper()
     found = [
@@ -93,7 +93,7 @@ def _outlined(source: Source, symbol: Symbol) -> Outline:
 
 
 def signature(symbol: Symbol) -> str:
-    """A symbol as its declaration has it: type and name, a routine with its parameters."""
+    """Return a symbol as it is declared: type and name, and the parameters of a routine."""
     if not isinstance(symbol, RoutineSymbol):
         return f"{type_name(symbol)} {symbol.name}".strip()
     listed = ", ".join(map(parameter, symbol.parameters)) + (", …" if symbol.has_more else "")
@@ -102,24 +102,24 @@ def signature(symbol: Symbol) -> str:
 
 
 def parameter(symbol: ParameterSymbol) -> str:
-    """A parameter with its way and, where it is known, its type."""
+    """Return a parameter with its mode and, if known, its type."""
     return f"{symbol.name}:{symbol.mode} {type_name(symbol)}".rstrip()
 
 
 def type_name(symbol: Symbol) -> str:
-    """The type of a symbol, empty for what has none."""
+    """Return the type of a symbol, or an empty text."""
     if symbol.type is not None:
         return symbol.type.name
     return "" if symbol.given is None else str(symbol.given)
 
 
 def seen_everywhere(symbol: Symbol, file: str) -> bool:
-    """Whether a symbol at the first level of a file is seen from all others."""
+    """Return whether a top-level symbol of a file is visible in all files."""
     return symbol.access is Access.GLOBAL or symbol.key == file
 
 
 def folds(looked: Looked) -> list[tuple[int, int]]:
-    """First and last lines of ;FOLD … ;ENDFOLD, of routines and of blocks, whose end stays."""
+    """Return first and last lines of ;FOLD … ;ENDFOLD, routines and blocks; ends stay visible."""
     source = looked.source
     found = {(fold.first, fold.last) for fold in source.folds if fold.last is not None}
     for node in nodes_in(looked):
@@ -130,7 +130,7 @@ def folds(looked: Looked) -> list[tuple[int, int]]:
 
 
 def nodes_in(looked: Looked) -> Iterator[ast.Node]:
-    """All nodes of the tree of a file but leaves, in no order."""
+    """Yield all inner nodes of the syntax tree of a file, in no particular order."""
     module = looked.module
     todo: list[ast.Node | None] = []
     if module is not None and module.syntax is not None:

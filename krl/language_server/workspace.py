@@ -1,10 +1,10 @@
-"""The files that an editor works on: those of its folder, and the open ones as they are typed.
+"""The files that an editor works on: those in its folder, and open ones with unsaved changes.
 
-A file is read when its text changes; linking takes the tables of all files. A file that is looked
-at is checked at once; what the others say of names is found out by and by (`OpenProject.catch_up`),
-and no name is graded before all files of a project were asked. Paths are absolute with ``/``, lines
-and columns count from 1 as everywhere in the project; what editors count otherwise is translated
-where it comes in, by `krl.language_server.server`.
+A file is parsed when its text changes; linking uses the symbol tables of all files. The file that
+the editor shows is checked at once. Other files are checked in the background
+(`OpenProject.catch_up`), and the certainty of an unknown name is only decided when all files of the
+project are checked. Paths are absolute and use ``/``; lines and columns count from 1. Positions of
+the protocol are converted in `krl.language_server.server`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _SOUGHT = ("KSS", *(f"KRL{digit}" for digit in "01234579"))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Read:
-    """A text, as far as it can be read, and what others are to know of it."""
+    """A parsed file, and what it contributes to others."""
 
     source: Source
     reading: Reading
@@ -54,7 +54,7 @@ class _Read:
 
 @dataclass(frozen=True, slots=True)
 class _Judged:
-    """What a file was last found to say, and what that rests on, if that is known."""
+    """The last findings of a file, and the facts on which they depend, if known."""
 
     findings: Findings
     is_open: bool
@@ -78,7 +78,7 @@ class Looked:
     checked: Checked | None = None
 
     def scope(self, line: int) -> Scope | None:
-        """What is known at a line: in its routine, if it stands in one."""
+        """Return the scope at a line: that of its routine, if it is in one."""
         if self.project is None or self.module is None or self.module.table is None:
             return None
         for routine in reversed(self.module.table.routines):
@@ -87,7 +87,7 @@ class Looked:
         return self.project.scope(self.module)
 
     def names(self) -> Iterator[tuple[Name, Found]]:
-        """Each name with what it means, also where a line that cannot be read may declare it."""
+        """Yield each name with its declaration, even if an unreadable line may declare it, too."""
         if self.checked is not None:
             for name, answer in self.checked.resolution.answers.items():
                 found = certain(answer)
@@ -96,14 +96,14 @@ class Looked:
 
 
 def certain(answer: Answer) -> Answer:
-    """What is meant, also where the line that one types keeps that from being certain."""
+    """Return the only candidate, even if the line being typed makes it uncertain."""
     if isinstance(answer, MaybeElsewhere) and len(answer.candidates) == 1:
         return answer.candidates[0]
     return answer
 
 
 class OpenProject:
-    """Files by path, and what is known of them today."""
+    """The files of a workspace by path, with their current state."""
 
     def __init__(self) -> None:
         self._files: dict[str, _Read] = {}
@@ -117,9 +117,10 @@ class OpenProject:
         self._groups: dict[str, tuple[Settings, str] | None] = {}
 
     def add_folder(self, folder: Path) -> Iterator[str]:
-        """Take in the KRL files below a folder, one a step; their paths. A missing folder has none.
+        """Add the KRL files in a folder one by one, and yield their paths.
 
-        Files beyond `MOST_FILES` are left out, and so are files that are open already.
+        Files beyond `MOST_FILES` and files that are already open are skipped; a missing folder has
+        none.
         """
         try:
             found = [
@@ -138,7 +139,7 @@ class OpenProject:
                 yield path
 
     def reload(self, path: str) -> None:
-        """Take a file as it is on the disk; forget it where it is gone or no KRL."""
+        """Read a file from disk; forget it if it is gone or not KRL."""
         try:
             decoded = decode(read_bytes(Path(path)))
         except OSError:
@@ -149,7 +150,7 @@ class OpenProject:
             self.change(path, decoded.text)
 
     def change(self, path: str, text: str) -> None:
-        """A file has this text now."""
+        """Set the text of a file."""
         known = self._files.get(path)
         if known is not None and known.source.text == text:
             return
@@ -160,7 +161,7 @@ class OpenProject:
         self._unlink()
 
     def changed(self) -> None:
-        """Settings are others now."""
+        """Read the settings again."""
         self._unlink()
         self._groups.clear()
         self._agreed.clear()
@@ -170,29 +171,29 @@ class OpenProject:
         self._looked.clear()
 
     def forget(self, path: str) -> None:
-        """A file is gone."""
+        """Remove a file."""
         if self._files.pop(path, None) is not None:
             self._judged.pop(path, None)
             self._unlink()
 
     def paths(self) -> list[str]:
-        """All files, in order."""
+        """Return all paths, sorted."""
         return sorted(self._files)
 
     def tables(self) -> Iterator[tuple[Source, ModuleTable]]:
-        """The texts and the tables of all files that can be read, in order."""
+        """Yield the texts and symbol tables of all readable files, sorted by path."""
         for path in self.paths():
             known = self._files[path]
             if known.file.table is not None:
                 yield known.source, known.file.table
 
     def source(self, path: str) -> Source | None:
-        """The text of a file as it is known."""
+        """Return the current text of a file, or ``None``."""
         known = self._files.get(path)
         return None if known is None else known.source
 
     def look(self, path: str) -> Looked | None:
-        """What is known of a file; ``None`` for one that is not here."""
+        """Return all that is known of a file, or ``None`` if it is unknown."""
         known = self._files.get(path)
         if known is None:
             return None
@@ -216,7 +217,7 @@ class OpenProject:
     def _check(
         self, known: _Read, project: Project, module: Module, needs: Needs | None = None
     ) -> Checked | None:
-        """Check a file, and remember what it says; ``None`` for one that cannot be read."""
+        """Check a file and store its findings; return ``None`` if it cannot be read."""
         path, reading = known.source.path, known.reading
         if reading.syntax is None:
             self._judged[path] = _Judged(reading.alone(), False, needs)
@@ -227,7 +228,7 @@ class OpenProject:
         return checked
 
     def _graded(self, project: Project, path: str) -> Iterable[Diagnostic]:
-        """The findings of a project, or those of a file alone until all others were asked."""
+        """Return the findings of a project; only those of the file until all files are checked."""
         paths = [module.path for module in project.modules]
         if all(one in self._judged for one in paths):
             sources = {path: self._files[path].source for path in paths}
@@ -240,9 +241,9 @@ class OpenProject:
         return self._judged[path].findings.diagnostics
 
     def catch_up(self) -> Iterator[str]:
-        """Check the files whose findings rest on what has changed, one a step; their paths.
+        """Check the files whose findings depend on a change, one by one; yield their paths.
 
-        What is known of looked-at files may be otherwise afterwards. It ends early where something
+        Afterwards the state of files that were looked at may differ. It ends early if something
         changes meanwhile.
         """
         linked = self._projects()
@@ -295,14 +296,14 @@ class OpenProject:
         return self._linked
 
     def _origin(self, path: str) -> str:
-        """The origin of a file, which may be new: that of the files beside it, or around it."""
+        """Return the origin of a file, which may be new: that of the nearest known folder."""
         known = (self._origins.get(folder) for folder in Path(path).parents)
         return next((origin for origin in known if origin is not None), "")
 
     def _settings(self, path: str) -> Settings:
-        """What was agreed on for a file.
+        """Return the settings for a file.
 
-        Unreadable settings count as none; `krl check` reports them.
+        Unreadable settings are ignored here; `krl check` reports them.
         """
         folder = Path(path).parent
         if folder not in self._agreed:
@@ -328,7 +329,7 @@ def _is_left_out(path: str, agreed: Settings) -> bool:
 
 
 def _kept(source: Source, found: Iterable[Diagnostic], agreed: Settings) -> tuple[Diagnostic, ...]:
-    """Findings that are wanted, that no comment silences, and that are not known already."""
+    """Return the findings that are selected, not suppressed and not in the baseline."""
     wanted = [one for one in found if one.code.startswith(_SOUGHT)]
     kept = apply_suppressions(source.path, wanted, suppression_comments(source), _SOUGHT)
     selection = Selection(agreed.select, agreed.ignore)

@@ -150,7 +150,7 @@ def _rank(
 
 
 def _names(edits: Sequence[Edit], mutant: Mutant, whole: Grammar) -> bool:
-    """Whether an edit is in a rule that lost something, or calls a rule that is lost."""
+    """Return whether an edit is in a rule that lost something, or calls a rule that is lost."""
     damaged = {getattr(e, "rule", "") for e in mutant.edits} | mutant.rules
     callers = {
         r.name
@@ -190,7 +190,7 @@ def _same_place(edits: Sequence[Edit], mutant: Mutant) -> bool:
 
 
 def _adjacent(here: Address, there: Address) -> bool:
-    """Whether two places are in the same sequence with at most one element between them."""
+    """Return whether two places are in the same sequence with at most one element between them."""
     depth = len(there) - 1
     return (
         len(here) > depth and here[:depth] == there[:depth] and abs(here[depth] - there[depth]) <= 1
@@ -228,7 +228,7 @@ def _telling(texts: Sequence[str]) -> list[str]:
 
 
 def _with_all(base: Recognizer, several: Sequence[Sequence[Edit]]) -> Recognizer:
-    """A recogniser with the edits of all, but for those that do not fit the ones before."""
+    """Return a recogniser with the edits of all, except those that conflict with earlier ones."""
     found, edits = base, tuple[Edit, ...]()
     for some in several:
         more = combined_edits(edits, some)
@@ -243,13 +243,13 @@ def _reads_all(recognizer: Recognizer, texts: Sequence[str]) -> bool:
 
 
 def _repairs(base: Recognizer, edits: Sequence[Edit], texts: Sequence[str]) -> bool:
-    """Whether every program can be read again."""
+    """Return whether every program can be read again."""
     wider = edited(base, edits)
     return wider is not None and _reads_all(wider, texts)
 
 
 def covering(grammar: Grammar) -> list[str]:
-    """The shortest programs through every alternative and every optional part of every rule."""
+    """Return the shortest programs through every alternative and optional part of all rules."""
     recognizer = Recognizer(grammar)
     sentences, speller = Sentences(grammar), Speller(grammar)
     texts = {
@@ -356,7 +356,7 @@ def _ranks(assessment: Assessment, whole: Grammar) -> dict[str, Any]:
 
 
 def figures(assessments: Sequence[Assessment], negative_count: int) -> dict[str, Any]:
-    """The figures of a set of assessments."""
+    """Return the figures of a set of assessments."""
     total = len(assessments)
     seen = [v for v in assessments if v.detected]
     ranks: dict[str, list[int | None]] = defaultdict(list)

@@ -50,7 +50,7 @@ class Mutant:
 
 
 def mutants(grammar: Grammar) -> Iterator[Mutant]:
-    """Every grammar with one thing taken out of its parser rules that still is a grammar."""
+    """Yield every grammar with one element removed from its parser rules that is still valid."""
     for rule in grammar.rules:
         if rule.is_lexer:
             continue
@@ -83,7 +83,7 @@ def _made(
 
 
 def _users(grammar: Grammar, name: str) -> list[tuple[str, tuple[int, ...], int]]:
-    """Where a rule or token is used: (rule, address of the sequence, place in it), last first."""
+    """Return the uses of a rule or token as (rule, sequence, index), last first."""
     found = []
     for rule in grammar.rules:
         if rule.is_lexer:
@@ -124,7 +124,7 @@ def _sequence(grammar: Grammar, rule: str, address: tuple[int, ...]) -> tuple[El
 def _optional_around(
     grammar: Grammar, rule: str, address: tuple[int, ...]
 ) -> tuple[int, ...] | None:
-    """The innermost optional group that holds a sequence."""
+    """Return the innermost optional group that contains a sequence."""
     while len(address) > 1:
         *outer, place, _ = address
         element = _sequence(grammar, rule, tuple(outer))[place - 1]

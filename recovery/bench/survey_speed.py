@@ -99,12 +99,12 @@ def measure(
 
 
 def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
-    """How often `measure` calls ``on_step``."""
+    """Return how often `measure` calls ``on_step``."""
     return 2 * rounds + 2 + len(sizes)
 
 
 def _texts(roots: Sequence[Path]) -> list[str]:
-    """The text of each file below the roots, each content once."""
+    """Return the texts of the files below the roots, without duplicates."""
     return list({file.data: file.text for file in source_files(roots)}.values())
 
 
@@ -262,7 +262,7 @@ def _beside_antlr(roots: Sequence[Path], grammar_text: str, seconds: float) -> d
 
 
 def _spread(texts: Sequence[str]) -> list[str]:
-    """The texts in an order of which every beginning has small and large ones as the whole has."""
+    """Return the texts in an order in which every prefix has small and large files alike."""
     ordered = sorted(texts, key=lambda text: (len(text), text))
     bits = len(ordered).bit_length()
     # the bits of the places read backwards: halves first, then quarters, then eighths
