@@ -12,10 +12,13 @@ from typing import Any
 
 from grammar.check.analysis.context import Context
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import ParameterSymbol, RoutineSymbol
+from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, LEAVES, PLACES, children, left_chain
 from support.lazy_dataclass import dataclass
+
+#: A parameter of a routine: the path of its file, its name in upper case, an index from 0.
+Parameter = tuple[str, str, int]
 
 
 class Use(Enum):
@@ -31,12 +34,14 @@ class Use(Enum):
 class Access:
     """A variable in a statement, by the node of its name.
 
-    ``place`` is the whole of what is accessed, with indices and components.
+    ``place`` is the whole of what is accessed, with indices and components. ``to`` is the parameter
+    that gets it, if it is an argument of a routine of the project.
     """
 
     name: ast.Name
     use: Use
     place: ast.Expression | None = None
+    to: Parameter | None = None
 
 
 def accesses(context: Context, node: ast.Node) -> Sequence[Access]:
@@ -133,19 +138,32 @@ def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Acc
 
 def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
     """The arguments: those passed :IN are read, of all others it is unknown."""
-    known = called_parameters(context.found(node.name))
+    called = context.found(node.name)
+    known = called_parameters(called)
     for index, argument in enumerate(node.arguments):
         if argument is None:
             continue
         _add(context, argument, found)
-        if is_passed_on(argument, index, known) and found[-1].place is argument:
-            found[-1] = Access(found[-1].name, Use.PASSED, argument)
+        if type(argument) in PLACES and found[-1].place is argument:
+            use = Use.PASSED if is_passed_on(argument, index, known) else Use.READ
+            routine = address_of(called) if index < len(known) else None
+            to = (*routine, index) if routine else None
+            found[-1] = Access(found[-1].name, use, argument, to)
 
 
 def called_parameters(called: Found | None) -> Sequence[ParameterSymbol]:
     """The parameters of what is called; none where they are unknown."""
     symbol = called.symbol if called else None
     return symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
+
+
+def address_of(called: Found | None) -> tuple[str, str] | None:
+    """The file of a routine and its name in upper case; ``None`` if its body is not at hand."""
+    if called is None or called.module is None or called.symbol.kind is not Kind.ROUTINE:
+        return None
+    if called.module.is_head_unread(called.symbol.key):
+        return None
+    return called.module.path, called.symbol.key
 
 
 def is_passed_on(argument: ast.Expression, index: int, known: Sequence[ParameterSymbol]) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import Any
 
-from grammar.check.analysis.control_flow_graph import FlowGraph, flow_graph
+from grammar.check.analysis.control_flow_graph import FlowGraph, FlowNode, flow_graph
 from grammar.check.analysis.name_suggestions import NameSuggestions
 from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.diagnostics.codes import Severity, code, of_message
@@ -17,13 +18,13 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.rules import is_confirmed
 from grammar.semantics.scopes import Found, Module, Scope
-from grammar.semantics.symbols import ModuleTable, RoutineTable
+from grammar.semantics.symbols import Kind, ModuleTable, RoutineTable
 from grammar.semantics.types import Enumeration, Structure, Type, Verdict
 from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
-from grammar.syntax.walk import BODIES, bodies
+from grammar.syntax.walk import BODIES, bodies, without_parentheses
 from support.lazy_dataclass import dataclass, node
 
 
@@ -38,6 +39,20 @@ class PlacedStatement:
     def is_in_spline(self) -> bool:
         """Whether it stands in a spline block."""
         return self.inside is not None and isinstance(self.inside.statement, ast.SplineBlock)
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """What a parameter is used for, in words, and the lowest and highest value that this allows."""
+
+    slug: str
+    use: str
+    low: float = -math.inf
+    high: float = math.inf
+
+    def accepts(self, value: float) -> bool:
+        """Whether a number can be used so; a divisor is any number but zero."""
+        return value != 0 if self.slug == "division-by-zero" else self.low <= value <= self.high
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +73,11 @@ class RoutineBody:
         """The ways through it; conditions count as open."""
         return flow_graph(self.node)
 
+    @cached_property
+    def reached(self) -> frozenset[FlowNode]:
+        """The places that some way from the start leads to."""
+        return self.ways.reached()
+
 
 @dataclass(frozen=True, eq=False)
 class Context:
@@ -67,7 +87,8 @@ class Context:
     the first check, `grammar.check.types.statements`: the type of each expression but literals, the
     enumeration of each constant, the values of expressions that have to be constant, and the
     ``constants`` that names without a declaration would be with a #; ``lacking`` are the constants
-    and components that a type lacks, ``accesses`` those that `analysis.accesses` has worked out.
+    and components that a type lacks, ``bounds`` the values that parameters may have where they are
+    used. `analysis.accesses` keeps ``accesses``, `flow.data_flow` keeps ``flows``.
     ``is_lacking``: the data list of the program is not at hand, and may declare what is found in
     other files.
     """
@@ -82,7 +103,9 @@ class Context:
     values: dict[Node, Any] = field(default_factory=dict)
     constants: dict[ast.Name, str] = field(default_factory=dict)
     lacking: list[tuple[Enumeration | Structure, str, Diagnostic]] = field(default_factory=list)
+    bounds: dict[ast.Name, Bound] = field(default_factory=dict)
     accesses: dict[Node, Any] = field(default_factory=dict)
+    flows: dict[ast.Routine, Any] = field(default_factory=dict)
     is_lacking: bool = False
     suggestions: NameSuggestions = field(default_factory=NameSuggestions)
 
@@ -155,6 +178,14 @@ class Context:
     def found(self, name: ast.Name) -> Found | None:
         """What a name means, if that is known."""
         return self.resolution.found(name)
+
+    def note_bound(self, node: ast.Expression, bound: Bound) -> None:
+        """Note the values that a parameter may have, if the expression is a parameter."""
+        node = without_parentheses(node)
+        if type(node) is ast.Variable:
+            found = self.found(node.name)
+            if found is not None and found.symbol.kind is Kind.PARAMETER:
+                self.bounds[node.name] = bound
 
     # ----------------------------------------------------------------------- findings
 

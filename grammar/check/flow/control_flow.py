@@ -211,9 +211,8 @@ _LEAVING = frozenset({ast.Goto, ast.Return, ast.Exit, *_LOOPS})
 def _never_reached(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     if not any(type(placed.statement) in _LEAVING for placed in routine.statements):
         return
-    ways = routine.ways
-    reached = ways.reached()
-    for step, before, inside in ways.steps:
+    reached = routine.reached
+    for step, before, inside in routine.ways.steps:
         if step in reached or isinstance(step.statement, ast.Label | ast.Definition):
             continue
         if (inside is None or inside in reached) and (before is None or before in reached):

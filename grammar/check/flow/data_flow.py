@@ -10,8 +10,9 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, partial
 
-from grammar.check.analysis.accesses import Access, Use, accesses, calls_of
+from grammar.check.analysis.accesses import Access, Parameter, Use, accesses, calls_of
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode
@@ -34,7 +35,7 @@ _TEXT = re.compile(r';[^\r\n]*|"([^"\r\n]*)"')
 def check(context: Context) -> Iterator[Diagnostic]:
     """Findings about the data of all routines of a file."""
     for routine in context.routines:
-        flow = _DataFlow(context, routine)
+        flow = data_flow(context, routine)
         yield from flow.read_too_early()
         yield from flow.unused()
         yield from _counters(context, routine)
@@ -50,20 +51,12 @@ def check(context: Context) -> Iterator[Diagnostic]:
         yield from _real_equality(context)
 
 
-def needed_parameters(context: Context, routine: RoutineBody) -> tuple[int, ...]:
-    """The parameters, from 0, that a routine reads on every way, without asking VARSTATE for them.
-
-    To pass a parameter on is not to read it: who gets it may ask. Behind ON_ERROR_PROCEED a routine
-    may try.
-    """
-    if any(isinstance(placed.statement, ast.OnErrorProceed) for placed in routine.statements):
-        return ()
-    flow = _DataFlow(context, routine)
-    return tuple(
-        index
-        for index, parameter in enumerate(routine.node.parameters)
-        if parameter.name.key in flow.parameters and flow.is_needed(parameter.name.key)
-    )
+def data_flow(context: Context, routine: RoutineBody) -> DataFlow:
+    """The variables of a routine and what its statements do to them."""
+    known: DataFlow | None = context.flows.get(routine.node)
+    if known is None:
+        known = context.flows[routine.node] = DataFlow(context, routine)
+    return known
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +72,11 @@ class _OnCondition:
     blocks: frozenset[ast.Node]
 
 
-class _DataFlow:
-    """The variables of one routine and what its statements do to them."""
+class DataFlow:
+    """The variables of one routine and what its statements do to them.
+
+    ``parameters`` and ``variables`` are the keys of those that nothing else can reach.
+    """
 
     def __init__(self, context: Context, routine: RoutineBody) -> None:
         self._context = context
@@ -112,22 +108,46 @@ class _DataFlow:
             self._accesses[node] = found
         return found
 
-    def early(self, followed: frozenset[str]) -> Iterator[Access]:
-        """The reads of some variables that no way with a value leads to, each variable once."""
+    @cached_property
+    def uses(self) -> dict[str, list[Access]]:
+        """All accesses to parameters and variables, by key, in the order of the text."""
+        found: dict[str, list[Access]] = {}
+        followed = self.parameters | self.variables
+        for placed in self._routine.statements if followed else ():
+            for access in _all(self._context, placed):
+                if access.name.key in followed:
+                    found.setdefault(access.name.key, []).append(access)
+        return found
+
+    def early(self, followed: frozenset[str], *, is_passed_open: bool = False) -> Iterator[Access]:
+        """The reads of some variables that no way with a value leads to, each variable once.
+
+        To pass a variable is to give it a value. If ``is_passed_open`` that is not so for a routine
+        of the project, and the first place that passes a variable to one counts besides.
+        """
         if not followed:
             return
         bits = {key: 1 << index for index, key in enumerate(sorted(followed))}
-        known = self._reaching(0, lambda node, _, value: value | self._changed(node, bits))
-        reported = 0
+
+        def given(access: Access) -> int:
+            is_open = access.use is Use.READ or (is_passed_open and access.to)
+            return 0 if is_open else bits.get(access.name.key, 0)
+
+        def passed(node: FlowNode, _: int, value: int) -> int:
+            for access in self._of(node):
+                value |= given(access)
+            return value
+
+        known = self._reaching(0, passed)
+        reported = dict.fromkeys(Use, 0)
         for node in sorted(known, key=_position):
             value = known[node]
             for access in self._of(node):
                 bit = bits.get(access.name.key, 0)
-                if access.use is Use.READ and bit and not (value | reported) & bit:
-                    reported |= bit
+                value |= given(access)
+                if bit & ~(value | reported[access.use]):
+                    reported[access.use] |= bit
                     yield access
-                elif access.use is not Use.READ:
-                    value |= bit
 
     def _changed(self, node: FlowNode, bits: dict[str, int]) -> int:
         """The variables that get a value at a place."""
@@ -157,26 +177,63 @@ class _DataFlow:
                     todo.append(after)
         return known
 
-    def is_needed(self, key: str) -> bool:
-        """Whether no way leads to the end without reading a parameter."""
+    def reads(self, key: str) -> tuple[Parameter, ...] | None:
+        """What has to be true for a parameter to be read, before it gets a value, on every way.
+
+        That is that the routines it is handed on to read these parameters of theirs; ``()`` if the
+        routine itself reads it. ``None`` if some way leads past. To hand a parameter on is not to
+        read it: who gets it may ask VARSTATE.
+        """
+        met: set[Parameter] = set()
+
+        def is_read(node: FlowNode, *, is_handed_on: bool) -> bool | None:
+            uses = [access for access in self._of(node) if access.name.key == key]
+            if not uses:
+                return False
+            if self._is_passed(node, key):
+                to = [one.to for one in uses if one.to] if is_handed_on else []
+                met.update(to)
+                return bool(to)
+            return True if uses[0].use is Use.READ else None
+
+        if self._is_on_every_way(partial(is_read, is_handed_on=False)):
+            return ()
+        is_handed_on = any(one.to for one in self.uses.get(key, ()))
+        if is_handed_on and self._is_on_every_way(partial(is_read, is_handed_on=True)):
+            return tuple(sorted(met))
+        return None
+
+    def is_on_every_way(self, access: Access) -> bool:
+        """Whether every way to the end leads over an access."""
+        return self._is_on_every_way(lambda node: any(one is access for one in self._of(node)))
+
+    def _is_on_every_way(self, is_met: Callable[[FlowNode], bool | None]) -> bool:
+        """Whether every way to the end leads over a place that is met; ``None``: one does not.
+
+        Of ways over HALT, at which somebody has to look, others may decide.
+        """
+        return self._leads_over(is_met, past_halts=True) or (
+            any(type(placed.statement) is ast.Halt for placed in self._routine.statements)
+            and self._leads_over(is_met, past_halts=False)
+        )
+
+    def _leads_over(self, is_met: Callable[[FlowNode], bool | None], *, past_halts: bool) -> bool:
         start, end = self._routine.ways.start, self._routine.ways.end
         seen = {start}
         todo = [start]
-        is_read = False
+        has_met = False
         while todo:
             node = todo.pop()
-            if node is end:
-                return False
-            uses = [access.use for access in self._of(node) if access.name.key == key]
-            if uses and not self._is_passed(node, key):
-                if uses[0] is not Use.READ:
-                    return False
-                is_read = True
+            met = is_met(node)
+            if met or (type(node.statement) is ast.Halt and not past_halts):
+                has_met |= bool(met)
                 continue
+            if met is None or node is end or type(node.statement) is ast.Return:
+                return False
             behind = self._routine.ways.after[node]
             todo.extend(after for after in behind if after not in seen)
             seen.update(behind)
-        return is_read
+        return has_met
 
     def _is_passed(self, node: FlowNode, key: str) -> bool:
         return node.statement is not None and any(

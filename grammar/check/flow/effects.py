@@ -1,8 +1,8 @@
 """Effects across the files of a project: what one file does and another relies on.
 
-An interrupt is declared here and switched on there, an output is set here and reset there, a
-parameter is read without a guard here and left out there. Each file gives its `Effects`, in its
-check; `of_project` puts those of all files together.
+An interrupt is declared here and switched on there, an output is set here and reset there. Each
+file gives its `Effects`, in its check; `of_project` puts those of all files together. What becomes
+of arguments is in the `routine_summaries`.
 """
 
 from __future__ import annotations
@@ -10,16 +10,16 @@ from __future__ import annotations
 import operator
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
 from typing import Any
 
 from grammar.check.analysis.accesses import accesses, called_parameters, is_passed_on
 from grammar.check.analysis.constant_folding import constant, integer_of
 from grammar.check.analysis.context import Context
-from grammar.check.flow.data_flow import needed_parameters
+from grammar.check.flow.routine_summaries import Summaries, SummaryCollector
+from grammar.check.flow.routine_summaries import of_project as of_summaries
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.scopes import REST
-from grammar.semantics.symbols import Kind, RoutineSymbol, SignalSymbol
+from grammar.semantics.symbols import SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain, root_variable, without_parentheses
 from support.lazy_dataclass import dataclass
@@ -35,28 +35,14 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
-    """A call that leaves the ``index``-th parameter of a routine out, which counts from 0.
-
-    ``routine`` is the path of its file and its name in upper case.
-    """
-
-    path: str
-    region: Region
-    routine: tuple[str, str]
-    index: int
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
 class Effects:
     """What the routines of a file do that others may rely on.
 
     ``changed`` are the names, with a known index as in ``$FLAG[3]``, of all that is assigned to or
     passed on; ``reset`` those that may become FALSE. ``switched_on`` has numbers of interrupts, and
-    ``""`` where all or unknown ones are meant. ``needed`` are the parameters, by file and routine,
-    that are read without a guard. ``literals`` are the variables that no file at hand declares, in
-    upper case, each beside a literal that it is compared with or receives, by the kind of that.
+    ``""`` where all or unknown ones are meant. ``literals`` are the variables that no file at hand
+    declares, in upper case, each beside a literal that it is compared with or receives, by the kind
+    of that. ``summaries`` are those of its routines.
     """
 
     interrupts: tuple[Place, ...] = ()
@@ -65,9 +51,8 @@ class Effects:
     reset: frozenset[str] = frozenset()
     waits: tuple[tuple[Place, frozenset[str]], ...] = ()
     changed: frozenset[str] = frozenset()
-    left_out: tuple[LeftOut, ...] = ()
-    needed: dict[tuple[str, str], tuple[int, ...]] = field(default_factory=dict)
     literals: tuple[tuple[str, str, Place], ...] = ()
+    summaries: Summaries | None = None
 
 
 NO_EFFECTS = Effects()
@@ -124,7 +109,7 @@ class _Collector:
         self._reset = set(unread.reset)
         self._waits: list[tuple[Place, frozenset[str]]] = []
         self._changed = set(unread.changed)
-        self._left_out: list[LeftOut] = []
+        self._summaries = SummaryCollector(context)
         self._literals: list[tuple[str, str, Place]] = []
 
     def collect(self) -> Effects:
@@ -134,16 +119,12 @@ class _Collector:
                 rule = _RULES.get(type(placed.statement))
                 if rule is not None:
                     rule(self, placed.statement)
+            self._summaries.routine(routine)
         for node in context.types if context.routines else ():
             if type(node) is ast.Call:
                 self._call(node)
             elif type(node) is ast.Binary and node.operator in ("==", "<>"):
                 self._literal(node.left, node.right)
-        needed = {
-            (context.module.path, routine.node.name.key): indices
-            for routine in context.routines
-            if routine.node.parameters and (indices := needed_parameters(context, routine))
-        }
         return Effects(
             tuple(self._interrupts),
             frozenset(self._on),
@@ -151,9 +132,8 @@ class _Collector:
             frozenset(self._reset),
             tuple(self._waits),
             frozenset(self._changed),
-            tuple(self._left_out),
-            needed,
             tuple(self._literals),
+            self._summaries.made(),
         )
 
     def _place(self, node: ast.Node, what: str) -> Place:
@@ -300,16 +280,7 @@ class _Collector:
             self._reset.add(key)  # PULSE, and what a routine may do with it
             if key and is_passed_on(argument, index, known):
                 self._changed.add(key)
-        if found is None or found.module is None or not isinstance(found.symbol, RoutineSymbol):
-            return
-        if found.symbol.kind is Kind.EXTERNAL:
-            return
-        source = self._context.source
-        for index, parameter in enumerate(found.symbol.parameters):
-            if index >= len(node.arguments) or node.arguments[index] is None:
-                routine = found.module.path, found.symbol.key
-                region = Region.of(source, node.span)
-                self._left_out.append(LeftOut(source.path, region, routine, index, parameter.name))
+        self._summaries.call(node)
 
 
 def _members(node: ast.Expression) -> list[str]:
@@ -354,8 +325,8 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
     reset = frozenset[str]().union(*(one.reset for one in files))
     changed = frozenset[str]().union(*(one.changed for one in files))
-    needed = {routine: some for one in files for routine, some in one.needed.items()}
     yield from _of_two_kinds(files)
+    yield from of_summaries([one.summaries for one in files if one.summaries])
     for one in files:
         if "" not in switched_on:
             yield from _never_on(one.interrupts, switched_on)
@@ -365,9 +336,6 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
             if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"
                 yield diagnose("never-fulfilled", place.path, place.region, message)
-        for call in one.left_out:
-            if call.index in needed.get(call.routine, ()):
-                yield _left_out(call)
 
 
 def _of_two_kinds(files: Iterable[Effects]) -> Iterator[Diagnostic]:
@@ -403,10 +371,3 @@ def _never_reset(outputs: Iterable[Place], reset: frozenset[str]) -> Iterator[Di
         if key not in reset and shown.upper() not in reset:
             message = f"{shown} is set here and never reset"
             yield diagnose("output-never-reset", place.path, place.region, message)
-
-
-def _left_out(call: LeftOut) -> Diagnostic:
-    path, routine = call.routine
-    message = f"{call.name} is left out, and {routine} reads it"
-    reason = f"{path.rpartition('/')[2]} does not ask VARSTATE first"
-    return diagnose("argument-missing", call.path, call.region, message, reason=reason)

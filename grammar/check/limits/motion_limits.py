@@ -9,6 +9,7 @@ warnings.
 from __future__ import annotations
 
 from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Bound
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.semantics.scopes import Found
 from grammar.syntax import ast
@@ -41,12 +42,15 @@ def _judge(
     shown: str,
     limits: tuple[float, float, str] | None,
 ) -> None:
-    value = None if limits is None else constant(checker.context, node)
-    if limits is None or isinstance(value, bool | str) or value is None:
+    if limits is None:
         return
     low, high, reason = limits
-    if not low <= value <= high:
-        message = f"{shown} must be between {low:g} and {high:g}"
+    message = f"{shown} must be between {low:g} and {high:g}"
+    value = constant(checker.context, node)
+    if value is None:
+        bound = Bound("invalid-system-value", f"assigns it, and {message}", low, high)
+        checker.context.note_bound(node, bound)
+    elif not isinstance(value, bool | str) and not low <= value <= high:
         rules = ("MOT-02", "MOT-04", "ARI-11")
         checker.report(
             "invalid-system-value",

@@ -120,15 +120,17 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     is_lacking = undeclared_names.lacks_data_list(project, module, resolution)
     context = Context(project, module, source, resolution, System.load(), is_lacking=is_lacking)
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
+    findings = Findings(
+        tuple(found),
+        undeclared_names.references(context),
+        effects(context),
+        undeclared_names.uses(context),
+        tuple(undeclared_names.loose_constants(context)),
+    )
+    context.flows.clear()  # they refer to the context: a cycle would keep the tree
     return Checked(
         module,
-        Findings(
-            tuple(found),
-            undeclared_names.references(context),
-            effects(context),
-            undeclared_names.uses(context),
-            tuple(undeclared_names.loose_constants(context)),
-        ),
+        findings,
         context.resolution,
         context.types,
         context.enumerations,

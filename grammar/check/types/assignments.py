@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Bound
 from grammar.check.analysis.signal_direction import side_of
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.check.limits.motion_limits import check_motion_limit
@@ -58,9 +59,10 @@ def _check_limits(
     checker: TypeChecker, variable: SystemVariable, limits: tuple[int, int], node: ast.Assignment
 ) -> None:
     value = constant(checker.context, node.value)
-    if type(value) not in (int, float) or isinstance(value, str) or value is None:
-        return
     low, high = limits
-    if not low <= value <= high:
-        message = f"{variable.name} must be between {low} and {high}"
+    message = f"{variable.name} must be between {low} and {high}"
+    if value is None:
+        bound = Bound("invalid-system-value", f"assigns it, and {message}", low, high)
+        checker.context.note_bound(node.value, bound)
+    elif isinstance(value, int | float) and type(value) is not bool and not low <= value <= high:
         checker.report("invalid-system-value", node.value, message)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
-from grammar.check.analysis.constant_folding import integer_of
-from grammar.check.analysis.context import Context
+from grammar.check.analysis.constant_folding import constant, integer_of
+from grammar.check.analysis.context import Bound, Context
 from grammar.check.analysis.type_checker import Rule, TypeChecker
 from grammar.check.types.aggregates import aggregate
 from grammar.check.types.calls import call
@@ -105,6 +106,11 @@ def _check_range(checker: TypeChecker, node: ast.Subscript, array: Array) -> Non
     """
     for size, given in zip(array.sizes, node.indices, strict=True):
         place = integer_of(checker.context, given)
+        if given is not None and place is None:
+            most = math.inf if size is None else size
+            reach = "" if size is None else f" to {size}"
+            bound = Bound("index-out-of-range", f"uses it as an index, from 1{reach}", 1, most)
+            checker.context.note_bound(given, bound)
         if given is None or place is None or (place >= 1 and (size is None or place <= size)):
             continue
         root = root_variable(node)
@@ -165,6 +171,8 @@ def _binary(checker: TypeChecker, node: ast.Binary, _expected: Type) -> Type:
 def _joined(checker: TypeChecker, node: ast.Binary, left: Type) -> Type:
     operator = node.operator
     right = checker.infer(node.right)
+    if operator == "/":
+        _check_divisor(checker, node.right)
     if left is INT is right and operator in "+-*/":
         return INT
     typed = binary(operator, left, right)
@@ -185,6 +193,14 @@ def _joined(checker: TypeChecker, node: ast.Binary, left: Type) -> Type:
         checker.settle(node.right, left)
         checker.settle(node.left, right)
     return typed.type
+
+
+def _check_divisor(checker: TypeChecker, node: ast.Expression) -> None:
+    value = constant(checker.context, node)
+    if value is None:
+        checker.context.note_bound(node, Bound("division-by-zero", "divides by it"))
+    elif value == 0 and type(value) is not bool:
+        checker.report("division-by-zero", node, "the divisor is zero")
 
 
 def _mixed(checker: TypeChecker, node: ast.Binary, made: Type, before: int) -> Type:

@@ -205,13 +205,21 @@ def test_outputs_of_a_project(agrees: Agrees, other: str, mark: str) -> None:
         ("IF $IN[1] THEN\n$OUT[1] = N > 0\nENDIF", ""),
         ("N = 1\n$OUT[1] = N > 0", ""),
         ('IF VARSTATE("N") == #INITIALIZED THEN\n$OUT[1] = N > 0\nENDIF', ""),
-        ("OTHER(N)", ""),
+        ("IF $IN[1] THEN\nRETURN\nENDIF\n$OUT[1] = N > 0", ""),
+        ("IF $IN[1] THEN\nHALT\nENDIF\n$OUT[1] = N > 0", ";> KRL302?"),
+        ("SWITCH M\nCASE 1\n$OUT[1] = N > 0\nDEFAULT\nHALT\nENDSWITCH", ";> KRL302?"),
+        ("OTHER(N)", ";> KRL302?"),
+        ("IF $IN[1] THEN\nOTHER(N)\nELSE\n$OUT[1] = N > 0\nENDIF", ";> KRL302?"),
+        ("IF $IN[1] THEN\nOTHER(N)\nENDIF", ""),
+        ("ASKS(N)", ""),
     ],
 )
 def test_arguments_left_out(agrees: Agrees, body: str, mark: str) -> None:
     """An argument may be left out where the routine can do without it [SCO-13]."""
     called = f"DEF CALLED(M:IN, N:IN)\nDECL INT M, N\n{body}\n$OUT[2] = M > 0\nEND\n"
     text = "DEF OTHER(N:IN)\nDECL INT N\n$OUT[3] = N > 0\nEND\n"
+    text += "GLOBAL DEF ASKS(N:IN)\nDECL INT N\n"
+    text += 'IF VARSTATE("N") == #INITIALIZED THEN\n$OUT[3] = N > 0\nENDIF\nEND\n'
     files = {"NEG.src": f"DEF NEG()\nCALLED(1) {mark}\nCALLED(1, 2)\nEND\n", "CALLED.src": called}
     agrees({**files, "OTHER.src": text})
 

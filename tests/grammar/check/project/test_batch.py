@@ -115,6 +115,18 @@ def test_a_declaration_that_changes_reaches_those_who_use_it(tmp_path: Path) -> 
     assert 1 == changed.unchanged
 
 
+def test_what_a_routine_does_reaches_callers_that_are_kept(tmp_path: Path) -> None:
+    """A call is judged by the statements of the routine, without checking its file again."""
+    caller = "DEF CALLER()\n$ANOUT[1] = SHARE(0)\nEND\n"
+    share = "DEFFCT REAL SHARE(N:IN)\nREAL N\nRETURN 1.0 {} N\nENDFCT\n"
+    root = lay(tmp_path / "root", CALLER__src=caller, SHARE__src=share.format("*"))
+    assert [] == codes(check(root, cache=tmp_path))
+    lay(root, SHARE__src=share.format("/"))
+    changed = check(root, cache=tmp_path)
+    assert [("CALLER.src", 2, "KRL416")] == codes(changed)
+    assert 1 == changed.unchanged
+
+
 @pytest.mark.parametrize(("seed", "jobs"), [(0, 1), (1, 1), (2, 1), (3, 2)])
 def test_what_is_kept_is_what_would_be_found(
     tmp_path: Path, seed: int, jobs: int, monkeypatch: pytest.MonkeyPatch

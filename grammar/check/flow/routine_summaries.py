@@ -1,0 +1,288 @@
+"""Summaries of routines: what a call can rely on without the statements of the called routine.
+
+Each routine is summarised once, when its file is checked. The summary says what becomes of its
+parameters: whether one is read before it gets a value, whether it gets one, which values it may
+have; and whether the routine returns. If that depends on a routine that is called in turn, it is a
+Horn clause: a fact about one routine follows from facts about others. `of_project` joins the
+clauses of all files to their least fixed point, however the routines call one another, and then
+reports the suspects of each file: findings that are true if facts about called routines are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+
+from grammar.check.analysis.accesses import Parameter, Use, address_of, called_parameters
+from grammar.check.analysis.constant_folding import constant
+from grammar.check.analysis.context import Bound, Context, RoutineBody
+from grammar.check.analysis.statement_heads import head
+from grammar.check.flow.data_flow import DataFlow, data_flow
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.syntax import ast
+from grammar.syntax.walk import BODIES, bodies
+from support.lazy_dataclass import dataclass
+
+#: Something about a parameter, or about the routine itself if the index is -1.
+Fact = tuple[str, str, str, int]
+
+#: Every way through the routine reads the parameter before it gets a value.
+READS = "reads"
+#: The routine may assign to the parameter.
+WRITES = "writes"
+#: The routine never returns.
+ENDLESS = "endless"
+
+_ITSELF = -1
+#: Behind these statements the next one may not come, and all ways to the end may lead nowhere.
+_TURNING = frozenset({ast.Loop, ast.While, ast.Repeat, ast.Goto})
+#: These leave a routine, or pass by statements of it.
+_LEAVING = frozenset({ast.Return, ast.Goto})
+
+
+@dataclass(frozen=True, slots=True)
+class Suspect:
+    """A finding that is true if all facts of ``holds`` are and none of ``lacks`` is."""
+
+    slug: str
+    region: Region
+    message: str
+    reason: str
+    holds: tuple[Fact, ...] = ()
+    lacks: tuple[Fact, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Summaries:
+    """What the routines of the file at ``path`` do with their parameters, and its suspects.
+
+    Of each clause the first fact follows if all others are true. ``bounds`` are the values that a
+    parameter may have, ``handed_on`` pairs of a parameter and the one of a called routine that gets
+    its value. ``constants`` are passed for a parameter in some call. ``has_resume``: something in
+    the file may leave any routine by RESUME.
+    """
+
+    path: str
+    clauses: tuple[tuple[Fact, tuple[Fact, ...]], ...] = ()
+    bounds: tuple[tuple[Parameter, Bound], ...] = ()
+    handed_on: tuple[tuple[Parameter, Parameter], ...] = ()
+    constants: tuple[tuple[Parameter, float, Region], ...] = ()
+    suspects: tuple[Suspect, ...] = ()
+    has_resume: bool = False
+
+
+class SummaryCollector:
+    """Summarises the routines of a file one after the other."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._path = context.module.path
+        self._clauses: dict[tuple[Fact, tuple[Fact, ...]], None] = {}
+        self._bounds: list[tuple[Parameter, Bound]] = []
+        self._handed_on: list[tuple[Parameter, Parameter]] = []
+        self._constants: dict[tuple[Parameter, float], Region] = {}
+        self._suspects: list[Suspect] = []
+        self._has_resume = "RESUME" in (context.module.words or ())
+
+    def made(self) -> Summaries | None:
+        """Return what was collected."""
+        parts = self._clauses, self._bounds, self._handed_on, self._constants, self._suspects
+        if not any(parts) and not self._has_resume:
+            return None
+        return Summaries(
+            self._path,
+            tuple(self._clauses),
+            tuple(self._bounds),
+            tuple(self._handed_on),
+            tuple((to, value, region) for (to, value), region in self._constants.items()),
+            tuple(self._suspects),
+            self._has_resume,
+        )
+
+    def routine(self, routine: RoutineBody) -> None:
+        """Summarise a routine, and find the suspects in it."""
+        flow = data_flow(self._context, routine)
+        can_try = any(type(one.statement) is ast.OnErrorProceed for one in routine.statements)
+        for index, parameter in enumerate(routine.node.parameters):
+            at = self._path, routine.node.name.key, index
+            if parameter.name.key in flow.parameters:
+                self._parameter(flow, parameter.name.key, at, can_try=can_try)
+            else:  # texts or lines that cannot be read may name it
+                self._clauses[(WRITES, *at), ()] = None
+        if not can_try:
+            self._early(flow)
+        self._end(routine)
+
+    def call(self, node: ast.Call) -> None:
+        """Note the arguments that a call leaves out, and those that are known numbers."""
+        context = self._context
+        found = context.found(node.name)
+        address = address_of(found)
+        if address is None:
+            return
+        for index, parameter in enumerate(called_parameters(found)):
+            to = *address, index
+            argument = node.arguments[index] if index < len(node.arguments) else None
+            if argument is None:
+                message = f"{parameter.name} is left out, and {address[1]} reads it"
+                reason = f"{address[0].rpartition('/')[2]} does not ask VARSTATE first"
+                region = Region.of(context.source, node.span)
+                holds = ((READS, *to),)
+                self._suspects.append(Suspect("argument-missing", region, message, reason, holds))
+                continue
+            value = constant(context, argument)
+            if isinstance(value, int | float) and type(value) is not bool:
+                self._constants.setdefault((to, value), Region.of(context.source, argument.span))
+
+    # ------------------------------------------------------------------------- parameters
+
+    def _parameter(self, flow: DataFlow, key: str, at: Parameter, *, can_try: bool) -> None:
+        read = None if can_try else flow.reads(key)
+        if read is not None:
+            self._clauses[(READS, *at), tuple((READS, *one) for one in read)] = None
+        uses = flow.uses.get(key, ())
+        written = [one.to for one in uses if one.use is not Use.READ]
+        for to in (None,) if None in written else written:
+            self._clauses[(WRITES, *at), ((WRITES, *to),) if to else ()] = None
+        for use in () if written else uses:
+            bound = self._context.bounds.get(use.name)
+            is_whole = use.to and type(use.place) is ast.Variable
+            if (bound or is_whole) and flow.is_on_every_way(use):
+                if bound:
+                    self._bounds.append((at, bound))
+                elif use.to:
+                    self._handed_on.append((at, use.to))
+
+    # -------------------------------------------------------------------------- variables
+
+    def _early(self, flow: DataFlow) -> None:
+        """Variables without a value that a called routine reads, or gives no value."""
+        passed: dict[str, set[Parameter]] = {}
+        for key in flow.variables & flow.uses.keys():
+            for one in flow.uses[key]:
+                if one.to and one.use is Use.PASSED:
+                    passed.setdefault(key, set()).add(one.to)
+        early = {access.name.key for access in flow.early(frozenset(passed))}
+        for access in flow.early(frozenset(passed), is_passed_open=True):
+            name, to = access.name, access.to
+            others = sorted(one for one in passed[name.key] if one != to)
+            lacks = tuple([(WRITES, *parameter) for parameter in others])
+            region = Region.of(self._context.source, name.span)
+            message = f"{name.text} has no value yet"
+            if access.use is Use.PASSED and to:
+                reason = f"{to[1]} reads it before it assigns to it"
+                self._suspects.append(
+                    Suspect("read-too-early", region, message, reason, ((READS, *to),), lacks)
+                )
+            elif name.key not in early:
+                names = list(dict.fromkeys(one[1] for one in others))
+                reason = f"{' and '.join(names)} give{'s' * (len(names) == 1)} it none"
+                lacks += tuple([(READS, *parameter) for parameter in others])  # reported there
+                self._suspects.append(Suspect("read-too-early", region, message, reason, (), lacks))
+
+    # -------------------------------------------------------------------------- the end
+
+    def _end(self, routine: RoutineBody) -> None:
+        """Whether the routine returns, and what stands behind the calls of others."""
+        context = self._context
+        self._has_resume |= any(type(one.statement) is ast.Resume for one in routine.statements)
+        if context.module.words or context.is_cut(routine):
+            return
+        kinds = {type(one.statement) for one in routine.statements}
+        this = ENDLESS, self._path, routine.node.name.key, _ITSELF
+        if kinds & _TURNING and not _returns(routine):
+            self._clauses[this, ()] = None
+            return
+        if ast.CallStatement not in kinds:
+            return
+        lists = [routine.node.body]
+        lists += (
+            body
+            for one in routine.statements
+            if type(one.statement) in BODIES
+            for body in bodies(one.statement)
+        )
+        seen = set()
+        for number, body in enumerate(lists):
+            for statement, following in pairwise((*body, None)):
+                if type(statement) is not ast.CallStatement:
+                    continue
+                called = address_of(context.found(statement.call.name))
+                if called is None or called in seen:
+                    continue
+                fact = ENDLESS, *called, _ITSELF
+                if number == 0 and not kinds & _LEAVING:
+                    self._clauses[this, (fact,)] = None
+                if following is not None and type(following) is not ast.Label:
+                    seen.add(called)
+                    message = f"this is never reached: {called[1]} does not return"
+                    where = head(context.source, following)
+                    region = Region.of(context.source, where)
+                    self._suspects.append(Suspect("unreachable", region, message, "", (fact,)))
+
+
+def _returns(routine: RoutineBody) -> bool:
+    end = routine.ways.end
+    return any(node is end or type(node.statement) is ast.Return for node in routine.reached)
+
+
+# ------------------------------------------------------------------------------------- a project
+
+
+def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
+    """The suspects of all files that are true, and the arguments that their routines cannot use."""
+    facts = _facts(clause for one in files for clause in one.clauses)
+    if any(one.has_resume for one in files):
+        facts = {fact for fact in facts if fact[0] != ENDLESS}
+    bounds = _bounds(files)
+    for one in files:
+        for suspect in one.suspects:
+            if facts.issuperset(suspect.holds) and facts.isdisjoint(suspect.lacks):
+                yield diagnose(
+                    suspect.slug, one.path, suspect.region, suspect.message, reason=suspect.reason
+                )
+        for to, value, region in one.constants:
+            for bound in bounds.get(to, ()):
+                if not bound.accepts(value):
+                    message = f"{to[1]} {bound.use}: {value:g} is none of these"
+                    yield diagnose(bound.slug, one.path, region, message, severity="warning")
+
+
+def _facts(clauses: Iterable[tuple[Fact, tuple[Fact, ...]]]) -> set[Fact]:
+    """The least fixed point of some clauses."""
+    found: set[Fact] = set()
+    waiting: dict[Fact, list[tuple[Fact, set[Fact]]]] = {}
+    todo: list[Fact] = []
+    for fact, premises in clauses:
+        lacking = set(premises)
+        for premise in premises:
+            waiting.setdefault(premise, []).append((fact, lacking))
+        if not premises:
+            todo.append(fact)
+    while todo:
+        fact = todo.pop()
+        if fact not in found:
+            found.add(fact)
+            for head_, lacking in waiting.get(fact, ()):
+                lacking.discard(fact)
+                if not lacking:
+                    todo.append(head_)
+    return found
+
+
+def _bounds(files: Iterable[Summaries]) -> dict[Parameter, dict[Bound, None]]:
+    """The values that parameters may have, from all the routines that they are handed on to."""
+    found: dict[Parameter, dict[Bound, None]] = {}
+    giving: dict[Parameter, list[Parameter]] = {}
+    todo: list[tuple[Parameter, Bound]] = []
+    for one in files:
+        todo += one.bounds
+        for parameter, to in one.handed_on:
+            giving.setdefault(to, []).append(parameter)
+    while todo:
+        parameter, bound = todo.pop()
+        known = found.setdefault(parameter, {})
+        if bound not in known:
+            known[bound] = None
+            todo += ((one, bound) for one in giving.get(parameter, ()))
+    return found
