@@ -1,13 +1,13 @@
-"""Stand-ins for what an incomplete backup calls and does not hold.
+"""Stand-ins for what an incomplete backup uses and does not contain.
 
 ==================== ===============================================================================
-module               what it is
+module               contents
 ==================== ===============================================================================
-`unreadable_lines`   a file with syntax errors, as a program without the lines that are wrong
-`library`            routines and data that controllers and packages bring along, written by us
-`unset_data`         values for data that is declared, read and never set
-`uses`               what the uses of an undeclared name imply about its type
-`signatures`         declarations for such names, as KRL
-`completion`         a project with its stand-ins, and a list of them
+`unreadable_lines`   runs a file with syntax errors without the wrong lines
+`library`            our versions of routines and data that controllers and packages provide
+`unset_data`         values for data that are declared and read, but never set
+`uses`               infers the type of an undeclared name from its uses
+`signatures`         writes declarations for such names in KRL
+`completion`         completes a project with stand-ins, and lists them
 ==================== ===============================================================================
 """

@@ -1,8 +1,8 @@
-"""A project with stand-ins for what it uses and does not hold.
+"""Completes a project with stand-ins for everything that it uses and does not contain.
 
-What a file of the project declares always counts: a stand-in is made only for a name that nothing
-declares. What `library` has is taken from there; for the rest a declaration is made of how the
-names are used. Stand-ins are files like others, so executors and checks know nothing of them.
+Files of the project have priority: a stand-in is made only for a name that nothing declares. Names
+in `library` are taken from there; for other names a declaration is derived from their uses.
+Stand-ins are ordinary files, so executors and checks need not know about them.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class StandIn:
 
 @dataclass(frozen=True, slots=True)
 class Completed:
-    """A project with its stand-ins, and the texts of these."""
+    """A project with its stand-ins, and their texts."""
 
     project: Project
     sources: Sequence[Source]
@@ -84,7 +84,7 @@ class Completed:
 
 @dataclass(slots=True)
 class _Wanted:
-    """Names that nothing declares, in upper case, with the places of their first uses."""
+    """The names that nothing declares, in upper case, with the places of their first uses."""
 
     data: _Places = field(default_factory=dict)
     routines: _Places = field(default_factory=dict)
@@ -94,11 +94,11 @@ class _Wanted:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is wanted."""
+        """Whether there are no such names."""
         return not (self.data or self.routines or self.types or self.defaults)
 
     def take(self, project: Project, module: Module, syntax: ast.Module) -> None:
-        """What one file wants."""
+        """Add the undeclared names of one file."""
         resolution = resolve(project, module)
         scalars = _scalars(syntax)
         names = {
@@ -133,9 +133,10 @@ class _Wanted:
 
 
 def _scalars(syntax: ast.Module) -> set[str]:
-    """Names that count a loop or are given a number: they are no arrays or structures.
+    """Return the names that count a loop or are assigned a number, so they are scalars.
 
-    A $config.dat has such with names that programs like to use themselves, I and J for instance.
+    A $config.dat declares names that programs often use for their own scalars, I and J for
+    instance.
     """
     found = set()
     for node in walk(syntax):
@@ -151,7 +152,7 @@ def _scalars(syntax: ast.Module) -> set[str]:
 
 
 def _is_of_config(found: Found) -> bool:
-    """Whether it is data that a $config.dat declares, and this project has none that does."""
+    """Return whether this denotes data of a $config.dat that the project does not have."""
     if not isinstance(found.scope, SystemScope) or found.symbol.kind is not Kind.VARIABLE:
         return False
     name = found.symbol.name
@@ -161,7 +162,7 @@ def _is_of_config(found: Found) -> bool:
 def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
     """Add stand-ins to a project; ``sources`` are the texts of its files by path.
 
-    A project that lacks nothing comes back as it is.
+    A project that lacks nothing is returned unchanged.
     """
     unset = unset_data(project, sources)
     wanted = _Wanted()
@@ -225,7 +226,7 @@ def _stand_in(
 
 
 class _Making:
-    """Stand-ins in the making: each round knows the types that the last one has found."""
+    """Creates stand-ins in rounds: each round knows the types that the previous one has found."""
 
     def __init__(self, project: Project, wanted: _Wanted, places: Places) -> None:
         self._original = project
@@ -242,12 +243,12 @@ class _Making:
         self.project = self._linked()
 
     def sources(self) -> Iterator[Source]:
-        """The stand-ins as files."""
+        """Yield the stand-ins as files."""
         for path, text in sorted(self._texts.items()):
             yield Source(text, path)
 
     def improve(self, sources: Mapping[str, Source], *, is_last: bool) -> bool:
-        """Make declarations of what is known now; whether they differ from those before."""
+        """Write declarations from what is known now; return whether another round is needed."""
         library, wanted = load_library(), self._wanted
         checked = [
             typed_module(self.project, module, sources[module.path]) for module in wanted.modules
@@ -291,7 +292,7 @@ class _Making:
         types: Sequence[str],
         is_apart: Callable[[Module, str], bool],
     ) -> Uses:
-        """The uses of what neither a file nor the library has."""
+        """Return the uses of names that neither a file nor the library declares."""
         library, wanted = load_library(), self._wanted
         uses = Uses(
             self.project,
@@ -306,11 +307,11 @@ class _Making:
         return uses
 
     def _has_no_list(self, module: Module, _name: str) -> bool:
-        """Whether the data list of a program is missing, which may have declared anything."""
+        """Return whether the data list of a program is missing; it may have declared anything."""
         return module.suffix != ".dat" and self._original.data_of(module) is None
 
     def _add_own_lists(self, signatures: Signatures, uses: Uses, *, is_last: bool) -> None:
-        """Data lists in place of missing ones, with what would not agree in one list for all."""
+        """Add data lists for missing ones, with the variables whose types differ by program."""
         lines: dict[str, list[str]] = {}
         for (path, name), use in uses.apart.items():
             signatures.owner = path
@@ -324,7 +325,7 @@ class _Making:
     # ------------------------------------------------------------------------- the library
 
     def _add_types_of_packages(self) -> None:
-        """The types of what routines of packages take and give, where nothing declares them."""
+        """Add the undeclared types of parameters and results of package routines."""
         packages = load_packages()
         for name, place in self._wanted.routines.items():
             known = packages.routines.get(name)
@@ -335,7 +336,7 @@ class _Making:
                     self._wanted.types.setdefault(type_, place)
 
     def _add_library(self) -> None:
-        """Routines of the library that are wanted, and what they want in turn."""
+        """Add the library routines that are used, and everything that they use."""
         library, wanted = load_library(), self._wanted
         known: set[str] = set()
         while known != set(wanted.routines):
@@ -372,7 +373,7 @@ class _Making:
         return "\n".join([f"DEFDAT {_LIST} PUBLIC", *texts, *lines, "ENDDAT", ""])
 
     def _value(self, datum: Datum) -> str:
-        """The value of a datum of the library, with the members that its type has here."""
+        """Return the value of a library variable, with the members that its type has here."""
         type_ = self._type(datum.type)
         if datum.members is None or not isinstance(type_, Structure):
             return datum.value
@@ -424,7 +425,7 @@ def _ambiguous(uses: Uses) -> Iterator[tuple[str, str]]:
 
 
 def _sort(use: DataUse) -> Iterator[str]:
-    """What sort of variable it is where that is certain; sorts differ only where types must."""
+    """Yield the kind of type of a variable, if it is certain."""
     if use.is_text:
         yield "text"
         return
@@ -449,7 +450,7 @@ def _data_path() -> str:
 
 
 def summary(stand_ins: Sequence[StandIn]) -> str:
-    """One line: what stood in, by where it came from, each with its first use."""
+    """Return one line that lists the stand-ins by origin, each with its first use."""
     parts = []
     for origin, words in _ORIGINS.items():
         some = [one for one in stand_ins if one.origin == origin]

@@ -1,9 +1,9 @@
-"""The libraries of controllers and packages, as KRL of our own in ``library/``.
+"""The library: our own KRL versions of routines and data of controllers and packages.
 
-A backup often lacks the routines behind inline forms, and $config.dat with what they need. They are
-written from the rules and from public manuals. Each routine and each declaration stands alone, so
-that only what a backup lacks is taken; the routines of spline forms are those of generated cells.
-Types and variables of option packages are those of `grammar.semantics.packages`.
+A backup often lacks the routines behind inline forms, and the data of $config.dat that they need.
+The files in ``library/`` are written from the rules and from public manuals. Each routine and each
+declaration is independent, so only those that a backup lacks are used. Types and variables of
+option packages are in `grammar.semantics.packages`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _SHARED = ("bas_spline.src", "ir_stopm.src")
 
 @dataclass(frozen=True, slots=True)
 class Datum:
-    """A variable: the name of its type, and its value, of an aggregate by its members."""
+    """A variable: the name of its type, and its value; an aggregate by its members."""
 
     type: str
     value: str
@@ -33,7 +33,7 @@ class Datum:
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """By name in upper case: texts of routines and of types, and variables with their values."""
+    """Texts of routines and types, and variables with their values, by name in upper case."""
 
     routines: Mapping[str, str]
     types: Mapping[str, str]
@@ -71,7 +71,7 @@ def _datum(text: str, type_: str, value: ast.Expression | None) -> Datum:
 
 @cache
 def load_library() -> Library:
-    """The library that belongs to this package."""
+    """Return the library of this package."""
     reader = _Reader()
     for file in _files():
         reader.take(file.read_text(encoding="utf-8"))

@@ -1,8 +1,9 @@
-"""Results for functions that come to their ends without RETURN [CTL-09].
+"""Results for functions that reach their end without RETURN [CTL-09].
 
-On a controller that stops the program. Where things stand in, the RETURN may be a line that is
-missing or was skipped. So two statements stand at the end of each function: a RETURN without a
-value, which fails there, is reported and skipped, and one with the first value of its type.
+A controller stops the program then. In an incomplete backup the RETURN may be in a line that is
+missing or was skipped. Therefore two statements are added to the end of each function: a RETURN
+without a value, which fails, is reported and skipped, and a RETURN with the first value of its
+type.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from grammar.syntax import ast
 
 
 def with_returns(project: Project) -> Project:
-    """A project whose functions all end with a RETURN, where their results can be written."""
+    """Return the project with a RETURN at the end of all functions whose results can be written."""
     files = []
     for module in project.modules:
         if module.syntax is None or not isinstance(module.syntax.content, ast.Program):

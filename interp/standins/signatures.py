@@ -1,12 +1,13 @@
-"""Declarations for names that nothing declares, derived from their uses.
+"""Declarations for undeclared names, derived from their uses.
 
-A routine becomes its signature alone: it does nothing, gives variables passed to it a value where
-they have none, and returns a default. With the defaults a program continues: TRUE for
-a function that reports whether something has worked, but what ends a loop where one asks for it, as
-for a truth value that nothing assigns; 0 for a function's numbers; for a number that nothing
-assigns the first that a SWITCH asks for, else 1; for a point a place of its own that the arm
-reaches. What is only waited for, and never assigned, is an input; what
-PULSE sets is an output.
+A routine consists of its signature: it does nothing, assigns a default to arguments without a
+value, and returns a default. The defaults let a program continue:
+
+- a function that reports success returns TRUE, and other numeric functions return 0;
+- a truth value that nothing assigns ends the loops that test it;
+- a number that nothing assigns is the first value that a SWITCH compares it with, otherwise 1;
+- a point has a place of its own within reach of the arm;
+- a variable that is only waited for is an input, and one that PULSE sets is an output.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ _NO_CONSTANT: Final = "NOT_KNOWN"
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """A type as it is written, and a value of it; ``is_text``: CHAR in a row."""
+    """A type as it is written, and a value of it; ``is_text`` for a sequence of CHAR."""
 
     name: str
     value: str
@@ -100,10 +101,7 @@ class Signatures:
     # ------------------------------------------------------------------------- data
 
     def data(self, name: str, use: DataUse, *, is_last: bool, access: str = "GLOBAL ") -> list[str]:
-        """The lines that declare a variable, none where its type is unknown.
-
-        When ``is_last``, a variable of which nothing is known is an INT, and arrays have values.
-        """
+        """Return the lines that declare a variable; none if its type is unknown."""
         kind = self._kind(name, use)
         if kind is None and not is_last:
             return []
@@ -171,7 +169,7 @@ class Signatures:
         return self._number(use) if numbers else None
 
     def _made(self, name: str, kind: str) -> str:
-        """The name of a type that is made for what has a name: another one for each owner."""
+        """Return the name of the type that is created for a variable; it differs by owner."""
         if self.owner or len(name) > _LONGEST:
             digest = crc32(f"{self.owner} {name}".encode()) % 0x10000
             name = f"{name[: _LONGEST - 4]}{digest:04X}"
@@ -234,15 +232,16 @@ class Signatures:
         return sizes
 
     def value(self, type_: Type, name: str) -> str:
-        """A value for data that is set outside; numbers are 1, which divides and is an index."""
+        """Return a value for data set outside; numbers are 1, a valid divisor and index."""
         if type_ in (INT, REAL):
             return "1" if type_ == INT else "1.0"
         return self._default(type_, name)
 
     def _default(self, type_: Type, name: str, *, is_target: bool = False) -> str:
-        """A value of a type, as it is written in a data list; ``name`` is what has it.
+        """Return a value of a type as it is written in a data list; ``name`` is its variable.
 
-        Points have places. A FRAME is one where it ``is_target`` of motions, else a base or offset.
+        Points have places of their own. A FRAME is a point if it ``is_target`` of motions,
+        otherwise a base or an offset.
         """
         match type_:
             case Enumeration(constants=constants):
@@ -279,7 +278,7 @@ class Signatures:
     # ------------------------------------------------------------------------- routines
 
     def routine(self, name: str, use: RoutineUse, known: PackageRoutine | None = None) -> str:
-        """The text of a routine, its signature alone; ``known`` is what a package says of it."""
+        """Return the text of a routine without a body; ``known`` is its signature in a package."""
         heads, declared, body = [], [], []
         parameters = () if known is None or known.has_more else known.parameters
         given_to = [*use.arguments, *([] for _ in parameters[len(use.arguments) :])]
@@ -326,14 +325,14 @@ class Signatures:
         return name in SCALARS or (bool(name) and self._find_type(name) is not None)
 
     def _result(self, name: str, known: PackageRoutine) -> _Kind:
-        """What a routine of a package gives back."""
+        """Return the result of a package routine."""
         found = SCALARS.get(known.result) or self._find_type(known.result)
         assert found is not None, "it was looked for"
         value = self._values.get(known.result)
         return _Kind(known.result, self._default(found, name) if value is None else value)
 
     def _parameter(self, name: str, given: Sequence[tuple[Type, bool]]) -> tuple[_Kind, bool, str]:
-        """The type of a parameter, whether it is passed :OUT, and the brackets of an array."""
+        """Return the type of a parameter, whether it is :OUT, and the brackets of an array."""
         use = DataUse(is_assigned=True)
         brackets = ""
         for type_, _ in given:

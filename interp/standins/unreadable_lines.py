@@ -1,11 +1,11 @@
-"""A file with syntax errors, as a program without the lines that cannot be read.
+"""Runs a file with syntax errors without the lines that cannot be read.
 
-A controller selects no such program. Offline most of it can be run all the same: a statement that
-cannot be read becomes a call of `UNREADABLE`, a routine that no file has and for which one stands
-in that does nothing, so that the trace shows when the line was passed; so does a condition, which
-counts as TRUE. A loop that counts is gone through once, and its head calls `COUNT`. A declaration
-that cannot be read is left out: stand-ins take its place. A file that begins without DEF gets one,
-and blanks and quotation marks of word processors are read as those of KRL.
+A controller does not select such a program, but offline most of it can run. A statement that cannot
+be read becomes a call of `UNREADABLE`, a routine that does nothing, so the trace shows when the
+line was passed. A condition that cannot be read calls it, too, and counts as TRUE. The body of a
+FOR loop that cannot be read runs once; its first line calls `COUNT`. A declaration that cannot be
+read is left out and replaced by a stand-in. A file that begins without DEF gets one. Blanks and
+quotation marks of word processors are read as those of KRL.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ _LIKE_HEAD: Final = re.compile(r"\s*(?:GLOBAL\s+)?[DEF]\w{0,5}\s+[\w$]+\s*\(", r
 
 @dataclass(frozen=True, slots=True)
 class Readable:
-    """A file as it can be run, and where and why not all of it can be read, in words.
+    """A file in a form that can run, and the reasons why parts of it cannot be read.
 
-    ``source`` has a line for each line of the file, and one before them where a head had no room.
+    ``source`` has a line for each line of the file, and one more before them if a DEF had no room.
     """
 
     source: Source
@@ -62,7 +62,7 @@ class Readable:
 
 
 def readable(source: Source) -> Readable | None:
-    """A file that has syntax errors without the lines that cannot be read; or ``None``."""
+    """Return a file with syntax errors without its unreadable lines; ``None`` if impossible."""
     more = _with_head(Source(source.text.translate(_SIGNS), source.path))
     if more.text != source.text:
         failures = read_module(source.text, source.path)
@@ -78,7 +78,7 @@ def readable(source: Source) -> Readable | None:
 
 
 def _with_head(source: Source) -> Source:
-    """A file with a head in the last line before its first statement, if it has none."""
+    """Return the file with a DEF in the line before its first statement, if it has none."""
     lines = list(source.lines)
     first = next((number for number, line in enumerate(lines) if _first_word(line)), None)
     if first is None or _LIKE_HEAD.match(lines[first]):
@@ -116,7 +116,7 @@ def _without_lines(source: Source) -> Readable | None:
 
 
 def _put_calls(lines: list[str], left_out: Sequence[int], written: Source) -> None:
-    """Call `UNREADABLE` where a statement was left out, as far as a call can stand there."""
+    """Call `UNREADABLE` in place of omitted statements, where a call is allowed."""
     calls = {
         number: f"{UNREADABLE}() ;{written.line(number)}"
         for number in left_out

@@ -1,8 +1,9 @@
-"""Values for data that a project declares, reads and never sets: panel, PLC or a lost file set it.
+"""Values for data that a project declares and reads, but never sets.
 
-A data list may declare a variable without a value. Where a file of the project gives it one, in any
-way, nothing is done: when it is read too early is for the run to show. Else every run would end
-there, on a controller too, but for what somebody outside has written into it.
+A data list can declare a variable without a value, to be set at the panel, by a PLC, or in a file
+that is missing. If any file of the project sets the variable in any way, it is left as it is, so a
+read that comes too early is reported by the run. Otherwise every run would end at the first read;
+on a controller, too, unless somebody has set the value from outside.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class Unset:
     is_waited_for: bool
 
     def lines(self, value: MakeValue) -> Iterator[str]:
-        """The lines of a data list that give it values; none for what has no known size."""
+        """Yield the lines of a data list that assign the value; none if its size is unknown."""
         name = self.name.text
         if not isinstance(self.type, Array):
             yield f"{name}={'TRUE' if self.is_waited_for else value(self.type, name)}"
@@ -52,7 +53,7 @@ class Unset:
 
 
 def unset_data(project: Project, sources: Mapping[str, Source]) -> tuple[Unset, ...]:
-    """The variables of the data lists of a project that its programs read and nothing sets."""
+    """Return the variables in data lists that programs read and nothing sets."""
     open_: dict[str, list[tuple[Module, ast.Name]]] = {}
     for module in project.modules:
         for name in _without_value(module):
@@ -82,7 +83,7 @@ def unset_data(project: Project, sources: Mapping[str, Source]) -> tuple[Unset, 
 
 
 def _without_value(module: Module) -> Iterator[ast.Name]:
-    """The variables of a data list that have no value there."""
+    """Return the variables of a data list that have no initial value."""
     if module.syntax is None or not isinstance(module.syntax.content, ast.DataList):
         return
     items = module.syntax.content.items
@@ -95,9 +96,9 @@ def _without_value(module: Module) -> Iterator[ast.Name]:
 
 
 def _set_by(node: ast.Node) -> set[str]:
-    """The variables that a statement may set: a call all that it is passed.
+    """Return the variables that a statement may set, which for a call are all its arguments.
 
-    What only counts on from what it is has been set by somebody else.
+    A variable that only counts on from its own value does not count as set.
     """
     match node:
         case ast.Assignment(target=target, value=value):
@@ -120,7 +121,7 @@ def _root(node: ast.Expression) -> str:
 def with_values(
     project: Project, sources: Mapping[str, Source], unset: tuple[Unset, ...], value: MakeValue
 ) -> tuple[Project, tuple[Source, ...]]:
-    """A project whose data lists have such values at their ends, and the texts of these lists."""
+    """Return the project with values at the end of its data lists, and the new texts."""
     changed: dict[str, Source] = {}
     for one in unset:
         path = one.module.path

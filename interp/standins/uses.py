@@ -1,8 +1,8 @@
-"""Uses of undeclared names, from which follow: a type, indices, members, arguments.
+"""Infers types of undeclared names from their uses.
 
-A name that no file declares is used all the same. ``X=3.5`` says that X is a number, ``WAIT FOR X``
-that it is a truth value, ``PTP X`` that it is a position, ``X[2].NR`` that it is an array of
-structures. `Uses` gathers this over the files of a project; nothing is guessed here.
+``X=3.5`` implies that X is a number, ``WAIT FOR X`` that it is a truth value, ``PTP X`` that it is
+a position, ``X[2].NR`` that it is an array of structures. `Uses` collects such facts over all files
+of a project; it does not guess.
 """
 
 from __future__ import annotations
@@ -78,13 +78,13 @@ class DataUse:
     cases: set[str] = field(default_factory=set)
 
     def member(self, name: ast.Name) -> DataUse:
-        """How a member of it is used."""
+        """Return the use of a member."""
         return self.members.setdefault(name.key, DataUse(is_part=True))
 
 
 @dataclass(slots=True, eq=False)
 class RoutineUse:
-    """How a routine is called: what stands in each place of its arguments."""
+    """How a routine is called: the arguments at each position."""
 
     result: DataUse = field(default_factory=DataUse)
     is_function: bool = False
@@ -92,7 +92,7 @@ class RoutineUse:
 
 
 class _Classes:
-    """Classes of uses that are of one type: so are then their members of one name."""
+    """Classes of uses of the same type (union-find), whose members of equal name are united."""
 
     def __init__(self) -> None:
         self._class: dict[int, list[DataUse]] = {}
@@ -115,7 +115,7 @@ class _Classes:
             larger += smaller
 
     def tell(self, use: DataUse, depth: int = 0) -> None:
-        """What is known of its class is known of a use."""
+        """Add to a use everything that is known about its class."""
         for other in self.of(use):
             use.constants.update(other.constants)
             use.types += [one for one in other.types if one not in use.types]
@@ -216,7 +216,7 @@ class Uses:
         self._leaves(node.condition, is_true=isinstance(node, ast.Repeat))
 
     def _leaves(self, node: ast.Expression, *, is_true: bool) -> None:
-        """A condition ends a loop where it is so; which of several does is not asked."""
+        """Record the value with which a condition ends a loop, for each variable in it."""
         match node:
             case ast.Parenthesised(inner=inner):
                 self._leaves(inner, is_true=is_true)
@@ -253,7 +253,7 @@ class Uses:
         self._counted[node.counter.key] = max(self._counted.get(node.counter.key, 0), *ends)
 
     def _largest(self, number: ast.Expression | None) -> int:
-        """The largest value that a number or the counter of a loop has; 0 where it is unknown."""
+        """Return the largest value of a number or of a loop counter; 0 if it is unknown."""
         match number:
             case ast.IntegerLiteral(value=value):
                 return value
@@ -329,7 +329,7 @@ class Uses:
             self._unify(node.left, node.right)
 
     def _meets(self, node: ast.Expression, value: ast.Expression) -> None:
-        """A number is asked whether it is another one: that is a value that it may have."""
+        """Record that a value is compared with a number, which is therefore a possible value."""
         use = self._use(node)
         if use is not None:
             use.is_compared = True
@@ -362,7 +362,7 @@ class Uses:
                     self._expect(argument, self._project.types.of(Found(parameter, found.scope)))
 
     def _is_undeclared(self, name: ast.Name) -> bool:
-        """Whether no file declares a name here: another may have it for itself."""
+        """Return whether no file declares a name at this place."""
         assert self._checked is not None, "a file is looked at"
         found = self._checked.resolution.found(name)
         if found is None or found.module is None or found.symbol.kind is Kind.EXTERNAL:
@@ -373,7 +373,7 @@ class Uses:
         return is_listed and self._is_apart(self._checked.module, name.key)
 
     def _is_variable(self, node: ast.Expression) -> bool:
-        """Whether it can be changed; system variables are left alone."""
+        """Return whether a call can change an expression; system variables are excluded."""
         while isinstance(node, ast.Subscript | ast.Member):
             node = node.base
         if not isinstance(node, ast.Variable) or node.name.text.startswith("$"):
@@ -385,7 +385,7 @@ class Uses:
     # ------------------------------------------------------------------------- expressions
 
     def _use_of(self, name: ast.Name) -> DataUse | None:
-        """The use of an undeclared variable, or of the undeclared type of a declared one."""
+        """Return the use of an undeclared variable, or of the undeclared type of a declared one."""
         assert self._checked is not None, "a file is looked at"
         if self._is_undeclared(name):
             module = self._checked.module
@@ -397,7 +397,7 @@ class Uses:
         return None if written is None else self.types.get(written.key)
 
     def _use(self, node: ast.Expression) -> DataUse | None:
-        """The use of the undeclared name, or the part of one, that an expression is."""
+        """Return the use of the undeclared name, or part of one, in an expression."""
         match node:
             case ast.Variable(name=name):
                 return self._use_of(name)
@@ -446,7 +446,7 @@ class Uses:
         return found
 
     def _is_alike(self, node: ast.Expression, written: TypeReference | None) -> None:
-        """An expression is of a type as it is written, which no file may declare."""
+        """Record that an expression has a type by name, which may be undeclared."""
         use = self._use(node)
         type_ = self.types.get(written.key) if written is not None else None
         if type_ is not None:
@@ -455,7 +455,7 @@ class Uses:
             _meet(type_, self._type(node))
 
     def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
-        """Both sides are of one type; no statement has whole arrays on its sides."""
+        """Record that both sides have the same type; whole arrays do not occur here."""
         uses = self._use(left), self._use(right)
         if uses[0] is not None and uses[1] is not None:
             self._alike.append((uses[0], uses[1]))
@@ -465,7 +465,7 @@ class Uses:
                 self._expect(node, type_)
 
     def _expect(self, node: ast.Expression, type_: Type) -> None:
-        """An expression is of a type."""
+        """Record the type of an expression."""
         while isinstance(node, ast.Parenthesised):
             node = node.inner
         if isinstance(node, ast.Unary) and type_ != UNKNOWN:
@@ -478,7 +478,7 @@ class Uses:
         _meet(use, type_)
 
     def _expect_number(self, node: ast.Expression, type_: Type) -> None:
-        """Operands of what is a number are; those of a long sum are asked about but once."""
+        """Record that the operands of a number are numbers; each long sum is visited only once."""
         operand = node
         while isinstance(operand, ast.Binary) and operand.operator in "+-*/":
             if (operand, type_) in self._numbers:
@@ -491,7 +491,7 @@ class Uses:
 
 
 def _meet(use: DataUse, type_: Type) -> None:
-    """A use is met with a type."""
+    """Add a type to a use."""
     match type_:
         case Constant(name=name):
             use.constants.setdefault(name.upper(), name)
@@ -509,7 +509,7 @@ def _meet(use: DataUse, type_: Type) -> None:
 
 
 def _number(node: ast.Expression) -> str:
-    """A number as it is written; empty for what is none."""
+    """Return a number as it is written; empty for other expressions."""
     match node:
         case ast.IntegerLiteral(value=value):
             return str(value)

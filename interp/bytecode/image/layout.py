@@ -4,12 +4,14 @@ All numbers are 32-bit words in little-endian order. Everything except strings c
 a reader in C can use the image as an array. The header:
 
 ===== ==============================================================================================
-bytes =====
-============================================================================================== 0
-``KRLI`` 4     version of the format and the instruction set 8     length of the image 12    CRC-32
-of everything that follows 16    number of sections; then for each its name of four letters and its
-length =====
-==============================================================================================
+bytes
+===== ==============================================================================================
+0     ``KRLI``
+4     version of the format and the instruction set
+8     length of the image
+12    CRC-32 of everything that follows
+16    number of sections; then for each its name of four letters and its length
+===== ==============================================================================================
 
 The sections have the order of the table, which is that of `SECTIONS`. ``STRS`` has all strings,
 each once: their number, their lengths, and their UTF-8 bytes, padded with zeros to a whole word.
