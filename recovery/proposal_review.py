@@ -14,7 +14,8 @@ from recovery.clustering.cause import Proposal
 from recovery.clustering.cluster import Cluster, Clusters
 from recovery.clustering.edit_trial import edited
 from recovery.records import ProposalRecord
-from recovery.survey.survey import Survey, SurveyedFile
+from recovery.survey.survey import Survey
+from recovery.survey.surveyed_files import SurveyedFile
 
 # Mended lines looked at for second readings; the first of them are the shortest.
 _LINES_READ = 60

@@ -14,6 +14,7 @@ from recovery.clustering.cluster import Cluster, Clusters, Member
 from recovery.proposal_review import Reviewer
 from recovery.records import (
     ClusterRecord,
+    CopyRecord,
     ExampleRecord,
     FailureRecord,
     FilesRecord,
@@ -23,7 +24,8 @@ from recovery.records import (
     SurveyRecord,
 )
 from recovery.reproducer.reduce import Reducer
-from recovery.survey.survey import Survey, SurveyedFile
+from recovery.survey.survey import Survey
+from recovery.survey.surveyed_files import SurveyedFile
 
 _EXAMPLES = 5
 _CONTEXT_LINES = 3
@@ -50,22 +52,32 @@ def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> Survey
 
 def record_without_causes(found: Survey, grammar_name: str) -> SurveyRecord:
     """What is known of a survey before causes are searched: no clusters, no failures."""
-    files = found.files
-    parsed = [f for f in files if not f.failures]
+    counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
+    size = 0
+    copies: list[CopyRecord] = []
+    for file in found.files:
+        size += file.size * len(file.places)
+        copies += ({"path": path, "same_as": file.path} for path, _ in file.places[1:])
+        for _, origin in file.places:
+            counts[origin][bool(file.failures)] += 1
+    origins: list[OriginRecord] = [
+        {"name": name, "files": good + bad, "parsed": good, "failed": bad}
+        for name, (good, bad) in sorted(counts.items())
+    ]
     return {
         "grammar": grammar_name,
         "grammar_sha256": found.grammar.sha256,
-        "files": _places(files),
-        "distinct": len(files),
-        "parsed": _places(parsed),
-        "bytes": _bytes(files),
-        "parsed_bytes": _bytes(parsed),
+        "files": sum(one["files"] for one in origins),
+        "distinct": len(found.files),
+        "parsed": sum(one["parsed"] for one in origins),
+        "bytes": size,
+        "parsed_bytes": size - sum(f.size * len(f.places) for f in found.failing),
         "seconds": round(found.seconds, 3),
         "skipped": [
             {"path": s.path, "reason": s.reason, "origin": s.origin} for s in found.skipped
         ],
-        "origins": _origins(files),
-        "copies": [{"path": path, "same_as": f.path} for f in files for path, _ in f.places[1:]],
+        "origins": origins,
+        "copies": copies,
         "greedy": [],
         "swallowed": [
             {"word": one.word, "files": one.files, "origins": one.origins}
@@ -78,21 +90,6 @@ def record_without_causes(found: Survey, grammar_name: str) -> SurveyRecord:
 
 def _places(files: Iterable[SurveyedFile]) -> int:
     return sum(len(f.places) for f in files)
-
-
-def _bytes(files: Iterable[SurveyedFile]) -> int:
-    return sum(f.size * len(f.places) for f in files)
-
-
-def _origins(files: Iterable[SurveyedFile]) -> list[OriginRecord]:
-    counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
-    for file in files:
-        for _, origin in file.places:
-            counts[origin][bool(file.failures)] += 1
-    return [
-        {"name": name, "files": good + bad, "parsed": good, "failed": bad}
-        for name, (good, bad) in sorted(counts.items())
-    ]
 
 
 def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[FailureRecord]:
@@ -112,7 +109,7 @@ def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list
             "cluster": clusters.cluster_of[file.digest, index],
             "follows": failed.follows,
         }
-        for file in found.files
+        for file in found.failing
         for index, failed in enumerate(file.failures)
     ]
 

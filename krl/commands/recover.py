@@ -257,7 +257,7 @@ class _Surveyor:
     ) -> "SurveyRecord":
         from recovery.analysis import analyse
 
-        failing = sum(len(one.places) for one in found.files if one.failures)
+        failing = sum(len(one.places) for one in found.failing)
         pending = f"the causes of failures{where}, in {counted(failing, 'file')}"
         with progress_bar(f"finding causes{where}") as bar:
 

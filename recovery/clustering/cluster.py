@@ -19,7 +19,8 @@ from recovery.clustering.title import TitleWriter
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.signature import Signature, SignatureBuilder
-from recovery.survey.survey import Survey, SurveyedFile
+from recovery.survey.survey import Survey
+from recovery.survey.surveyed_files import SurveyedFile
 from support.parallel.progress import Progress, no_progress
 
 
@@ -124,7 +125,7 @@ class _FailingLines:
         self.contexts = [self._context(finder, f.before, f.kinds[: f.index]) for f in found.forms]
         direct = [
             (file, index, failed)
-            for file in found.files
+            for file in found.failing
             for index, failed in enumerate(file.failures)
             if not failed.follows
         ]
@@ -168,7 +169,7 @@ class _FailingLines:
         self, found: Survey, text_of: Callable[[SurveyedFile], str]
     ) -> Iterator[FailingFile]:
         """Yield the files with failing lines; their texts are read when needed."""
-        for file in found.files:
+        for file in found.failing:
             lines = tuple(
                 (failed.line, self.line_of[file.digest, index])
                 for index, failed in enumerate(file.failures)
@@ -189,7 +190,7 @@ def _assembled(
     members: dict[int, list[Member]] = defaultdict(list)
     needs: list[tuple[SurveyedFile, frozenset[int], frozenset[int]]] = []
     by_failure: dict[tuple[str, int], int] = {}
-    for file in found.files:
+    for file in found.failing:
         direct: set[int] = set()
         last = None
         for index, failed in enumerate(file.failures):
@@ -228,7 +229,8 @@ def _assembled(
         )
         for number, cause in enumerate(causes)
     ]
-    order = _greedy(found.files, [(f, wanted) for f, _, wanted in needs], clusters)
+    parsed = _places(found.files) - _places(found.failing)
+    order = _greedy(parsed, [(f, wanted) for f, _, wanted in needs], clusters)
     ranked = sorted(clusters, key=lambda c: (-c.unlocks, -_places(c.files), -len(c.members), c.id))
     return Clusters(
         tuple(ranked),
@@ -312,16 +314,15 @@ def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
 
 
 def _greedy(
-    files: Sequence[SurveyedFile],
+    parsed: int,
     needs: Sequence[tuple[SurveyedFile, frozenset[int]]],
     clusters: Sequence[Cluster],
 ) -> Iterator[tuple[Cluster, int]]:
     """Yield the clusters in a greedy order, with the number of files that parse after each.
 
-    The next cluster is the one that makes most files parse or, on a tie, brings most files closest
-    to it.
+    ``parsed`` files parse before the first. The next cluster is the one that makes most files parse
+    or, on a tie, brings most files closest to it.
     """
-    parsed = sum(len(f.places) for f in files if not f.failures)
     waiting: Counter[frozenset[int]] = Counter()
     for file, wanted in needs:
         waiting[wanted] += len(file.places)

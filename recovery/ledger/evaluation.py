@@ -23,7 +23,8 @@ from recovery.ledger.ledger import broken_examples, is_wording
 from recovery.ledger.metrics import metrics
 from recovery.negatives.negatives import Negative
 from recovery.survey.failing_line import FailingLine
-from recovery.survey.survey import Survey, SurveyedFile
+from recovery.survey.survey import Survey
+from recovery.survey.surveyed_files import SurveyedFile
 
 # How many repaired lines are examined for ambiguity, shortest first, and their longest (tokens).
 _LINES_READ = 60

@@ -16,7 +16,8 @@ from itertools import islice, zip_longest
 from grammar.parser.failures import Form
 from recovery.ledger.construct import Evidence
 from recovery.survey.failing_line import FailingLine
-from recovery.survey.survey import Survey, SurveyedFile
+from recovery.survey.survey import Survey
+from recovery.survey.surveyed_files import SurveyedFile
 
 _PLACES_SEEN = 10
 

@@ -8,19 +8,21 @@ earlier one is not read again, but counted as a copy of it.
 from __future__ import annotations
 
 import os
+import sqlite3
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 from grammar.notation import g4
 from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
-from recovery.survey.failing_line import FailingLine, failures_of, source_lines
+from recovery.survey.failing_line import failures_of
 from recovery.survey.result_cache import Kept, keep, key_of, recall
+from recovery.survey.surveyed_files import SurveyedFile, SurveyedFiles
 from recovery.survey.unreserved_keywords import (
     NameUse,
     UnreservedKeyword,
@@ -28,7 +30,7 @@ from recovery.survey.unreserved_keywords import (
     names_used,
 )
 from support.files.decode import decode, digest
-from support.files.discovery import Found, Skipped, discover, read, read_source
+from support.files.discovery import Found, IngestError, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress
@@ -39,34 +41,7 @@ _TASK_FILES = 64
 _SMALL = 8 << 20
 
 
-@dataclass(frozen=True, slots=True)
-class SurveyedFile:
-    """A distinct content, with its locations and its failures.
-
-    ``places`` are (path, origin) of the file and of every copy, in the order of discovery;
-    ``found`` is the first of them.
-    """
-
-    found: Found
-    places: tuple[tuple[str, str], ...]
-    digest: str
-    size: int
-    failures: tuple[FailingLine, ...]
-
-    @property
-    def path(self) -> str:
-        """The path of the first location, as it is shown."""
-        return self.found.path
-
-    def lines(self) -> list[str]:
-        """Return the lines of the file, read again; empty if it has changed since the survey."""
-        file = read_source(self.found)
-        if isinstance(file, Skipped) or digest(file.data) != self.digest:
-            return []
-        return source_lines(file.text)
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Survey:
     """The result of reading a corpus under a grammar.
 
@@ -75,11 +50,16 @@ class Survey:
     """
 
     grammar: Grammar
-    files: tuple[SurveyedFile, ...]
+    files: Sequence[SurveyedFile]
     skipped: tuple[Skipped, ...]
     forms: tuple[Form, ...]
     unreserved: tuple[UnreservedKeyword, ...]
     seconds: float
+
+    @cached_property
+    def failing(self) -> tuple[SurveyedFile, ...]:
+        """The files with failures."""
+        return tuple(file for file in self.files if file.failures)
 
 
 def survey(
@@ -104,23 +84,27 @@ def survey(
     `support.parallel.workers.WorkersError` if there are no workers.
     """
     began = time.perf_counter()
-    candidates = list(discover(roots))
-    on_found(len(candidates))
-    check_scheduler(scheduler)  # before anything is written
-    with ResultStore(cache, key_of(grammar)) as store:
-        gathered = _Gathered(store)
-        tasks = ((grammar.text, contents) for contents in _tasks(candidates, gathered))
-        count = jobs or _processes(candidates)
-        for done in ordered_map(_perform, tasks, jobs=count, scheduler=scheduler):
-            gathered.add(done)
-            on_done(len(done))
-    on_done(len(candidates) - gathered.read_now)
-    return gathered.survey(grammar, time.perf_counter() - began)
+    try:
+        files = SurveyedFiles()
+        count, size = files.add(discover(roots))
+        on_found(count)
+        check_scheduler(scheduler)  # before anything is written
+        with ResultStore(cache, key_of(grammar)) as store:
+            gathered = _Gathered(store, files)
+            tasks = ((grammar.text, contents) for contents in _tasks(gathered))
+            for done in ordered_map(
+                _perform, tasks, jobs=jobs or _processes(size), scheduler=scheduler
+            ):
+                gathered.add(done)
+                on_done(len(done))
+        on_done(count - gathered.read_now)
+        return gathered.survey(grammar, time.perf_counter() - began)
+    except sqlite3.Error as error:
+        raise IngestError(f"temporary files cannot be written: {error}") from error
 
 
-def _processes(candidates: Iterable[Found | Skipped]) -> int:
+def _processes(size: int) -> int:
     """Return the number of cores; 1 for a small corpus, where more processes would not pay."""
-    size = sum(c.size for c in candidates if isinstance(c, Found))
     return 1 if size < _SMALL else os.cpu_count() or 1
 
 
@@ -171,86 +155,63 @@ def _perform(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
 # ------------------------------------------------------------------------------ in the parent
 
 
-@dataclass(slots=True)
-class _Content:
-    found: Found
-    places: list[tuple[str, str]]
-    size: int
-    result: tuple[FailingLine, ...] | str = ()
-
-
 class _Gathered:
     """The results so far, by content."""
 
-    def __init__(self, store: ResultStore) -> None:
+    def __init__(self, store: ResultStore, files: SurveyedFiles) -> None:
         self.store = store
-        self.contents: dict[str, _Content] = {}
+        self.files = files
         self.skipped: list[Skipped] = []
         self.forms: dict[Form, int] = {}
         self.unreserved = UnreservedKeywords()
-        self.submitted: deque[str] = deque()
+        self.submitted: deque[tuple[str, str]] = deque()
         self.read_now = 0
 
-    def register(self, found: Found, data: bytes) -> bool:
-        """Record a content and its location; return whether it has to be read."""
-        place = (found.path, found.origin)
+    def register(self, number: int, found: Found, data: bytes) -> bool:
+        """Record the content of a candidate; return whether it has to be read."""
         key = digest(data)
-        known = self.contents.get(key)
-        if known is not None:
-            known.places.append(place)
+        if not self.files.register(number, key, len(data)):
             return False
-        self.contents[key] = _Content(found, [place], len(data))
         kept = recall(self.store, key)
         if kept is not None:
-            self._take(key, kept)
+            self._take(key, found.origin, kept)
             return False
-        self.submitted.append(key)
+        self.submitted.append((key, found.origin))
         return True
 
     def add(self, done: list[Kept]) -> None:
         """Add the results of the next task."""
-        keys = [self.submitted.popleft() for _ in done]
-        keep(self.store, zip(keys, done, strict=True))
-        for key, kept in zip(keys, done, strict=True):
-            self._take(key, kept)
+        submitted = [self.submitted.popleft() for _ in done]
+        keep(self.store, [(key, kept) for (key, _), kept in zip(submitted, done, strict=True)])
+        for (key, origin), kept in zip(submitted, done, strict=True):
+            self._take(key, origin, kept)
         self.read_now += len(done)
 
-    def _take(self, key: str, kept: Kept) -> None:
-        content = self.contents[key]
+    def _take(self, key: str, origin: str, kept: Kept) -> None:
         if isinstance(kept, str):
-            content.result = kept
+            self.files.leave_out(key, kept)
             return
         failures, forms, names = kept
         numbers = [self.forms.setdefault(form, len(self.forms)) for form in forms]
-        content.result = tuple([f.with_form(numbers[f.form]) for f in failures])
+        self.files.set_failures(key, tuple([f.with_form(numbers[f.form]) for f in failures]))
         if not failures:
-            self.unreserved.add(content.found.origin, names)
+            self.unreserved.add(origin, names)
 
     def survey(self, grammar: Grammar, seconds: float) -> Survey:
-        files: list[SurveyedFile] = []
-        skipped = list(self.skipped)
-        for key, content in self.contents.items():
-            places = tuple(content.places)
-            if isinstance(content.result, str):
-                skipped += [Skipped(path, content.result, origin) for path, origin in places]
-            else:
-                files.append(SurveyedFile(content.found, places, key, content.size, content.result))
-        skipped.sort(key=lambda s: s.path)
+        skipped = sorted([*self.skipped, *self.files.left_out()], key=lambda s: s.path)
         forms, unreserved = tuple(self.forms), self.unreserved.found()
-        return Survey(grammar, tuple(files), tuple(skipped), forms, unreserved, seconds)
+        return Survey(grammar, self.files, tuple(skipped), forms, unreserved, seconds)
 
 
-def _tasks(
-    candidates: Iterable[Found | Skipped], gathered: _Gathered
-) -> Iterator[tuple[bytes, ...]]:
+def _tasks(gathered: _Gathered) -> Iterator[tuple[bytes, ...]]:
     """Yield the contents that have to be read, grouped into tasks."""
     contents: list[bytes] = []
     size = 0
-    for candidate in candidates:
+    for number, candidate in gathered.files.candidates():
         data = candidate if isinstance(candidate, Skipped) else read(candidate)
         if isinstance(data, Skipped):
             gathered.skipped.append(data)
-        elif isinstance(candidate, Found) and gathered.register(candidate, data):
+        elif isinstance(candidate, Found) and gathered.register(number, candidate, data):
             contents.append(data)
             size += len(data)
             if size >= _TASK_BYTES or len(contents) >= _TASK_FILES:

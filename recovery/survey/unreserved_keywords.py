@@ -7,12 +7,18 @@ assigns, calls or indexes it. A real variable is bound somewhere.
 
 from __future__ import annotations
 
+import sqlite3
 from collections import Counter
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from grammar.parser.lexer import Lexer
 from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
+
+#: Uses that are counted in memory before they are added to those on disk.
+_MOST_IN_MEMORY = 50_000
+#: Stands for an origin: the word is bound somewhere.
+_BOUND = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,28 +57,50 @@ class UnreservedKeywords:
     """Counts how programs use names, and lists those that are read and never bound."""
 
     def __init__(self) -> None:
-        self._readers: dict[str, Counter[str]] = {}
-        self._bound: set[str] = set()
-        self._origins: set[str] = set()
+        self._origins: dict[str, int] = {}
+        self._recent: Counter[tuple[str, int]] = Counter()
+        self._base = sqlite3.connect("")  # a temporary file, once it is large
+        self._base.executescript(
+            """
+            PRAGMA journal_mode = OFF;
+            CREATE TABLE used (word BLOB, origin INTEGER, files INTEGER,
+                PRIMARY KEY (word, origin)) WITHOUT ROWID;
+            """
+        )
 
     def add(self, origin: str, used: NameUse) -> None:
         """Count the names of one program."""
-        self._origins.add(origin)
-        for word in used.bound:
-            self._bound.add(word)
-            self._readers.pop(word, None)
-        for word in used.read:
-            if word not in self._bound and not word.startswith("$"):
-                self._readers.setdefault(word, Counter())[origin] += 1
+        number = self._origins.setdefault(origin, len(self._origins) + 1)
+        self._recent.update([(word, _BOUND) for word in used.bound])
+        self._recent.update([(word, number) for word in used.read if not word.startswith("$")])
+        if len(self._recent) > _MOST_IN_MEMORY:
+            self._move_to_disk()
+
+    def _move_to_disk(self) -> None:
+        self._base.executemany(
+            "INSERT INTO used VALUES (?, ?, ?)"
+            " ON CONFLICT DO UPDATE SET files = files + excluded.files",
+            sorted(
+                (word.encode("utf-8", "surrogatepass"), origin, files)
+                for (word, origin), files in self._recent.items()
+            ),
+        )
+        self._recent.clear()
 
     def found(self) -> tuple[UnreservedKeyword, ...]:
-        """Return the suspected keywords, the most widely used first."""
+        """Return the suspected keywords, the most widely used first; nothing can be added then."""
+        self._move_to_disk()
         needed = UNRESERVED_ORIGINS if len(self._origins) > 1 else 1
+        rows = self._base.execute(
+            "SELECT word, SUM(files), COUNT(*) FROM used GROUP BY word"
+            f" HAVING MIN(origin) > {_BOUND} AND SUM(files) >= ? AND COUNT(*) >= ?",
+            (UNRESERVED_FILES, needed),
+        )
         found = [
-            UnreservedKeyword(word, readers.total(), len(readers))
-            for word, readers in self._readers.items()
-            if readers.total() >= UNRESERVED_FILES and len(readers) >= needed
+            UnreservedKeyword(word.decode("utf-8", "surrogatepass"), files, origins)
+            for word, files, origins in rows
         ]
+        self._base.close()
         return tuple(sorted(found, key=lambda s: (-s.origins, -s.files, s.word)))
 
 

@@ -1,11 +1,14 @@
 """A word that is reserved may be a name in a file that was read before."""
 
+import random
+
 import pytest
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
+from recovery.clustering import regression
 from recovery.clustering.cluster import cluster
 from recovery.clustering.edit_trial import edited
 from recovery.clustering.regression import ParsedFiles
@@ -45,6 +48,17 @@ def test_a_file_that_has_the_word_as_a_name_is_lost() -> None:
     assert ParsedFiles([plain, named], {"HOLD"}).breaks(wider, ["HOLD"])
     assert not ParsedFiles([plain], {"HOLD"}).breaks(wider, ["HOLD"])
     assert not ParsedFiles([plain, named], {"HOLD"}).breaks(wider, ["KEEP"])
+
+
+def test_only_the_smallest_files_are_searched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many are kept as may be searched, however many come and in whatever order."""
+    monkeypatch.setattr(regression, "MOST_SEARCHED_TEXT", 60)
+    sizes = random.Random(7).choices(range(1, 12), k=400)
+    kept = ParsedFiles([(size, str) for size in sizes], {"HOLD"})
+    expected = sorted(sizes)
+    while sum(expected) > 60:
+        expected.pop()
+    assert expected == [size for size, _ in kept._files]
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ def corpus(tmp_path: Path) -> Path:
 
 
 def record_of(found: Survey) -> object:
-    return found.files, found.skipped, found.forms
+    return tuple(found.files), found.skipped, found.forms
 
 
 def run(corpus: Path, cache: Path | None, grammar: Grammar = PRELIMINARY) -> Survey:

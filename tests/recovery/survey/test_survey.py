@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.survey.survey import Survey, SurveyedFile, survey, survey_texts
+from recovery.survey.survey import Survey, survey, survey_texts
+from recovery.survey.surveyed_files import SurveyedFile
 from support.files.discovery import IngestError, discover
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
@@ -50,7 +51,7 @@ def surveyed(*roots: Path, jobs: int = 1, cache: Path | None = None) -> Survey:
 
 
 def timeless(found: Survey) -> Survey:
-    return replace(found, seconds=0)
+    return replace(found, files=tuple(found.files), seconds=0)
 
 
 def record_of(found: Survey) -> object:

@@ -1,0 +1,155 @@
+"""The files of a survey, on disk: most files of a large corpus parse, and nobody looks at them.
+
+They are rows of a temporary SQLite database, which the system removes with the process. Only
+failures are kept in memory.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import overload
+from weakref import finalize
+
+from recovery.survey.failing_line import FailingLine, source_lines
+from support.files.decode import digest
+from support.files.discovery import Found, Skipped, read_source
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyedFile:
+    """A distinct content, with its locations and its failures.
+
+    ``places`` are (path, origin) of the file and of every copy, in the order of discovery;
+    ``found`` is the first of them.
+    """
+
+    found: Found
+    places: tuple[tuple[str, str], ...]
+    digest: str
+    size: int
+    failures: tuple[FailingLine, ...]
+
+    @property
+    def path(self) -> str:
+        """The path of the first location, as it is shown."""
+        return self.found.path
+
+    def lines(self) -> list[str]:
+        """Return the lines of the file, read again; empty if it has changed since the survey."""
+        file = read_source(self.found)
+        if isinstance(file, Skipped) or digest(file.data) != self.digest:
+            return []
+        return source_lines(file.text)
+
+
+class SurveyedFiles(Sequence[SurveyedFile]):
+    """The files with KRL, in the order of discovery; each iteration makes them anew.
+
+    First all candidates are added. Then each is registered with its content, or stays without one.
+    """
+
+    def __init__(self) -> None:
+        """Create it without files."""
+        self._base = sqlite3.connect("")  # a temporary file, once it is large
+        finalize(self, self._base.close)
+        self._failures: dict[str, tuple[FailingLine, ...]] = {}
+        self._base.executescript(
+            """
+            PRAGMA journal_mode = OFF;
+            CREATE TABLE candidate (number INTEGER PRIMARY KEY, item TEXT, content INTEGER);
+            CREATE INDEX place ON candidate (content) WHERE content IS NOT NULL;
+            CREATE TABLE content
+                (number INTEGER PRIMARY KEY, digest TEXT UNIQUE, size INTEGER, reason TEXT);
+            """
+        )
+
+    def add(self, candidates: Iterable[Found | Skipped]) -> tuple[int, int]:
+        """Add all candidates; return their number, and the bytes of those that were found."""
+        size = 0
+
+        def rows() -> Iterator[tuple[str]]:
+            nonlocal size
+            item: tuple[str | int | None, ...]
+            for one in candidates:
+                if isinstance(one, Found):
+                    size += one.size
+                    item = (one.path, one.origin, one.size, str(one.file), one.member)
+                else:
+                    item = (one.path, one.reason, one.origin)
+                yield (json.dumps(item),)
+
+        self._base.executemany("INSERT INTO candidate (item) VALUES (?)", rows())
+        ((count,),) = self._base.execute("SELECT COUNT(*) FROM candidate")
+        return count, size
+
+    def candidates(self) -> Iterator[tuple[int, Found | Skipped]]:
+        """Yield all candidates with their numbers."""
+        for number, item in self._base.execute("SELECT number, item FROM candidate"):
+            yield number, _candidate(item)
+
+    def register(self, number: int, key: str, size: int) -> bool:
+        """Give a candidate its content by digest and size; return whether the content is new."""
+        added = self._base.execute(
+            "INSERT OR IGNORE INTO content (digest, size) VALUES (?, ?)", (key, size)
+        )
+        self._base.execute(
+            "UPDATE candidate SET content = (SELECT number FROM content WHERE digest = ?)"
+            " WHERE number = ?",
+            (key, number),
+        )
+        return added.rowcount == 1
+
+    def set_failures(self, key: str, failures: tuple[FailingLine, ...]) -> None:
+        """Set what fails in the content with a digest; at first nothing does."""
+        if failures:
+            self._failures[key] = failures
+
+    def leave_out(self, key: str, reason: str) -> None:
+        """Leave out the content with a digest, which is no KRL."""
+        self._base.execute("UPDATE content SET reason = ? WHERE digest = ?", (reason, key))
+
+    def left_out(self) -> Iterator[Skipped]:
+        """Yield every file that was left out."""
+        for _, _, reason, items in self._contents("IS NOT NULL"):
+            for one in items:
+                yield Skipped(one.path, reason, one.origin)
+
+    def __iter__(self) -> Iterator[SurveyedFile]:
+        for key, size, _, items in self._contents("IS NULL"):
+            places = tuple((one.path, one.origin) for one in items)
+            yield SurveyedFile(items[0], places, key, size, self._failures.get(key, ()))
+
+    def __len__(self) -> int:
+        ((count,),) = self._base.execute("SELECT COUNT(*) FROM content WHERE reason IS NULL")
+        return int(count)
+
+    @overload
+    def __getitem__(self, place: int) -> SurveyedFile: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[SurveyedFile]: ...
+    def __getitem__(self, place: int | slice) -> SurveyedFile | list[SurveyedFile]:
+        return list(self)[place]
+
+    def _contents(self, reason: str) -> Iterator[tuple[str, int, str, list[Found]]]:
+        """Yield digest, size, reason and files of each content."""
+        rows = self._base.execute(
+            "SELECT content.number, digest, size, reason, item"
+            " FROM content JOIN candidate ON candidate.content = content.number"
+            f" WHERE reason {reason} ORDER BY content.number, candidate.number"
+        )
+        for (_, key, size, why), several in groupby(rows, lambda row: row[:4]):
+            found = (_candidate(row[4]) for row in several)
+            yield key, size, why, [one for one in found if isinstance(one, Found)]
+
+
+def _candidate(item: str) -> Found | Skipped:
+    path, *others = json.loads(item)
+    if len(others) == 2:
+        return Skipped(path, *others)
+    origin, size, file, member = others
+    return Found(path, origin, size, Path(file), member)
