@@ -1,1 +1,1 @@
-"""Analyses that checks share: names in scope, types, constants, accesses, the flow graph."""
+"""Analyses that several checks use: names in scope, types, constants, accesses, flow graph."""

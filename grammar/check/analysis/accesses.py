@@ -1,7 +1,7 @@
-"""Accesses of a statement to variables: reads, assignments, arguments.
+"""The accesses of statements to variables: reads, assignments, arguments.
 
-A block counts with its head alone: its condition, its bounds. What an interrupt or a trigger will
-do later is passed on, as the time is unknown.
+For a block only its head counts: its condition, its bounds. The later actions of interrupts and
+triggers count as arguments, since the time at which they run is unknown.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Parameter = tuple[str, str, int]
 
 
 class Use(Enum):
-    """What is done to a variable."""
+    """What a statement does to a variable."""
 
     READ = "read"
     WRITTEN = "written"
@@ -32,10 +32,10 @@ class Use(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """A variable in a statement, by the node of its name.
+    """An access to a variable in a statement, with the node of its name.
 
-    ``place`` is the whole of what is accessed, with indices and components. ``to`` is the parameter
-    that gets it, if it is an argument of a routine of the project.
+    ``place`` is the accessed expression with indices and components. ``to`` is the parameter that
+    receives it, if it is an argument of a routine of the project.
     """
 
     name: ast.Name
@@ -45,7 +45,7 @@ class Access:
 
 
 def accesses(context: Context, node: ast.Node) -> Sequence[Access]:
-    """The accesses of a statement, in the order in which they happen as far as that matters."""
+    """Return the accesses of a statement, in order of execution where that matters."""
     known: Sequence[Access] | None = context.accesses.get(node)
     if known is None:
         found: list[Access] = []
@@ -92,7 +92,7 @@ def _later(
 
 
 def own_parts(node: ast.Node) -> Sequence[ast.Node]:
-    """The nodes directly below one, without the statements of a block; the values of each CASE."""
+    """Yield the children of a node without nested statements, but with the values of CASE."""
     below = children(node)
     inner = BODIES.get(type(node))
     if inner is None:
@@ -108,7 +108,7 @@ def own_parts(node: ast.Node) -> Sequence[ast.Node]:
 
 
 def parts_of(node: ast.Node) -> Sequence[ast.Node]:
-    """A statement and all below it, without the statements in a block."""
+    """Yield a statement and its descendants, without the statements of a block."""
     found: list[ast.Node] = [node]
     for here in found:  # grows while it is walked
         if type(here) not in LEAVES:
@@ -117,12 +117,12 @@ def parts_of(node: ast.Node) -> Sequence[ast.Node]:
 
 
 def calls_of(node: ast.Node) -> Iterator[ast.Call]:
-    """The calls in a statement, not those of the statements in a block."""
+    """Yield the calls in a statement, without those in nested statements."""
     return (part for part in parts_of(node) if isinstance(part, ast.Call))
 
 
 def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Access]) -> None:
-    """The variable that something is part of, behind what its indices read."""
+    """Add the variable of which an expression is a part, after the reads of its indices."""
     whole = node
     while type(node) is ast.Subscript or type(node) is ast.Member:
         if type(node) is ast.Subscript:
@@ -137,7 +137,7 @@ def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Acc
 
 
 def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
-    """The arguments: those passed :IN are read, of all others it is unknown."""
+    """Add the arguments of a call: those passed :IN are read, the use of others is unknown."""
     called = context.found(node.name)
     known = called_parameters(called)
     for index, argument in enumerate(node.arguments):
@@ -152,13 +152,13 @@ def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
 
 
 def called_parameters(called: Found | None) -> Sequence[ParameterSymbol]:
-    """The parameters of what is called; none where they are unknown."""
+    """Return the parameters of a called routine; none if they are unknown."""
     symbol = called.symbol if called else None
     return symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
 
 
 def address_of(called: Found | None) -> tuple[str, str] | None:
-    """The file of a routine and its name in upper case; ``None`` if its body is not at hand."""
+    """Return the file and the upper-case name of a routine; ``None`` if its body is missing."""
     if called is None or called.module is None or called.symbol.kind is not Kind.ROUTINE:
         return None
     if called.module.is_head_unread(called.symbol.key):
@@ -167,7 +167,7 @@ def address_of(called: Found | None) -> tuple[str, str] | None:
 
 
 def is_passed_on(argument: ast.Expression, index: int, known: Sequence[ParameterSymbol]) -> bool:
-    """Whether a call may change the ``index``-th argument, given the ``known`` parameters."""
+    """Return whether a call may change the ``index``-th argument, given ``known`` parameters."""
     is_read = index < len(known) and known[index].mode == "IN"
     return type(argument) in PLACES and not is_read
 

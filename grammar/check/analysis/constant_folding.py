@@ -1,8 +1,8 @@
-"""Constant folding: values of expressions that are known before a program runs.
+"""Constant folding: the values of expressions that are known before a program runs.
 
-Sizes of arrays, steps of FOR, labels of CASE, numbers of inputs and outputs need them. A quotient
-of integers with a remainder is not folded, because the rounding of negative ones is not certain
-[ARI-02]. Nor are comparisons of rounded numbers with == [ARI-10].
+Array sizes, steps of FOR, labels of CASE and numbers of inputs and outputs need them. A quotient of
+integers with a remainder is not folded, because the rounding of negative ones is not certain
+[ARI-02]. Comparisons of rounded numbers with == are not folded either [ARI-10].
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ _SETTLED = {"AND": False, "OR": True}
 
 
 def constant(context: Context, node: ast.Expression) -> Value | None:
-    """The value of an expression, noted in the context; ``None`` where only a run can show it.
+    """Return the value of an expression and store it in the context; ``None`` if not constant.
 
-    The name of a CONST stands for its value. A text is given in quotation marks, so that it differs
-    from a constant of an enumeration.
+    The name of a CONST stands for its value. A text is returned in quotation marks to distinguish
+    it from an enumeration constant.
     """
     if node in context.values:
         known: Value = context.values[node]
@@ -46,7 +46,7 @@ def constant(context: Context, node: ast.Expression) -> Value | None:
 
 
 def integer_of(context: Context, node: ast.Expression | None) -> int | None:
-    """The value of an expression if it is an integer known before the program runs."""
+    """Return the value of an expression if it is a constant integer."""
     value = None if node is None else constant(context, node)
     return value if type(value) is int else None
 
@@ -76,7 +76,7 @@ def _value(context: Context, node: ast.Expression) -> Value | None:
 
 
 def _in_range(value: int) -> int | None:
-    """An integer of 32 bits; written in bits it may be one without a sign."""
+    """Return a number if it fits into 32 bits, where a bit literal may be unsigned."""
     return value if INT_MIN <= value <= 2 * INT_MAX + 1 else None
 
 

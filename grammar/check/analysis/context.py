@@ -30,7 +30,7 @@ from support.lazy_dataclass import dataclass, node
 
 @node
 class PlacedStatement:
-    """A statement and the one that it stands in: a block, SWITCH or spline block."""
+    """A statement and the one that contains it: a block, SWITCH or spline block."""
 
     statement: ast.Statement | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
     inside: PlacedStatement | None
@@ -43,7 +43,7 @@ class PlacedStatement:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """What a parameter is used for, in words, and the lowest and highest value that this allows."""
+    """The use of a parameter in words, and the minimum and maximum value for that use."""
 
     slug: str
     use: str
@@ -51,7 +51,7 @@ class Bound:
     high: float = math.inf
 
     def accepts(self, value: float) -> bool:
-        """Whether a number can be used so; a divisor is any number but zero."""
+        """Return whether a number is valid for that use; a divisor is any number except zero."""
         return value != 0 if self.slug == "division-by-zero" else self.low <= value <= self.high
 
 
@@ -59,8 +59,8 @@ class Bound:
 class RoutineBody:
     """A routine with its table and scope.
 
-    ``statements`` are all of them, those in blocks too, in the order of the text. What an interrupt
-    or a trigger does is part of its statement and none of its own.
+    ``statements`` are all statements in the order of the text, including those in blocks. The
+    action of an interrupt or a trigger is part of its statement.
     """
 
     node: ast.Routine
@@ -75,7 +75,7 @@ class RoutineBody:
 
     @cached_property
     def reached(self) -> frozenset[FlowNode]:
-        """The places that some way from the start leads to."""
+        """Return the nodes that can be reached from the start."""
         return self.ways.reached()
 
 
@@ -83,14 +83,14 @@ class RoutineBody:
 class Context:
     """A file to check.
 
-    ``resolution`` has what its names mean. ``types``, ``enumerations`` and ``values`` are filled by
-    the first check, `grammar.check.types.statements`: the type of each expression but literals, the
-    enumeration of each constant, the values of expressions that have to be constant, and the
-    ``constants`` that names without a declaration would be with a #; ``lacking`` are the constants
-    and components that a type lacks, ``bounds`` the values that parameters may have where they are
-    used. `analysis.accesses` keeps ``accesses``, `flow.data_flow` keeps ``flows``.
-    ``is_lacking``: the data list of the program is not at hand, and may declare what is found in
-    other files.
+    ``resolution`` has the meaning of its names. The first check, `grammar.check.types.statements`,
+    fills the other tables: ``types`` has the type of each expression except literals,
+    ``enumerations`` the enumeration of each constant, ``values`` the values of expressions that
+    must be constant, ``constants`` the constants that undeclared names would be with a #,
+    ``lacking`` the constants and components that a type lacks, ``bounds`` the valid values of
+    parameters where they are used. `analysis.accesses` fills ``accesses``, `flow.data_flow` fills
+    ``flows``. ``is_lacking`` if the data list of the program is missing; it may declare what other
+    files declare, too.
     """
 
     project: Project
@@ -113,13 +113,13 @@ class Context:
 
     @property
     def syntax(self) -> ast.Module:
-        """The tree."""
+        """The syntax tree."""
         assert self.module.syntax is not None, "only what can be read is checked"
         return self.module.syntax
 
     @property
     def table(self) -> ModuleTable:
-        """What the file declares."""
+        """The declarations of the file."""
         assert self.module.table is not None, "only what can be read is checked"
         return self.module.table
 
@@ -131,12 +131,12 @@ class Context:
 
     @property
     def scope(self) -> Scope:
-        """What is known at the first level of the file."""
+        """The top-level scope of the file."""
         return self.project.scope(self.module)
 
     @cached_property
     def open_uses(self) -> Mapping[tuple[Space | None, str], Sequence[Use]]:
-        """The uses that lead to no declaration, by space and name in upper case."""
+        """The uses without a declaration, by space and name in upper case."""
         found: dict[tuple[Space | None, str], list[Use]] = {}
         for use in self.resolution.open_uses:
             found.setdefault((use.space, use.name.key), []).append(use)
@@ -144,7 +144,7 @@ class Context:
 
     @cached_property
     def used(self) -> frozenset[Found]:
-        """What some name in the file means that neither declares nor announces it."""
+        """The symbols that the file uses, except where a name declares or announces one."""
         announced = {symbol.span for symbol in self.table.externals.values()}
         places = [
             (answer, name)
@@ -157,7 +157,7 @@ class Context:
 
     @cached_property
     def spelling(self) -> Spelling:
-        """How the names of the file are spelt."""
+        """The spelling of the names of the file."""
         return spelling_of([self.source])
 
     @cached_property
@@ -172,11 +172,11 @@ class Context:
         )
 
     def is_cut(self, routine: RoutineBody) -> bool:
-        """Whether the end of a routine is missing with that of the file."""
+        """Return whether a routine has no end because the file is cut off."""
         return self.module.is_cut and routine is self.routines[-1]
 
     def found(self, name: ast.Name) -> Found | None:
-        """What a name means, if that is known."""
+        """Return the declaration of a name, or ``None`` if it is unknown."""
         return self.resolution.found(name)
 
     def note_bound(self, node: ast.Expression, bound: Bound) -> None:
@@ -201,9 +201,9 @@ class Context:
         is_unconfirmed: bool = False,
         fix: Fix | None = None,
     ) -> Diagnostic:
-        """A finding at a node or a span; the rest as `grammar.diagnostics.diagnostic.diagnose`.
+        """Return a finding at a node or a span; see `grammar.diagnostics.diagnostic.diagnose`.
 
-        What rests on unconfirmed rules alone is no error.
+        A finding that is based on unconfirmed rules only is not an error.
         """
         region = Region.of(self.source, where.span if isinstance(where, Node) else where)
         rules = code(slug).rules if rules is None else rules
@@ -228,7 +228,7 @@ class Context:
         fix: Fix | None = None,
         is_unconfirmed: bool = False,
     ) -> Diagnostic:
-        """A finding from a bad verdict; the controller's own message comes before ``slug``."""
+        """Return a finding for a negative verdict; the controller's message replaces ``slug``."""
         entry = None if verdict.message is None else of_message(verdict.message)
         return self.finding(
             entry.slug if entry else slug,
@@ -241,7 +241,7 @@ class Context:
 
 
 def placed(body: tuple[ast.Statement, ...]) -> tuple[PlacedStatement, ...]:
-    """All statements of a body with those they stand in, in the order of the text."""
+    """Return all statements of a body with the statements that contain them, in order."""
     found: list[PlacedStatement] = []
     todo: list[tuple[Iterator[Any], PlacedStatement | None]] = [(iter(body), None)]
     while todo:

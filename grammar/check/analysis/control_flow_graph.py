@@ -1,9 +1,9 @@
-"""The ways through a routine: what can come after each statement.
+"""The control flow graph of a routine: which statement can come after which.
 
-A graph of places. Each statement has one, where it begins; further places have none: the start and
-the end, where ways meet behind a block, where UNTIL is tested. Conditions count as open, but for
-TRUE and FALSE in loops. Linear in the size of the routine, and without recursion: depth of nesting
-meets no limit.
+Each statement has a node at its beginning. Further nodes without a statement are the start, the
+end, the joins after blocks, and the test of UNTIL. Conditions are not evaluated, except TRUE and
+FALSE in loops. Construction is linear in the size of the routine and does not recurse, so nesting
+is not limited.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from support.lazy_dataclass import dataclass, node
 
 @node
 class FlowNode:
-    """A place in a routine: where its statement begins, or UNTIL of a REPEAT if ``is_test``."""
+    """A node: the beginning of its statement, or UNTIL of a REPEAT if ``is_test``."""
 
     statement: ast.Statement | None = None
     is_test: bool = False
@@ -25,11 +25,10 @@ class FlowNode:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlowGraph:
-    """The ways through a routine from ``start`` to ``end``.
+    """The control flow graph of a routine from ``start`` to ``end``.
 
-    ``after`` are the places that can come next. ``steps`` are the places of its statements in the
-    order of the text, each with that of the statement before it in the same list and that of the
-    block it stands in.
+    ``after`` are the successors of each node. ``steps`` are the nodes of all statements in the
+    order of the text, each with the previous statement in the same list and the enclosing block.
     """
 
     start: FlowNode
@@ -38,7 +37,7 @@ class FlowGraph:
     steps: tuple[tuple[FlowNode, FlowNode | None, FlowNode | None], ...]
 
     def reached(self) -> frozenset[FlowNode]:
-        """The places that some way from the start leads to, the start included."""
+        """Return the nodes that can be reached from the start, including the start."""
         found = {self.start}
         todo = [self.start]
         while todo:
@@ -54,7 +53,7 @@ IsExhaustive = Callable[[ast.Switch], bool]
 
 
 def flow_graph(routine: ast.Routine, is_exhaustive: IsExhaustive = lambda _: False) -> FlowGraph:
-    """The ways through a routine. A GOTO to a label that is not there leads nowhere."""
+    """Return the control flow graph of a routine. A GOTO to an unknown label has no successor."""
     return _Builder(is_exhaustive).build(routine)
 
 
@@ -66,10 +65,10 @@ _TURNING = frozenset((
 
 
 class _Part:
-    """A list of statements that is being gone through.
+    """A list of statements that is being processed.
 
-    ``at`` is where the last statement left off, ``behind`` what comes after the list, ``leave``
-    where EXIT leads.
+    ``at`` is the end of the last statement, ``behind`` the node after the list, ``leave`` the
+    target of EXIT.
     """
 
     __slots__ = ("at", "before", "behind", "inside", "leave", "statements")
@@ -162,7 +161,7 @@ class _Builder:
     def _branches(
         self, statement: ast.If | ast.Switch, step: FlowNode, behind: FlowNode
     ) -> list[tuple[ast.Statement, ...]]:
-        """What is chosen from; where nothing may be chosen, a way leads past it."""
+        """Add the branches of a statement, and an edge past them if none may be chosen."""
         if isinstance(statement, ast.If):
             is_open = statement.otherwise is None
         else:
@@ -173,7 +172,7 @@ class _Builder:
 
 
 def _is_endless(loop: ast.Statement) -> bool:
-    """Whether a loop can be left by EXIT, GOTO and RETURN only."""
+    """Return whether only EXIT, GOTO and RETURN leave a loop."""
     match loop:
         case ast.Loop():
             return True

@@ -14,13 +14,13 @@ _MOST_SUGGESTIONS = 20
 
 
 class NameSuggestions:
-    """Suggests names for the first unknown ones of a file."""
+    """Suggests names for the first unknown names of a file."""
 
     def __init__(self) -> None:
         self._left = _MOST_SUGGESTIONS
 
     def suggest(self, name: str, names: Iterable[str], mark: str = "") -> Fix | None:
-        """Those of ``names`` that are like ``name``, each with a ``mark`` in front."""
+        """Return those of ``names`` that are similar to ``name``, each after ``mark``."""
         if not self._left:
             return None
         self._left -= 1

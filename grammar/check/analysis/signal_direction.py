@@ -1,4 +1,4 @@
-"""Direction of a signal: input, output, or neither."""
+"""The direction of a signal: input, output, or neither."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _SIDES: dict[str, Side] = {
 
 
 def written_side(node: ast.Expression) -> Side | None:
-    """The side of ``$IN[5]`` and its like, as its name says."""
+    """Return the direction of an expression such as ``$IN[5]``, from its name."""
     root = root_variable(node)
     return _SIDES.get(root.name.key) if root else None
 
 
 def side_of(context: Context, node: ast.Expression) -> Side | None:
-    """The side of an input, an output, or a signal that stands for some of them."""
+    """Return the direction of an input, an output, or a signal that denotes some."""
     side = written_side(node)
     if side is None and isinstance(node, ast.Variable):
         found = context.found(node.name)

@@ -1,7 +1,8 @@
-"""How likely a name is spelt as it is meant, judged by the other names of a project.
+"""Which of two similar names is spelt correctly, judged by the other names of a project.
 
-Of two names one slip apart, the one whose letters around the slip stand in other names is right. A
-name that one file writes, one slip from what several files write or from a series, means these.
+Of two names that differ by one slip, the correct one is the one whose letters around the slip occur
+in other names. A name that one file uses, and that is one slip away from a name that several files
+use, or from a series of names, is probably misspelt.
 """
 
 from __future__ import annotations
@@ -32,8 +33,8 @@ _NUMBER = re.compile(r"\d+")
 class Spelling:
     """The names of some files.
 
-    ``names_of_files`` gives the path of each and its names, in upper case; it is called once, when
-    first needed.
+    ``names_of_files`` returns the path of each file with its names in upper case; it is called
+    once, when first needed.
     """
 
     def __init__(self, names_of_files: Callable[[], Iterable[tuple[str, Set[str]]]]) -> None:
@@ -41,12 +42,12 @@ class Spelling:
 
     @cached_property
     def files(self) -> Mapping[str, Set[str]]:
-        """The names of each file."""
+        """Return the names of each file."""
         return dict(self._names_of_files())
 
     @cached_property
     def _names(self) -> Counter[str]:
-        """How many files have each name; the controller counts as one."""
+        """Return how many files have each name; the controller counts as one file."""
         system = System.load()
         files = (*self.files.values(), {*system.variables, *system.functions})
         counts = Counter(name for names in files for name in names)
@@ -59,7 +60,7 @@ class Spelling:
 
     @cached_property
     def _series(self) -> Counter[str]:
-        """How often names are written that differ in their numbers only."""
+        """Return how often names occur that differ in their numbers only."""
         series: Counter[str] = Counter()
         for name, count in self._names.items():
             series[_NUMBER.sub("0", name)] += count
@@ -72,7 +73,7 @@ class Spelling:
         return Typos(usual, _SHORTEST)
 
     def is_likelier(self, one: str, other: str) -> bool:
-        """Whether ``one`` of two names that are a slip apart is certainly the right one."""
+        """Return whether ``one`` is certainly the right one of two names that a slip separates."""
         names = one.upper(), other.upper()
         start = _common(*names)
         end = _common(*(name[: start - 1 if start else None : -1] for name in names))
@@ -83,14 +84,14 @@ class Spelling:
         return False
 
     def _others(self, part: str, names: Iterable[str]) -> int:
-        """How often a part of a name stands in others than ``names``."""
+        """Return how often a part of a name occurs in names other than ``names``."""
         own = sum(f"\n{name}\n".count(part) for name in names if name in self._names)
         return self._text.count(part) - own
 
     def meant(self, name: str) -> str | None:
-        """The only name that others write and ``name`` is a slip of; numbers make no difference.
+        """Return the only name in other files of which ``name`` is a slip, regardless of numbers.
 
-        ``None`` where there is none, or where others write it too, with whatever numbers.
+        Return ``None`` if there is none, or if other files have the name, too, with any numbers.
         """
         if name[0] == "$" or self._series[_NUMBER.sub("0", name.upper())] > 1:
             return None
@@ -104,7 +105,7 @@ class Spelling:
 
 
 def spelling_of(sources: Iterable[Source]) -> Spelling:
-    """The spelling of the names in some texts, which are read when it is asked for."""
+    """Return the spelling of the names in some texts, which are read when it is first used."""
     return Spelling(lambda: [(source.path, words_of(source.text)) for source in sources])
 
 
@@ -114,6 +115,6 @@ def _common(one: str, other: str) -> int:
 
 
 def _around(name: str, start: int, end: int, before: int, behind: int) -> str:
-    """What stands between a common start and end of a name, and beside it."""
+    """Return the part between a common start and end of a name, with its neighbours."""
     marked = f"\n{name}\n"
     return marked[max(0, start + 1 - before) : len(marked) - end - 1 + behind]

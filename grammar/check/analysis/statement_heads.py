@@ -1,4 +1,4 @@
-"""The first line of a statement that spans several: where a finding about it points."""
+"""The first line of a statement that spans several: the region of a finding about it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from grammar.syntax.source import Source
 
 
 def head(source: Source, node: Node) -> Span:
-    """The span of a node as far as it lies on its first line, its comment left out."""
+    """Return the part of a node's span in its first line, without a comment."""
     start, end = node.span
     line, column = source.place(start)
     shown = source.line(line)
@@ -18,5 +18,5 @@ def head(source: Source, node: Node) -> Span:
 
 
 def line_of(source: Source, node: Node) -> int:
-    """The line that a node begins on, from 1."""
+    """Return the line on which a node begins, counted from 1."""
     return source.place(node.span[0])[0]

@@ -1,12 +1,12 @@
-"""Types of expressions in two directions: `TypeChecker.infer` and `TypeChecker.check`.
+"""Bidirectional type checking of expressions: `TypeChecker.infer` and `TypeChecker.check`.
 
-What an expression is follows from a rule for its node, and each rule comes back for the operands.
-The rules are given (`types.expressions` has the table), so that they may stand in modules of their
-own. Types, and the enumerations that constants belong to, which follow from where they
-stand [TYP-16], are noted in the context. What does not fit is reported once: its type is `UNKNOWN`
-from there on.
+The type of an expression follows from the rule for its node, which infers the operands. The rules
+are passed in (`types.expressions` has the table), so that they can be in separate modules. Types,
+and the enumerations of constants, which follow from the context [TYP-16], are stored in the
+context. A mismatch is reported once; the type is `UNKNOWN` from then on.
 
-Recursion goes as deep as expressions nest, which `grammar.syntax.node_plans.MAX_DEPTH` limits.
+The recursion is as deep as expressions are nested, which `grammar.syntax.node_plans.MAX_DEPTH`
+limits.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _NAMES = frozenset({ast.Variable, ast.Member})
 
 
 class TypeChecker:
-    """Finds the types of the expressions of one file; ``diagnostics`` are what does not fit."""
+    """Infers the types of the expressions of one file; ``diagnostics`` are the mismatches."""
 
     def __init__(self, context: Context, rules: Mapping[type[Any], Rule]) -> None:
         self.context = context
@@ -80,10 +80,10 @@ class TypeChecker:
     # ------------------------------------------------------------------------- names
 
     def type_of(self, found: Found) -> Type:
-        """The type of what a name means.
+        """Return the type of a declared name.
 
-        Data of $CONFIG that no file declares have no certain type: another one may declare them
-        otherwise. So may the data list of a program, where it is missing.
+        Data of $CONFIG that no file declares have no certain type, because the actual declaration
+        may differ. The same holds for a data list of a program that is missing.
         """
         known = self._type_of.get(found)
         if known is None:
@@ -97,11 +97,11 @@ class TypeChecker:
         return known
 
     def type_of_symbol(self, symbol: Symbol, scope: Scope) -> Type:
-        """The type of a symbol that a scope declares."""
+        """Return the type of a symbol that a scope declares."""
         return self._declared.of(Found(symbol, scope))
 
     def root_symbol(self, node: ast.Expression) -> Symbol | None:
-        """The symbol that an expression reads or changes, if it is a known variable."""
+        """Return the variable that an expression reads or changes, if it is known."""
         variable = root_variable(node)
         found = self.context.found(variable.name) if variable else None
         return found.symbol if found else None
@@ -109,16 +109,17 @@ class TypeChecker:
     # ------------------------------------------------------------------------- types
 
     def infer(self, node: ast.Expression, expected: Type = UNKNOWN) -> Type:
-        """The type of an expression; ``expected`` is that of its place, which need not accept it.
+        """Return the type of an expression; ``expected`` is that of its place, as a hint.
 
-        The type is noted, unless the rule noted another: an aggregate becomes what its place is.
+        The type is stored, unless the rule has stored another: an aggregate gets the type of its
+        place.
         """
         inferred = self._rules[type(node)](self, node, expected)
         self._types.setdefault(node, inferred)
         return inferred
 
     def infer_target(self, node: ast.Expression) -> Type:
-        """The type of what is written to; a whole array has brackets [TYP-11, TYP-20]."""
+        """Return the type of an assignment target; a whole array has brackets [TYP-11, TYP-20]."""
         inferred = self.infer(node)
         if isinstance(inferred, Array) and not isinstance(node, ast.Subscript):
             self.reject("array-without-index", node, without_index(inferred))
@@ -159,7 +160,7 @@ class TypeChecker:
             self._report_quotient(node)
 
     def _note_constant(self, to: Enumeration, name: ast.Name) -> None:
-        """A name that nothing declares may be a constant without its # [TYP-16]."""
+        """Record that an undeclared name may be an enumeration constant without its # [TYP-16]."""
         meant = next((one for one in to.constants if one.upper() == name.key), None)
         if meant is not None and self.context.found(name) is None:
             self.context.constants[name] = f"#{meant}"
@@ -179,7 +180,7 @@ class TypeChecker:
                 self.report("rounded", node, verdict.reason, rules=verdict.rules)
 
     def _report_quotient(self, node: ast.Expression) -> None:
-        """An INT divided by an INT has dropped its fraction before a REAL receives it [ARI-02]."""
+        """Report an INT quotient assigned to a REAL: the fraction is lost before [ARI-02]."""
         node = without_parentheses(node)
         if not (isinstance(node, ast.Binary) and node.operator == "/"):
             return
@@ -223,7 +224,7 @@ class TypeChecker:
         self.context.lacking.append((to, constant.name, found))
 
     def is_described(self, type_: Type) -> bool:
-        """Whether more than one release describes a type of the controller."""
+        """Return whether more than one release describes a type of the controller."""
         return self.context.system.is_described(type_)
 
 

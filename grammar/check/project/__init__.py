@@ -1,1 +1,1 @@
-"""All checks, run over a file, a project or a backup; suppressing, keeping and mending."""
+"""Runs all checks over a file, a project or a backup; suppression, caching and repair."""

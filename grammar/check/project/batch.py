@@ -1,10 +1,10 @@
-"""The check of folders and archives: every file checked as part of its project.
+"""Checks folders and archives: every file is checked as part of its project.
 
-Files are grouped to projects by where they lie, before any is read (`grammar.semantics.link`).
-Projects are checked one after the other in parallel processes, a large one by all of them
-(`support.parallel.sticky_pool`). The findings come in order, whatever process they are from. What
-was found is kept: of a project in which nothing has changed, all of it, and of any other the
-results of those files that need not be checked again (`grammar.check.project.project_check`).
+Files are grouped into projects by their location, before any is read (`grammar.semantics.link`).
+Projects are checked one after another in parallel processes; a large one uses all processes
+(`support.parallel.sticky_pool`). The order of the findings does not depend on processes. Results
+are cached: of an unchanged project completely, of any other project those of the files that need
+not be checked again (`grammar.check.project.project_check`).
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ _MOST_WAITING = 2_000_000
 
 @dataclass(frozen=True, slots=True)
 class CheckReport:
-    """Findings in order, and what was checked.
+    """The findings in order, and what was checked.
 
-    ``lines`` are source lines by path and number. ``files`` were checked, of ``bytes`` in all, in
-    ``projects``; of ``unchanged`` files the results were kept. ``skipped`` is what is no KRL,
-    ``paths`` what is, sorted.
+    ``lines`` are source lines by path and number. ``files`` is the number of checked files, of
+    ``bytes`` in all, in ``projects``; results of ``unchanged`` files came from the cache.
+    ``skipped`` are files that are not KRL, ``paths`` those that are, sorted.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -130,7 +130,7 @@ def check_paths(
 
 
 def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
-    """What is to be said of a project: that of the files with a name, under that."""
+    """Return the results of the files in ``names``, with these names as paths."""
     return replace(
         result,
         diagnostics=tuple(
@@ -146,12 +146,12 @@ def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
 
 
 def _place(found: Found) -> tuple[Path, str | None]:
-    """Where a file lies, however it was come by."""
+    """Return the location of a file, however it was found."""
     return found.file, found.member
 
 
 def _projects(found: Sequence[Found | Skipped]) -> Iterator[list[Found | Skipped]]:
-    """The files of each project; those that are too large may declare and use any name of it."""
+    """Return the files of each project; files that are too large may use any of its names."""
     by_path: dict[str, deque[Found | Skipped]] = {}
     for candidate in found:
         by_path.setdefault(candidate.path, deque()).append(candidate)
@@ -241,7 +241,7 @@ class _Project:
 
     @property
     def is_done(self) -> bool:
-        """Whether `result` need not wait."""
+        """Return whether `result` returns at once."""
         return all(part.done() for part in ([self._whole] if self._whole else self._parts))
 
     def keep(self, result: ProjectResult, store: ResultStore) -> None:
@@ -250,7 +250,7 @@ class _Project:
         store.put([(self.place, result_record(result, self.state))])
 
     def result(self) -> ProjectResult:
-        """What was found; waits for it."""
+        """Wait for the findings and return them."""
         if self._whole is not None:
             self._files = self._whole.result()
         else:
@@ -312,7 +312,7 @@ def _run(
     store: ResultStore,
     options: CheckOptions,
 ) -> Iterator[ProjectResult]:
-    """The results of projects, in their order; only so many wait for their turn."""
+    """Yield the results of projects in order; only a limited number is in flight."""
     waiting: deque[_Project | ProjectResult] = deque()
     size = 0
     most = _MOST_WAITING * pool.count

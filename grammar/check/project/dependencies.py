@@ -1,11 +1,12 @@
-"""Dependencies of a file's findings: facts of other files, by name.
+"""Dependencies of a file's findings on other files, as facts about names.
 
-A file contributes facts about names: what it declares at its first level, which routines it calls,
-which words stand in lines of it that cannot be read. A file needs the facts about every name in its
-text, and about the names in these facts in turn: a variable leads to its type, the type to those of
-its members. As long as they stay the same, and the project as a whole does, so do its findings.
+A file contributes facts about names: its top-level declarations, the routines that it calls, the
+words in its unreadable lines. The findings of a file depend on the facts about every name in its
+text, and in turn about the names in these facts: a variable leads to its type, the type to those of
+its members. If none of these facts changes, and the project as a whole does not, the findings stay
+the same.
 
-A check that looks at more of other files than this has to add it to `contribution`.
+A check that uses more information about other files must add it to `contribution`.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Contribution:
-    """What a file says of names, in upper case, and the ``words`` in it that others may explain.
+    """The facts of a file about names in upper case, and the ``words`` that others may declare.
 
-    ``facts`` are sentences by the name that they are about, the same for the same declaration
-    wherever in the file it stands.
+    ``facts`` are texts by the name that they describe; equal declarations have equal texts,
+    wherever they are in the file.
     """
 
     facts: Mapping[str, str]
@@ -35,24 +36,27 @@ class Contribution:
 
 @dataclass(frozen=True, slots=True)
 class Needs:
-    """Digests of all that the findings of a file rest on.
+    """Digests of everything on which the findings of a file depend.
 
-    ``names`` stands for the names that can be suggested in place of one that nothing declares: it
-    counts only for a file that has such a name.
+    ``names`` represents the names that can be suggested for an undeclared one; it matters only for
+    a file with an undeclared name.
     """
 
     facts: str
     names: str
 
     def keep(self, before: Needs, *, is_open: bool) -> bool:
-        """Whether findings made with other needs ``before`` stand, by whether the file is open."""
+        """Return whether findings made with the needs ``before`` are still valid.
+
+        ``is_open`` if the file uses an undeclared name.
+        """
         return self.facts == before.facts != "" and (self.names == before.names or not is_open)
 
 
 def contribution(
     path: str, text: str, table: ModuleTable | None, unread: frozenset[str] | None
 ) -> Contribution:
-    """The contribution of a file; ``unread`` are the words in what of it cannot be read."""
+    """Return the contribution of a file; ``unread`` are the words in its unreadable lines."""
     known: dict[str, list[str]] = {}
     if table is not None:
         for space, symbol in table.table.symbols():
@@ -69,7 +73,7 @@ def contribution(
 
 
 def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> Iterator[Needs]:
-    """The needs of each file of a project, in order; those of a file without contribution too."""
+    """Return the needs of each file of a project, in order, even of files without contribution."""
     facts: dict[str, list[str]] = {}
     for one in contributions:
         for name, fact in one.facts.items() if one else ():
@@ -88,7 +92,7 @@ def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> 
 
 
 def _whole(project: Project) -> str:
-    """The project as a whole: what a check may ask of it besides names."""
+    """Return the properties of the project as a whole that checks use, besides names."""
     modules = [
         (
             one.path,
@@ -139,7 +143,7 @@ def _digest(lines: Iterable[str]) -> str:
 
 
 def _said(value: object) -> str:
-    """All that a symbol says, wherever it stands."""
+    """Return all properties of a symbol except its place."""
     if isinstance(value, Enum):
         return value.name
     if isinstance(value, Mapping):

@@ -1,7 +1,8 @@
-"""All checks, and how they run over a file, a project, a workspace.
+"""Runs all checks over a file, a project or a workspace.
 
-What is found in a file depends on its text and on the tables of other files, never on their
-statements. `Findings` of a file can be pickled and kept; those of its project are made of them.
+The findings in a file depend on its text and on the symbol tables of other files, never on the
+statements of other files. The `Findings` of a file can be pickled and cached; those of its project
+are made from them.
 """
 
 from __future__ import annotations
@@ -64,10 +65,10 @@ CHECKS: tuple[Check, ...] = (
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What the check of one file found.
+    """The result of checking one file.
 
-    ``references`` are names that other files may declare, ``uses`` those in upper case that the
-    file uses and some file declares, ``effects`` what other files rely on, ``constants`` those
+    ``references`` are names that other files may declare, ``uses`` the names in upper case that the
+    file uses and some file declares, ``effects`` what other files depend on, ``constants`` those
     whose enumeration is not known.
     """
 
@@ -80,11 +81,10 @@ class Findings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Checked:
-    """A file that was checked: its findings, and what is known of its tree.
+    """A checked file: its findings, and the facts about its syntax tree.
 
-    The tables are keyed by nodes, by identity: ``types`` has every expression, `UNKNOWN` where
-    nothing is known; ``enumerations`` those of constants; ``values`` what is known before the
-    program runs, where that was asked for.
+    The tables are keyed by node identity: ``types`` has every expression, `UNKNOWN` if its type is
+    not known; ``enumerations`` those of constants; ``values`` the constant values that were needed.
     """
 
     module: Module
@@ -96,9 +96,9 @@ class Checked:
 
 
 def typed_module(project: Project, module: Module, source: Source) -> Checked:
-    """What is known of the tree of one file that can be read, without any findings.
+    """Return the types and names of one readable file, without findings.
 
-    That is all that running it needs, and a fraction of the work.
+    That is all that is needed to run it, and much faster than a check.
     """
     context = Context(project, module, source, resolve(project, module), System.load())
     for check in _TYPING:
@@ -141,9 +141,9 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
 def check_project(
     findings: Iterable[Findings], file_of: FileOf, spelling: Spelling
 ) -> list[Diagnostic]:
-    """All findings of a project, from those of all its files, in order.
+    """Return all findings of a project in order, from those of its files.
 
-    ``file_of`` has the table and the text of a file, for what others find in its declarations;
+    ``file_of`` returns the table and the text of a file, for findings at its declarations;
     ``spelling`` knows the names of all files.
     """
     kept = list(findings)
@@ -167,7 +167,7 @@ def check_project(
 
 
 def _constants_of(file_of: FileOf, paths: Iterable[str]) -> Iterator[str]:
-    """The constants of the enumerations that some files declare at their first level."""
+    """Return the constants of the enumerations that some files declare at top level."""
     for path in paths:
         table = (file_of(path) or (None, None))[0]
         for symbol in table.table.spaces[Space.TYPE].values() if table else ():

@@ -1,9 +1,10 @@
-"""The check of one project in one or several processes: reading its files, then checking them.
+"""Checks one project in one or several processes: first its files are read, then checked.
 
-A file is checked against the tables of all files of its project, and against no trees but its own.
-So files can be shared by processes: each reads its share and keeps the trees, the tables are sent
-to all, and each checks its share. For the same reason a file whose text is known need not be read
-again, and is checked again only where what it rests on has changed (`dependencies`).
+A file is checked against the symbol tables of all files of its project and its own tree only, so
+files can be distributed over processes: each process reads its share and keeps the trees, the
+tables are sent to all, and each checks its share. For the same reason a file with known text is not
+read again, and is checked again only if something changed on which its findings depend
+(`dependencies`).
 """
 
 from __future__ import annotations
@@ -49,10 +50,10 @@ _NOTHING = Findings((), ())
 
 @dataclass(frozen=True, slots=True)
 class CheckOptions:
-    """What to look for: syntax alone, or also what stops the advance run.
+    """What to check: syntax only, or also what stops the advance run.
 
-    With ``is_complete`` the files of each project are all there are; else their calls show whether
-    some are missing. ``packages`` are option packages that are there besides those that are called.
+    With ``is_complete`` no files of a project are missing; otherwise its calls decide. ``packages``
+    are installed option packages in addition to those that are called.
     """
 
     syntax_only: bool = False
@@ -62,7 +63,7 @@ class CheckOptions:
 
     @property
     def wanted_codes(self) -> tuple[str, ...]:
-        """The prefixes of the codes that are wanted; see `suppression_comments`."""
+        """The prefixes of the selected codes; see `suppression_comments`."""
         if self.syntax_only:
             return ("KRL0",)
         return ("",) if self.stops else ("KSS", *(f"KRL{digit}" for digit in "01234579"))
@@ -70,9 +71,9 @@ class CheckOptions:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """A file of a project: its path as people see it, its origin, and its bytes.
+    """A file of a project: its displayed path, its origin, and its bytes.
 
-    Of one that ``is_unread`` they say why.
+    If ``is_unread``, the bytes are the reason.
     """
 
     path: str
@@ -81,7 +82,7 @@ class Content:
     is_unread: bool = False
 
     def source(self) -> Source:
-        """The text of a file that is known to have one."""
+        """Return the text of a file that is known to have one."""
         decoded = decode(self.data)
         assert not isinstance(decoded, str), "it was decoded before"
         return Source(decoded.text, self.path)
@@ -91,10 +92,9 @@ class Content:
 class FileResult:
     """The result of one file.
 
-    ``skipped`` is why it is no KRL, else ``None``. ``lines`` are the source lines of its findings
-    by number, ``comments`` those that silence, ``words`` the names in a text that cannot be read.
-    ``contribution`` is what it provides to others; ``is_open``: it uses a name that nothing
-    declares.
+    ``skipped`` is why it is not KRL, otherwise ``None``. ``lines`` are the source lines of its
+    findings by number, ``comments`` its suppression comments, ``words`` the names in unreadable
+    text. ``contribution`` is what it provides to others; ``is_open`` if it uses an undeclared name.
     """
 
     findings: Findings = _NOTHING
@@ -109,7 +109,7 @@ class FileResult:
 
 @dataclass(frozen=True, slots=True)
 class KnownFile:
-    """A file that was checked before: what reading it gave, and checking it while it needed that.
+    """A file that was checked before: the results of reading and checking, and its needs then.
 
     ``digest`` is that of its content.
     """
@@ -120,7 +120,7 @@ class KnownFile:
     needs: Needs
 
     def stands(self, needs: Needs) -> bool:
-        """Whether its findings are what another check would find."""
+        """Return whether its findings are still valid."""
         if self.read.table is None:  # its findings are those of its text alone
             return True
         return needs.keep(self.needs, is_open=self.checked.is_open)
@@ -128,11 +128,11 @@ class KnownFile:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A file as the check reads it.
+    """A file as it was read for the check.
 
-    ``syntax`` is its tree, without the lines that cannot be read, whose findings are
-    ``diagnostics``; `None` where nothing of it can be read. ``words`` are the names in what cannot,
-    ``exchanged`` the lines that were read as something else.
+    ``syntax`` is its tree without the unreadable lines, whose findings are ``diagnostics``; `None`
+    if nothing can be read. ``words`` are the names in unreadable lines, ``exchanged`` the lines
+    that were replaced.
     """
 
     syntax: ast.Module | None
@@ -141,12 +141,12 @@ class Reading:
     exchanged: frozenset[int] = frozenset()
 
     def alone(self) -> Findings:
-        """What was found in reading, and what the text that was not read may do."""
+        """Return the findings from reading, and the possible effects of the unreadable text."""
         unread = effects_of_unread(self.words or frozenset())
         return Findings(self.diagnostics, (), unread, uses_of_unread(self.words or ()))
 
     def completed(self, found: Findings) -> Findings:
-        """What was found in the tree, with what was found in reading; nothing in place of it."""
+        """Return the findings in the tree together with those from reading."""
         kept = (one for one in found.diagnostics if one.region.line not in self.exchanged)
         references = tuple(
             one
@@ -170,7 +170,7 @@ def read_source(source: Source) -> Reading:
 
 
 def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) -> list[Diagnostic]:
-    """All findings of a project whose files were checked, in order."""
+    """Return all findings of a project whose files were checked, in order."""
     indices = {contents[index].path: index for index in reversed(range(len(contents)))}
 
     @cache
@@ -187,7 +187,7 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
 
 @dataclass(frozen=True, slots=True)
 class _Tree:
-    """What a process keeps of a file between reading and checking; not all have their trees."""
+    """What a process keeps of a file between reading and checking; some have no tree."""
 
     table: ModuleTable
     source: Source
@@ -202,7 +202,7 @@ _KEPT: dict[int, dict[int, _Tree]] = {}
 def recheck(
     contents: Sequence[Content], options: CheckOptions, known: Mapping[int, KnownFile]
 ) -> list[KnownFile]:
-    """Check a project in this process, but for what stands of its ``known`` files."""
+    """Check a project in this process, except for ``known`` files that are still valid."""
     project = -1
     new = {index: one for index, one in enumerate(contents) if index not in known}
     looked = {index: one.read for index, one in known.items()}
@@ -215,7 +215,7 @@ def recheck(
 
 
 def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list[Needs]:
-    """What the findings of each file of a project rest on, from what reading all of them gave."""
+    """Return the needs of each file of a project, from the results of reading all of them."""
     places = [(content.path, content.origin) for content in contents]
     found = [Needs("", "")] * len(contents)
     by_path = {path: index for index, (path, _) in enumerate(places)}
@@ -235,7 +235,7 @@ def completed(
     checked: Mapping[int, FileResult],
     needed: Sequence[Needs],
 ) -> list[KnownFile]:
-    """All files of a project as they are known now."""
+    """Return the current results of all files of a project."""
     found = []
     for index, content in enumerate(contents):
         before = known.get(index)
@@ -259,7 +259,7 @@ def read_part(
 def _read_all(
     part: Mapping[int, Content], options: CheckOptions
 ) -> tuple[dict[int, FileResult], dict[int, _Tree]]:
-    """What reading some files gave, and what is kept of them."""
+    """Read some files; return their results and what is kept of them."""
     looked, kept = {}, {}
     size = 0
     for index, content in part.items():
@@ -343,7 +343,7 @@ def _files(
     looked: Mapping[int, FileResult],
     kept: Mapping[int, _Tree],
 ) -> list[File]:
-    """The files of a project to link: those that are KRL."""
+    """Return the files of a project to link: those that are KRL."""
     files = []
     for index, (path, origin) in enumerate(places):
         known, tree = looked[index], kept.get(index)

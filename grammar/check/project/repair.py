@@ -1,4 +1,4 @@
-"""Syntax errors mended by the edits that their findings carry, each tried before it is kept."""
+"""Repairs syntax errors with the edits of their findings; each edit is tried before it is kept."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST_STEPS = 4
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A text with some of its findings mended, those in the order of the text."""
+    """A text after the repair of some findings, which are in the order of the text."""
 
     text: str
     mended: tuple[Diagnostic, ...]
@@ -40,9 +40,9 @@ def repair(source: Source, is_wanted: Callable[[Diagnostic], bool] = lambda _: T
 def _mended(
     source: Source, found: Diagnostic, before: int, is_wanted: Callable[[Diagnostic], bool]
 ) -> tuple[Source, list[Diagnostic]] | None:
-    """The text without the errors of a line, and what was mended in it; ``None`` if that fails.
+    """Return the text without the errors of a line, and the repaired findings, or ``None``.
 
-    Behind one error of a line there may be another.
+    After one error of a line there may be another.
     """
     steps: list[Diagnostic] = []
     here: Diagnostic | None = found
@@ -61,7 +61,7 @@ def _mended(
 
 
 def edited(source: Source, found: Diagnostic) -> str | None:
-    """The text with the edit of a finding; ``None`` for one without."""
+    """Return the text after the edit of a finding; ``None`` for a finding without edit."""
     fix = found.fix
     if fix is None or fix.region is None or fix.replacement is None:
         return None

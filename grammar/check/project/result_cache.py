@@ -1,6 +1,6 @@
-"""Results of checking a project and its files, as records that can be kept and read back.
+"""Check results of projects and files as records that can be stored and read back.
 
-A record counts only for the same content, code, tables and options; where it cannot be read, the
+A record is valid for the same content, code, tables and options only. If it cannot be read, the
 project or the file is checked again.
 """
 
@@ -23,10 +23,10 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ProjectResult:
-    """What was found in a project, in order, with source lines by path and number.
+    """The findings in a project in order, with source lines by path and number.
 
-    ``sizes`` are the bytes of the files that were checked, by path; the results of ``kept`` of them
-    were known from before.
+    ``sizes`` are the bytes of the checked files by path; the results of ``kept`` of them came from
+    the cache.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -37,12 +37,12 @@ class ProjectResult:
 
     @property
     def files(self) -> int:
-        """How many files were checked."""
+        """The number of checked files."""
         return len(self.sizes)
 
 
 def state_of(contents: Sequence[Content], options: CheckOptions) -> str:
-    """What a result depends on: all files of the project, our code and tables, the options."""
+    """Return a digest of all inputs of a result: files of the project, code, tables, options."""
     state = hashlib.sha256(_versions(options).encode())
     for content in contents:
         line = f"\n{digest(content.data)} {content.origin}\t{content.path}"
@@ -60,7 +60,7 @@ def known_files(
     contents: Sequence[Content],
     options: CheckOptions,
 ) -> dict[int, KnownFile]:
-    """The files of a project whose text was checked before, by index; ``places`` say which."""
+    """Return the files of a project with cached results, by index; ``places`` are their paths."""
     found = {}
     versions = _versions(options)
     for index, (place, content) in enumerate(zip(places, contents, strict=True)):
@@ -82,7 +82,7 @@ def known_records(
     known: Mapping[int, KnownFile],
     options: CheckOptions,
 ) -> Iterator[tuple[str, bytes]]:
-    """What to keep of the files of a project: those that are ``known`` as they are lie there."""
+    """Return the records to store for the files of a project; ``known`` ones are stored already."""
     versions = _versions(options)
     for index, (place, file) in enumerate(zip(places, files, strict=True)):
         if file is not known.get(index):
@@ -90,7 +90,7 @@ def known_records(
 
 
 def result_record(result: ProjectResult, state: str) -> dict[str, object]:
-    """The record of a result that belongs to a state."""
+    """Return the record of a result for a state."""
     return {
         "state": state,
         "diagnostics": [_written(one) for one in result.diagnostics],
@@ -101,7 +101,7 @@ def result_record(result: ProjectResult, state: str) -> dict[str, object]:
 
 
 def read_result(record: Mapping[str, Any], state: str) -> ProjectResult | None:
-    """The result of a record; ``None`` where it belongs to another state or is damaged."""
+    """Return the result in a record; ``None`` if it is for another state or damaged."""
     if record.get("state") != state:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Comments that silence findings of their line or file, applied to the findings of one file."""
+"""Comments that suppress findings of their line or file, applied to the findings of one file."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _MARK = re.compile(r";[ \t]*krl[ \t]*:", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class SuppressionComment:
-    """A comment that silences, or is meant to, and where it stands."""
+    """A comment that suppresses findings, or tries to, and its place."""
 
     what: Suppression | Malformed
     region: Region
 
 
 def suppression_comments(source: Source) -> tuple[SuppressionComment, ...]:
-    """The comments of a file that silence something, or are meant to."""
+    """Return the comments of a file that suppress findings, or try to."""
     if not _MARK.search(source.text):
         return ()
     found = []
@@ -43,10 +43,10 @@ def apply_suppressions(
     comments: Sequence[SuppressionComment],
     sought: tuple[str, ...] = ("",),
 ) -> list[Diagnostic]:
-    """The findings of a file that no comment silences, and what is wrong with the comments.
+    """Return the findings that no comment suppresses, and findings on the comments.
 
-    ``sought`` are the beginnings of the codes that were looked for at all: a comment for others may
-    well be of use another time.
+    ``sought`` are the prefixes of the codes that were checked at all: a comment for other codes may
+    be useful another time.
     """
     regions = {comment.what: comment.region for comment in comments}
     acting = [what for what in regions if isinstance(what, Suppression)]

@@ -1,1 +1,1 @@
-"""Types: of expressions, in declarations, data lists and statements."""
+"""Type checks of expressions, declarations, data lists and statements."""

@@ -1,4 +1,7 @@
-"""Aggregates: whether their components are there, each once, and fit [TYP-19, TYP-20]."""
+"""Aggregates: whether their components exist, occur once, and have the right type.
+
+The rules are [TYP-19, TYP-20].
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ from grammar.syntax import ast
 
 
 def aggregate(checker: TypeChecker, node: ast.Aggregate, expected: Type) -> Type:
-    """The type of an aggregate; its structure is that of its prefix, or else of its place.
+    """Return the type of an aggregate; its structure is that of its prefix, or of its place.
 
-    The components are checked here, so the type names none that the structure lacks.
+    The components are checked here; the type contains only those that the structure has.
     """
     structure = expected if isinstance(expected, Structure) else None
     if node.type is not None:
@@ -50,7 +53,7 @@ def _report_missing(checker: TypeChecker, structure: Structure, name: ast.Name) 
 
 
 def _indexed(checker: TypeChecker, array: Type, part: ast.Component) -> Type:
-    """The type of ``NAME[]`` or ``LIST[2]`` as a component."""
+    """Return the type of ``NAME[]`` or ``LIST[2]`` as a component."""
     given = part.indices or ()
     for one in given:
         if one is not None:

@@ -1,4 +1,4 @@
-"""Assignments: what may be written, and with which values."""
+"""Assignments: what may be written, and which values."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def assign(checker: TypeChecker, node: ast.Assignment) -> None:
 
 
 def _system_variable(checker: TypeChecker, root: ast.Variable) -> SystemVariable | None:
-    """What is known of a variable, if it is one of the controller."""
+    """Return the table entry of a system variable, or ``None`` for other variables."""
     if root.name.text.startswith("$"):
         return checker.context.system.variables.get(root.name.key)
     return None

@@ -1,8 +1,8 @@
-"""Calls: how many arguments, of which types, and whether there is a value.
+"""Calls: the number and types of arguments, and whether there is a result.
 
-An argument passed :IN is converted where that loses nothing but a fraction, a variable passed :OUT
-has the type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; only the
-controller's own functions are known to need them.
+An :IN argument is converted if that loses at most a fraction; a variable passed :OUT must have the
+type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; only functions of the
+controller are known to need them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from grammar.syntax import ast
 
 
 def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
-    """The type of the value of a call, `UNKNOWN` where there is none; its arguments are checked."""
+    """Return the type of a call's result, or `UNKNOWN` without a result; check its arguments."""
     found = checker.context.found(node.name)
     if found is None or not isinstance(found.symbol, RoutineSymbol) or _is_unread(found):
         for argument in node.arguments:
@@ -35,12 +35,12 @@ def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
 
 
 def _is_unread(found: Found) -> bool:
-    """Whether the line that names the parameters cannot be read."""
+    """Return whether the line that declares the parameters cannot be read."""
     return found.module is not None and found.module.is_head_unread(found.symbol.key)
 
 
 def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:
-    """Whether the parameters are known from recollection only, or those of an option package."""
+    """Return whether the parameters are from recollection, or those of an option package."""
     if isinstance(scope, PackageScope):
         return True
     if not isinstance(scope, SystemScope):
@@ -90,9 +90,9 @@ def _counted(number: int) -> str:
 
 
 def _check_missing(checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol) -> None:
-    """The controller's own functions need their arguments.
+    """Report missing arguments of a function of the controller.
 
-    KUKA's own programs leave some of them empty, but end no list early.
+    KUKA's own programs leave some arguments empty, but never end a list early.
     """
     missing = [parameter.name for parameter in symbol.parameters[len(node.arguments) :]]
     if missing:

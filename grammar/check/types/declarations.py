@@ -1,4 +1,4 @@
-"""Declarations: sizes of arrays, GLOBAL, signals, imports, parameters, names of modules."""
+"""Declarations: array sizes, GLOBAL, signals, imports, parameters, names of modules."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from grammar.syntax.references import Space
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """What is wrong with the declarations of a file."""
+    """Return the findings on the declarations of a file."""
     checker = type_checker(context)
     _check_name(checker)
     _check_use(checker)
@@ -42,7 +42,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 def _check_name(checker: TypeChecker) -> None:
-    """A module is known by the name of its file [SCO-01]."""
+    """Report a module whose name differs from that of its file [SCO-01]."""
     module, table = checker.context.module, checker.context.table
     if not module.is_misnamed:
         return
@@ -53,7 +53,7 @@ def _check_name(checker: TypeChecker) -> None:
 
 
 def _check_use(checker: TypeChecker) -> None:
-    """A data list that is not PUBLIC is that of the program of the same name [SCO-01, SCO-05]."""
+    """Report a data list that is not PUBLIC and has no program of its name [SCO-01, SCO-05]."""
     context = checker.context
     table, module = context.table, context.module
     if not table.is_data or table.is_public or table.is_system:
@@ -121,7 +121,7 @@ _DEFINITIONS: frozenset[type[Any]] = frozenset(
 
 
 def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool) -> None:
-    """Every dimension of an array has a size, but for parameters [TYP-08]."""
+    """Report an array dimension without size; parameters need none [TYP-08]."""
     for size in declarator.indices or ():
         if size is None:
             if not is_open:
@@ -143,7 +143,7 @@ def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool
 
 
 def _check_import(checker: TypeChecker, node: ast.Importation) -> None:
-    """What is imported is data of another list, which has to be PUBLIC [ADV-05]."""
+    """Report an import from a data list that is not PUBLIC or not there [ADV-05]."""
     context = checker.context
     found = context.found(node.declarator.name)
     if found is None or found.symbol.kind is not Kind.IMPORT:
@@ -185,7 +185,7 @@ def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
 def _slipped(
     context: Context, routine: RoutineBody, undeclared: Sequence[ast.Parameter]
 ) -> Span | None:
-    """Where the only undeclared parameter is declared by a slip: nothing uses that declaration."""
+    """Return where the only undeclared parameter is declared with a slip, if that is unused."""
     if len(undeclared) > 1:
         return None
     name = undeclared[0].name

@@ -1,4 +1,4 @@
-"""The rules for expressions: literals, variables, operators; calls and aggregates stand beside."""
+"""Type rules for expressions: literals, variables, operators. Calls and aggregates are beside."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _BITS = 2**32 - 1
 
 
 def type_checker(context: Context) -> TypeChecker:
-    """A type checker for one file."""
+    """Return a type checker for one file."""
     return TypeChecker(context, _RULES)
 
 
@@ -219,14 +219,14 @@ def _mixed(checker: TypeChecker, node: ast.Binary, made: Type, before: int) -> T
 
 
 def _is_logical(node: ast.Expression) -> bool:
-    """Whether an operand would belong to something else if relations bound tighter."""
+    """Return whether an operand would have another parent if relations bound tighter."""
     if isinstance(node, ast.Binary):
         return node.operator in _LOGICAL
     return isinstance(node, ast.Unary) and node.operator in {"NOT", "B_NOT"}
 
 
 def _of_operator(operator: str) -> str:
-    """The code for an operand that does not fit."""
+    """Return the code of a finding for a wrong operand."""
     if operator in LOGICAL or operator == "NOT":
         return "not-a-truth-value"
     if operator in BITWISE or operator == "B_NOT":

@@ -1,10 +1,10 @@
-"""Data lists: whether initial values fit, and whether they stand where and how they may.
+"""Data lists: whether initial values have the right type, form and place.
 
-This check types the expressions of a data list. Elements of an array get their values on the lines
-directly behind the declaration, in ascending order, the index on the right running fastest
-[TYP-09, TYP-10]. Of some 16,800 elements in public data lists all follow their declaration, and
-all ascend; in 11 places, most of them in files of KUKA's own, a blank line stands between. So a
-blank line is worth no more than a note.
+This check infers the types of expressions in a data list. Elements of an array get their values on
+the lines immediately after the declaration, in ascending order, with the last index running fastest
+[TYP-09, TYP-10]. All of some 16,800 elements in public data lists follow their declaration in
+ascending order; in 11 places, most of them in files of KUKA, a blank line comes between. A blank
+line is therefore a note at most.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 class _Values:
-    """Goes through a data list from item to item.
+    """Visits the items of a data list.
 
-    ``awaited`` are the variables whose elements may follow, ``last`` the indices of the one that
-    came last, ``end`` is where that item ended.
+    ``awaited`` are the variables whose elements may follow, ``last`` the indices of the last
+    element, ``end`` the end of that item.
     """
 
     def __init__(self, checker: TypeChecker) -> None:
@@ -54,7 +54,7 @@ class _Values:
         self.end = 0
 
     def declaration(self, node: ast.VariableDeclaration) -> None:
-        """A declaration and the values that it gives."""
+        """Check a declaration and its initial values."""
         for declarator in node.declarators:
             if declarator.value is None:
                 continue
@@ -67,7 +67,7 @@ class _Values:
         self.last = "", ()
 
     def element(self, node: ast.Assignment) -> None:
-        """The initial value of an element, or of an array of CHAR."""
+        """Check the initial value of an element, or of an array of CHAR."""
         self.checker.check(self.checker.infer_target(node.target), node.value, initial)
         root = root_variable(node.target)
         if root is None:
@@ -109,7 +109,7 @@ class _Values:
         self.last = root.name.key, here
 
     def _is_gap(self, name: ast.Name, before: tuple[int, ...], here: tuple[int, ...]) -> bool:
-        """Whether a letter of a text is left out, so that what it is follows from nothing."""
+        """Return whether a letter of a text is missing; its value would be undefined."""
         found = self.checker.context.found(name)
         type_ = self.checker.type_of(found) if found else None
         if not here or not isinstance(type_, Array) or type_.element != CHAR:

@@ -1,4 +1,4 @@
-"""Signals: names for inputs, outputs, and groups of them [IOT-03]."""
+"""Signals: names of inputs, outputs, and groups of them [IOT-03]."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def check_signal(checker: TypeChecker, node: ast.Signal) -> None:
 
 
 def _number(checker: TypeChecker, node: ast.Expression) -> int | None:
-    """The number of an input or output."""
+    """Return the number of an input or output."""
     if isinstance(node, ast.Subscript) and len(node.indices) == 1:
         return integer_of(checker.context, node.indices[0])
     return None

@@ -1,6 +1,6 @@
 """Types of the parts of statements: conditions, targets, values, times, numbers.
 
-This check types the expressions of a program, for all that come after it.
+This check infers the types of expressions in a program, for all later checks.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class _Routine:
                 self.checker.check(to, node, accepts, slug)
 
     def condition(self, node: ast.Expression) -> None:
-        """A truth value."""
+        """Check that an expression is BOOL."""
         self.needs(_condition, "not-a-truth-value", node)
 
     def numbers(self, *nodes: ast.Expression | None) -> None:
@@ -95,12 +95,12 @@ class _Routine:
                 self.checker.infer(node)
 
     def parts(self, node: ast.Statement) -> None:
-        """A statement without a rule of its own: its expressions may be anything."""
+        """Infer the expressions of a statement without a rule of its own; any type is valid."""
         if not isinstance(node, ast.Definition):
             self.types(*(one for one in children(node) if isinstance(one, ast.Expression)))
 
     def action(self, node: ast.Assignment | ast.CallStatement | ast.Brake) -> None:
-        """What a trigger or an interrupt does."""
+        """Check the action of a trigger or an interrupt."""
         if isinstance(node, ast.Assignment):
             assign(self.checker, node)
         elif isinstance(node, ast.CallStatement):
@@ -168,7 +168,7 @@ class _Routine:
     # ---------------------------------------------------------------------- motions
 
     def motion(self, node: ast.Motion) -> None:
-        """A motion goes to positions."""
+        """Check that the targets of a motion are positions."""
         for place in (node.auxiliary, node.target):
             if place is not None:
                 self._target(place)
@@ -179,7 +179,7 @@ class _Routine:
             self._reference(node.reference)
 
     def values(self, nodes: tuple[ast.Assignment, ...]) -> None:
-        """What stands behind WITH [SPL-08]."""
+        """Check the assignments after WITH [SPL-08]."""
         for node in nodes:
             assign(self.checker, node)
 
@@ -196,7 +196,7 @@ class _Routine:
             self.needs(lambda _to, value: target(value), "not-a-position", node)
 
     def _on_path(self, node: ast.Motion, place: ast.Expression) -> None:
-        """A motion on a path goes to a pose, as axis positions do not say which way."""
+        """Report an axis position as target of a CP motion, which needs a pose."""
         kind = self.context.types.get(without_parentheses(place))
         is_path = not node.kind.startswith(("PTP", "SPTP", "ASYPTP"))
         if is_path and isinstance(kind, Structure) and kind.name in ("AXIS", "E6AXIS"):
@@ -204,7 +204,7 @@ class _Routine:
             self.checker.report("path-to-axes", place, message, is_unconfirmed=True)
 
     def _position(self, node: ast.Aggregate) -> Type:
-        """The structure of a position that is written out: axes, or a pose."""
+        """Return the structure of a position aggregate: axes or a pose."""
         is_axes = any(_AXIS.fullmatch(part.name.text) for part in node.components)
         return self.context.system.types["E6AXIS" if is_axes else "E6POS"]
 
