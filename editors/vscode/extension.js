@@ -9,7 +9,7 @@ const { testExplorer } = require("./tests");
 const setting = (name) => vscode.workspace.getConfiguration("krl").get(name);
 let client;
 
-/** Starts the language server; a missing command is said once, with its cure. */
+/** Starts the language server; if it cannot, a message names the cure. */
 async function start() {
   const command = setting("command");
   client = new LanguageClient(
@@ -23,11 +23,11 @@ async function start() {
   );
   try {
     await client.start();
-  } catch (error) {
+  } catch {
     client = undefined;
     const chosen = await vscode.window.showErrorMessage(
-      // what a process that cannot be started rejects with is nothing: the client has told why
-      `${command} lsp did not start${error ? ` (${error.message})` : ""}: pip install 'krl-workbench[lsp]', or set krl.command.`,
+      // the client itself shows why
+      `${command} lsp did not start: pip install 'krl-workbench[lsp]', or set krl.command.`,
       "Settings",
     );
     if (chosen) vscode.commands.executeCommand("workbench.action.openSettings", "krl.command");
