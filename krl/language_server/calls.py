@@ -88,5 +88,6 @@ def argument_hints(looked: Looked, first: int, last: int) -> Iterator[ArgumentHi
             if argument is None or not first <= source.place(argument.span[0])[0] <= last:
                 continue
             text = source.text[argument.span[0] : argument.span[1]]
-            if text.upper().removesuffix("[]") != given.key:
+            # EXT declares parameters without names
+            if given.name and text.upper().removesuffix("[]") != given.key:
                 yield ArgumentHint(argument.span[0], given.name)

@@ -102,7 +102,9 @@ def signature(symbol: Symbol) -> str:
 
 
 def parameter(symbol: ParameterSymbol) -> str:
-    """Return a parameter with its mode and, if known, its type."""
+    """Return a parameter with its mode and, if known, its type; EXT gives the type alone."""
+    if not symbol.name:
+        return f"{type_name(symbol)}:{symbol.mode}"
     return f"{symbol.name}:{symbol.mode} {type_name(symbol)}".rstrip()
 
 

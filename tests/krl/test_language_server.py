@@ -13,7 +13,7 @@ pytest.importorskip("lsprotocol")
 
 from grammar.check.project.batch import CheckOptions, check_paths
 from krl.cli import main
-from krl.language_server.calls import signature_at
+from krl.language_server.calls import argument_hints, signature_at
 from krl.language_server.hover import hover
 from krl.language_server.names import (
     RenameError,
@@ -310,6 +310,20 @@ def test_a_routine_shows_its_parameters(
     if found is not None and label is not None:
         assert label in found.label
         assert active == found.active
+
+
+def test_parameters_without_names(project: OpenProject) -> None:
+    """EXT has types in their places: they get no hint, and the help shows the types."""
+    path = next(one for one in project.paths() if one.endswith("CELL.src"))
+    changed = PROGRAM.replace("  INT N\n", "  EXT MOVE(INT:IN, REAL:OUT)\n  INT N\n  MOVE(N, 2)\n")
+    project.change(path, changed)
+    looked = project.look(path)
+    assert looked is not None
+    assert [] == list(argument_hints(looked, 1, 5))
+    found = signature_at(looked, changed.index("MOVE(N") + 5)
+    assert found is not None
+    assert ("INT:IN", "REAL:OUT") == found.parameters
+    assert "DEF MOVE(INT:IN, REAL:OUT)" == found.label
 
 
 def message(**fields: object) -> bytes:
