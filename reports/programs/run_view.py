@@ -12,8 +12,8 @@ _ENDS = {
     "end": "ran to its end",
     "halt": "halted",
     "fault": "stopped by a fault",
-    "budget": "used up its budget",
-    "time": "cut at its time",
+    "budget": "reached its limit of statements",
+    "time": "stopped at its time limit",
     "crash": "the executor crashed",
 }
 
