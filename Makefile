@@ -11,7 +11,7 @@ DEV := $(VENV)/.dev
 # Tests and benchmarks start processes by the hundred: none of them should compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help setup recover growth conformance nightly fuzz fuzz-readers real-code killed hostile determinism editors blends test lock audit site check grammar bench clean
+.PHONY: help setup recover growth conformance nightly fuzz fuzz-readers real-code killed hostile determinism editors blends test lock audit site release check grammar bench clean
 
 help:
 	@echo 'make setup        build .venv with everything for working on the project'
@@ -33,6 +33,7 @@ help:
 	@echo 'make lock         choose versions and hashes for work on the project anew (needs uv)'
 	@echo 'make audit        known weaknesses and licences of what it needs (needs uv)'
 	@echo 'make site         the documents as a site, in reports/out/site (needs uv)'
+	@echo 'make release      set the version and begin its chapter of the changelog (VERSION=X.Y.Z)'
 	@echo 'make bench        measure the tools; records go to reports/out/bench (ARGS="PATH")'
 	@echo 'make clean        remove .venv, caches and reports/out'
 
@@ -120,6 +121,13 @@ site:
 	@NO_MKDOCS_2_WARNING=1 uvx --quiet --exclude-newer 2026-11-15 --from mkdocs==1.6.1 --with mkdocs-material==9.8.1 \
 		mkdocs build --strict --site-dir reports/out/site $(ARGS)
 	@echo 'reports/out/site/index.html'
+
+release:
+	@echo '$(VERSION)' | grep -Eqx '[0-9]+\.[0-9]+\.[0-9]+' || { echo 'make release: say VERSION=X.Y.Z' >&2; exit 2; }
+	@sed -i.bak -E '1,10s/^( *"?version"?( =|:) )"?[0-9.]+("?)/\1\3$(VERSION)\3/' \
+		pyproject.toml CITATION.cff editors/vscode/package.json editors/vscode/package-lock.json
+	@awk '{ print } /^## \[Unreleased\]/ { print "\n## [$(VERSION)] - '"$$(date -u +%F)"'" }' CHANGELOG.md > CHANGELOG.md.bak
+	@mv CHANGELOG.md.bak CHANGELOG.md && rm pyproject.toml.bak CITATION.cff.bak editors/vscode/*.bak
 
 clean:
 	@rm -rf $(VENV) build dist reports/out .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .krl-cache

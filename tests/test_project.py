@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import json
 import re
 import shutil
 import subprocess
@@ -109,6 +110,41 @@ def test_version_stands_in_one_place() -> None:
     modules = (path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
     repeated = [path for path in modules if f'"{version}"' in path.read_text(encoding="utf-8")]
     assert [] == repeated
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make here")
+def test_a_release_has_one_version(tmp_path: Path) -> None:
+    """`make release` sets it in package, citation and extension, and begins a chapter."""
+    named = ["pyproject.toml", "CITATION.cff", "CHANGELOG.md", "Makefile"]
+    named += ["editors/vscode/package.json", "editors/vscode/package-lock.json"]
+    for name in named:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    before, _ = _versions(tmp_path)
+    assert {PROJECT["project"]["version"]} == before
+    make = ["make", "-C", str(tmp_path), "release"]
+    assert 0 != subprocess.run([*make, "VERSION=7.8"], check=False, capture_output=True).returncode
+    subprocess.run([*make, "VERSION=7.8.9"], check=True, capture_output=True)
+    after, changelog = _versions(tmp_path)
+    assert {"7.8.9"} == after
+    assert re.search(r"^## \[Unreleased\]\n\n## \[7\.8\.9\] - \d{4}-\d\d-\d\d\n", changelog, re.M)
+    assert set(named) == {
+        path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()
+    }
+
+
+def _versions(root: Path) -> tuple[set[str], str]:
+    """All versions that the files of a release have, and the text of the changelog."""
+    citation = re.search(r"^version: (.*)$", (root / "CITATION.cff").read_text("utf-8"), re.M)
+    extension, lock = (
+        json.loads((root / "editors/vscode" / name).read_text(encoding="utf-8"))
+        for name in ("package.json", "package-lock.json")
+    )
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert citation is not None
+    versions = {citation[1], extension["version"], lock["version"], project["version"]}
+    changelog = (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    return versions | {lock["packages"][""]["version"]}, changelog
 
 
 def test_python_version_is_the_same_everywhere() -> None:
