@@ -1,1 +1,1 @@
-"""Control flow and data flow: through a routine, across files, and what stops the advance run."""
+"""Control flow and data flow in a routine and across files, and stops of the advance run."""

@@ -1,8 +1,8 @@
 """Statements that stop the advance run, with the documented reason.
 
-What a statement does when the advance run comes to it: the conditions it evaluates, what it reads
-and writes. What an interrupt or a trigger does later is none of that. The system's own tables tell
-which variables and functions stop (`grammar.semantics.predefined`).
+What counts is what a statement does when the advance run reaches it: the conditions that it
+evaluates, its reads and writes. Later actions of interrupts and triggers do not count. The tables
+of system variables and functions say which of them stop (`grammar.semantics.predefined`).
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _HARMLESS = frozenset({"BAS"})
 
 @dataclass(frozen=True, slots=True)
 class AdvanceStop:
-    """Why a statement stops the advance run: ``what`` of it, at the node ``where``.
+    """The reason why a statement stops the advance run: ``what`` stops it, at the node ``where``.
 
-    ``can_go_ahead``: whether CONTINUE makes sense, so that it is done ahead of the robot.
+    ``can_go_ahead`` if a CONTINUE before it makes sense, so that it is executed ahead of the robot.
     """
 
     where: ast.Node
@@ -36,7 +36,7 @@ class AdvanceStop:
 
 
 def stop_of(context: Context, node: ast.Node, is_test: bool = False) -> AdvanceStop | None:
-    """Why a statement stops, ``None`` where it does not; ``is_test`` asks for UNTIL of REPEAT."""
+    """Return why a statement stops, or ``None``; ``is_test`` asks about UNTIL of a REPEAT."""
     waiting = _waiting(context, node)
     if waiting is not None:
         return waiting
@@ -81,7 +81,7 @@ def _waiting(context: Context, node: ast.Node) -> AdvanceStop | None:
 
 
 def is_known_call(context: Context, node: ast.Node, is_test: bool = False) -> bool:
-    """Whether all that a statement calls, if anything, is known to move nothing and not to stop."""
+    """Return whether the calls in a statement are known neither to move nor to stop."""
     return all(
         inner.name.key in _HARMLESS or _is_system(context, inner.name)
         for expression in evaluated(node, is_test)
@@ -91,7 +91,7 @@ def is_known_call(context: Context, node: ast.Node, is_test: bool = False) -> bo
 
 
 def evaluated(node: ast.Node, is_test: bool = False) -> Iterator[ast.Expression]:
-    """The expressions of a statement that the advance run evaluates, not those in blocks."""
+    """Yield the expressions that the advance run evaluates for a statement, without blocks."""
     yield from (part for part in _parts(node, is_test) if part is not None)
 
 
@@ -122,7 +122,7 @@ def _parts(node: ast.Node, is_test: bool) -> Sequence[ast.Expression | None]:
 
 
 def _is_cyclical(target: ast.Expression) -> bool:
-    """Whether what is assigned is an expression to keep, and not its value [IOT-11]."""
+    """Return whether an assignment stores the expression itself and not its value [IOT-11]."""
     root = root_variable(target)
     return root is not None and root.name.key == "$CYCFLAG"
 
@@ -132,7 +132,7 @@ def _written(node: ast.Node) -> ast.Variable | None:
 
 
 def _is_system(context: Context, name: ast.Name) -> bool:
-    """Whether a name means what the controller itself brings, as far as is known."""
+    """Return whether a name denotes something predefined, as far as is known."""
     found = context.found(name)
     if found is None:
         return name.key in context.system.functions
@@ -142,7 +142,7 @@ def _is_system(context: Context, name: ast.Name) -> bool:
 def _variable(
     context: Context, variable: ast.Variable, *, is_write: bool
 ) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """How to call a variable whose reading or writing stops, and the rules that say so."""
+    """Return a description of a variable whose access stops, and the rules that say so."""
     name = variable.name
     found = context.found(name)
     if found is not None and found.symbol.kind is Kind.IMPORT:

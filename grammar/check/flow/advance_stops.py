@@ -1,10 +1,10 @@
-"""Stops of the advance run, and blends that are lost for it.
+"""Stops of the advance run, and approximations that are lost because of them.
 
-The advance run works ahead of the robot. A statement that has to be in step with the robot stops it
-[ADV-04 to ADV-07]; then the robot stops exactly at the point before, and a motion that was to be
-approximated is not. CONTINUE takes the stop of the very next line back [ADV-08].
+The advance run is ahead of the robot. A statement that must be synchronous with the robot stops it
+[ADV-04 to ADV-07]; the robot then stops exactly at the point before, even if that motion has an
+approximation. CONTINUE cancels the stop of the next line [ADV-08].
 
-All of this is lawful, so it is reported as notes, and only on demand.
+All of this is valid, so it is reported as notes, and only on request.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 @dataclass(frozen=True, slots=True)
 class _Ahead:
-    """What may come behind a motion before the next one: stops, and whether anything else may."""
+    """What may come between a motion and the next one: stops, and whether the end is possible."""
 
     stops: tuple[FlowNode, ...]
     is_open: bool
 
 
 class _Routine:
-    """One routine; ``_spent`` are the lines for which a CONTINUE stands on the line before."""
+    """One routine; ``_spent`` are the lines after a CONTINUE."""
 
     def __init__(self, context: Context, routine: RoutineBody) -> None:
         self._context = context
@@ -66,7 +66,7 @@ class _Routine:
     # ------------------------------------------------------------------------------ stops
 
     def _stop(self, node: ast.Node | None, is_test: bool) -> AdvanceStop | None:
-        """Why a statement stops the advance run, CONTINUE left aside."""
+        """Return why a statement stops the advance run, regardless of CONTINUE."""
         if node is None:
             return None
         key = node, is_test
@@ -94,7 +94,7 @@ class _Routine:
     # ------------------------------------------------------------------------------ blends
 
     def _blend(self, motion: FlowNode) -> Iterator[Diagnostic]:
-        """An approximated motion behind which the advance run stops before the next motion."""
+        """Report an approximated motion if the advance run stops before the next motion."""
         ahead = self._ahead(motion)
         if not ahead.stops:
             return
@@ -134,7 +134,7 @@ class _Routine:
         return _Ahead(tuple(found), is_open)
 
     def _is_boundary(self, step: FlowNode) -> bool:
-        """Whether the next motion begins here, or may begin in what is called here."""
+        """Return whether the next motion begins here, or may begin in a called routine."""
         if step is self._ways.end or isinstance(step.statement, _MOTIONS | ast.Return):
             return True
         return step.statement is not None and not is_known_call(
@@ -181,7 +181,7 @@ class _Routine:
 
 
 def _criteria(node: ast.Node | None) -> str:
-    """The words with which a motion asks to be approximated; empty where it does not."""
+    """Return the approximation criteria of a motion; empty without approximation."""
     match node:
         case ast.Motion(criteria=criteria):
             return " ".join(criteria)
@@ -191,7 +191,7 @@ def _criteria(node: ast.Node | None) -> str:
 
 
 def _advance(context: Context, node: ast.Node | None) -> float | None:
-    """What $ADVANCE is set to; -1 where that is not known, ``None`` where it is not set."""
+    """Return the value assigned to $ADVANCE; -1 if unknown, ``None`` if it is not assigned."""
     match node:
         case ast.Assignment(target=ast.Variable(name=name), value=value):
             if name.key == "$ADVANCE":

@@ -143,9 +143,9 @@ def _gotos(
 def _slipped(
     context: Context, routine: RoutineBody, own: _Labels, homes: Mapping[str, Sequence[str]]
 ) -> dict[str, ast.Name]:
-    """The labels that no GOTO leads to, by the key of the only missing one that is a slip away.
+    """Return the unused labels by the key of the only missing label that is a slip away.
 
-    None that several routines have is a slip.
+    A label that several routines have is not a slip.
     """
     if context.module.words:  # what cannot be read may lead there
         return {}
@@ -192,7 +192,7 @@ def _end(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
 
 
 def _is_exhaustive(context: Context, switch: ast.Switch) -> bool:
-    """Whether a SWITCH without DEFAULT may well name all values that there are."""
+    """Return whether a SWITCH without DEFAULT may cover all possible values."""
     values = [value for branch in switch.branches for value in branch.values]
     if not all(isinstance(value, ast.EnumConstant) for value in values):
         return False

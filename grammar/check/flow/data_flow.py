@@ -1,8 +1,8 @@
 """Data flow of a routine: reads before a value, unused variables, changed counters.
 
-Only the routine's own variables are followed: nothing else can reach them. Where no way through the
-routine gives a variable a value before it is read, the finding is certain as far as the language
-goes. Where some paths do and others do not, it is unknown whether these are ever executed: a note.
+Only local variables are analysed, because nothing else can access them. If no path through the
+routine assigns a variable before it is read, the finding is certain. If some paths do and others do
+not, these may never be executed, so it is a note.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 def data_flow(context: Context, routine: RoutineBody) -> DataFlow:
-    """The variables of a routine and what its statements do to them."""
+    """Return the variables of a routine and the accesses of its statements."""
     known: DataFlow | None = context.flows.get(routine.node)
     if known is None:
         known = context.flows[routine.node] = DataFlow(context, routine)
@@ -61,10 +61,10 @@ def data_flow(context: Context, routine: RoutineBody) -> DataFlow:
 
 @dataclass(frozen=True, slots=True)
 class _OnCondition:
-    """A variable that is assigned to in blocks, if in any, first at an ``offset`` of the text.
+    """A variable that is assigned in blocks only, first at an ``offset`` of the text.
 
-    ``deciding`` are the names that the heads of ``blocks`` ask for, and those that are assigned to
-    along with it.
+    ``deciding`` are the names in the conditions of ``blocks``, and those that are assigned together
+    with it.
     """
 
     offset: int
@@ -73,9 +73,9 @@ class _OnCondition:
 
 
 class DataFlow:
-    """The variables of one routine and what its statements do to them.
+    """The local variables of one routine and the accesses of its statements.
 
-    ``parameters`` and ``variables`` are the keys of those that nothing else can reach.
+    ``parameters`` and ``variables`` are the keys of those that only this routine can access.
     """
 
     def __init__(self, context: Context, routine: RoutineBody) -> None:
@@ -98,7 +98,7 @@ class DataFlow:
         self._accesses: dict[FlowNode, Sequence[Access]] = {}
 
     def _of(self, node: FlowNode) -> Sequence[Access]:
-        """The accesses at a place: of REPEAT, the condition stands at its end."""
+        """Return the accesses at a node; the condition of a REPEAT is at its end."""
         found = self._accesses.get(node)
         if found is None:
             statement: ast.Node | None = node.statement
@@ -110,7 +110,7 @@ class DataFlow:
 
     @cached_property
     def uses(self) -> dict[str, list[Access]]:
-        """All accesses to parameters and variables, by key, in the order of the text."""
+        """Return all accesses to parameters and variables, by key, in the order of the text."""
         found: dict[str, list[Access]] = {}
         followed = self.parameters | self.variables
         for placed in self._routine.statements if followed else ():
@@ -120,10 +120,10 @@ class DataFlow:
         return found
 
     def early(self, followed: frozenset[str], *, is_passed_open: bool = False) -> Iterator[Access]:
-        """The reads of some variables that no way with a value leads to, each variable once.
+        """Return the first read of each variable that no path with a value reaches.
 
-        To pass a variable is to give it a value. If ``is_passed_open`` that is not so for a routine
-        of the project, and the first place that passes a variable to one counts besides.
+        Passing a variable to a routine counts as assigning it. If ``is_passed_open``, passing it to
+        a routine of the project does not, and the first such call is returned, too.
         """
         if not followed:
             return
@@ -150,7 +150,7 @@ class DataFlow:
                     yield access
 
     def _changed(self, node: FlowNode, bits: dict[str, int]) -> int:
-        """The variables that get a value at a place."""
+        """Return the variables that are assigned at a node."""
         changed = 0
         for access in self._of(node):
             if access.use is not Use.READ:
@@ -160,9 +160,9 @@ class DataFlow:
     def _reaching(
         self, first: int, passed: Callable[[FlowNode, int, int], int]
     ) -> dict[FlowNode, int]:
-        """What may reach each place that can be reached, as bits; ``first`` is there at the start.
+        """Return what may reach each reachable node, as bits; ``first`` holds at the start.
 
-        ``passed`` says what a place hands on of what reaches it, by the number of the way on.
+        ``passed`` returns the bits that leave a node, given those that reach it and the successor.
         """
         start = self._routine.ways.start
         known = {start: first}
@@ -178,11 +178,11 @@ class DataFlow:
         return known
 
     def reads(self, key: str) -> tuple[Parameter, ...] | None:
-        """What has to be true for a parameter to be read, before it gets a value, on every way.
+        """Return the condition for a parameter to be read before it is assigned, on every path.
 
-        That is that the routines it is handed on to read these parameters of theirs; ``()`` if the
-        routine itself reads it. ``None`` if some way leads past. To hand a parameter on is not to
-        read it: who gets it may ask VARSTATE.
+        The condition is that called routines read their parameters that receive it; it is ``()`` if
+        the routine itself reads it, and ``None`` if it is not read on some path. Passing a
+        parameter on is no read, because the called routine may test it with VARSTATE.
         """
         met: set[Parameter] = set()
 
@@ -204,13 +204,14 @@ class DataFlow:
         return None
 
     def is_on_every_way(self, access: Access) -> bool:
-        """Whether every way to the end leads over an access."""
+        """Return whether every path to the end contains an access."""
         return self._is_on_every_way(lambda node: any(one is access for one in self._of(node)))
 
     def _is_on_every_way(self, is_met: Callable[[FlowNode], bool | None]) -> bool:
-        """Whether every way to the end leads over a place that is met; ``None``: one does not.
+        """Return whether every path to the end contains a node for which ``is_met`` is true.
 
-        Of ways over HALT, at which somebody has to look, others may decide.
+        The result is ``None`` if one does not. Paths over HALT, where an operator takes over, do
+        not count.
         """
         return self._leads_over(is_met, past_halts=True) or (
             any(type(placed.statement) is ast.Halt for placed in self._routine.statements)
@@ -256,11 +257,11 @@ class DataFlow:
             yield self._context.finding("read-perhaps-early", access.name, message, reason=reason)
 
     def _possibly_early(self, followed: frozenset[str]) -> Iterator[tuple[Access, int]]:
-        """The first read of each variable that a way without a value leads to.
+        """Return the first read of each variable that some path without a value reaches.
 
-        With it comes the line of an assignment. Loops count as gone through at least once. Not
-        reported is what a condition may rule out: one that asks for a name which also decides
-        whether the variable is assigned to, or is assigned along with it.
+        Each comes with the line of an assignment. Loops count as executed at least once. A read is
+        left out if a condition may prevent it: one with a name that also decides about the
+        assignment of the variable, or that is assigned together with it.
         """
         some = self._on_conditions(followed)
         if not some:
@@ -291,7 +292,7 @@ class DataFlow:
                         yield access, self._context.source.place(some[key].offset)[0]
 
     def _on_conditions(self, followed: frozenset[str]) -> dict[str, _OnCondition]:
-        """Those variables that are assigned to inside of blocks, or that a GOTO may pass by."""
+        """Return the variables that are assigned only in blocks or after a possible GOTO."""
         if not followed:
             return {}
         assigned: dict[str, list[PlacedStatement]] = {}
@@ -316,7 +317,7 @@ class DataFlow:
         return found
 
     def _asked(self, placed: PlacedStatement) -> set[str]:
-        """The names in the head of a block; none for a statement that is none."""
+        """Return the names in the condition of a block; none for other statements."""
         if type(placed.statement) not in BODIES:
             return set()
         return {access.name.key for access in accesses(self._context, placed.statement)}
@@ -361,7 +362,7 @@ class DataFlow:
 
 
 def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
-    """The statements that one stands in, the innermost first."""
+    """Yield the enclosing statements of a statement, innermost first."""
     around = placed.inside
     while around is not None:
         yield around
@@ -369,7 +370,7 @@ def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
 
 
 def _is_whole(node: ast.Expression | None, key: str) -> bool:
-    """Whether an argument is a variable as a whole: ``NAME`` or ``NAME[]``."""
+    """Return whether an argument is a whole variable: ``NAME`` or ``NAME[]``."""
     if isinstance(node, ast.Subscript) and not any(node.indices):
         node = node.base
     return isinstance(node, ast.Variable) and node.name.key == key
@@ -392,7 +393,7 @@ def _position(node: FlowNode) -> tuple[int, int]:
 
 
 def _names_in_texts(context: Context, routine: RoutineBody) -> frozenset[str]:
-    """The names that a routine hands over in texts, as VARSTATE("NAME") does."""
+    """Return the names that a routine passes as texts, as in VARSTATE("NAME")."""
     start, end = routine.node.span
     texts = _TEXT.findall(context.source.text, start, end)  # a walk over the tree takes long
     return frozenset(word.upper() for text in texts for word in _WORD.findall(text))

@@ -1,8 +1,8 @@
-"""Effects across the files of a project: what one file does and another relies on.
+"""Effects across the files of a project: what one file does and another depends on.
 
-An interrupt is declared here and switched on there, an output is set here and reset there. Each
-file gives its `Effects`, in its check; `of_project` puts those of all files together. What becomes
-of arguments is in the `routine_summaries`.
+An interrupt is declared in one file and switched on in another, an output is set here and reset
+there. The check of each file returns its `Effects`; `of_project` combines those of all files. What
+happens to arguments is in the `routine_summaries`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from support.lazy_dataclass import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where something is done in a file, and to what: a number or a name."""
+    """A place in a file, and the number or name that is concerned."""
 
     path: str
     region: Region
@@ -36,13 +36,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Effects:
-    """What the routines of a file do that others may rely on.
+    """Effects of the routines of a file on which others may depend.
 
-    ``changed`` are the names, with a known index as in ``$FLAG[3]``, of all that is assigned to or
-    passed on; ``reset`` those that may become FALSE. ``switched_on`` has numbers of interrupts, and
-    ``""`` where all or unknown ones are meant. ``literals`` are the variables that no file at hand
-    declares, in upper case, each beside a literal that it is compared with or receives, by the kind
-    of that. ``summaries`` are those of its routines.
+    ``changed`` are the names that are assigned or passed on, with a constant index as in
+    ``$FLAG[3]``; ``reset`` those that may become FALSE. ``switched_on`` has interrupt numbers, and
+    ``""`` for all or unknown ones. ``literals`` are undeclared variables in upper case with the
+    kinds of literals with which they are compared or to which they are set. ``summaries`` are those
+    of its routines.
     """
 
     interrupts: tuple[Place, ...] = ()
@@ -85,12 +85,12 @@ _PROGRAMS_OWN = _FLAGS | {"$OUT"}
 
 
 def effects(context: Context) -> Effects:
-    """What the routines of a file do."""
+    """Return the effects of the routines of a file."""
     return _Collector(context).collect()
 
 
 def effects_of_unread(words: frozenset[str]) -> Effects:
-    """What text that cannot be read may do, given its words in upper case; `REST` may do it all."""
+    """Return the possible effects of unreadable text with these words; `REST` can do anything."""
     if REST in words:
         words |= {"INTERRUPT"} | _PROGRAMS_OWN
     switched_on = frozenset({""} if "INTERRUPT" in words else ())
@@ -98,7 +98,7 @@ def effects_of_unread(words: frozenset[str]) -> Effects:
 
 
 class _Collector:
-    """Goes through the statements of a file."""
+    """Visits the statements of a file."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -143,14 +143,14 @@ class _Collector:
     # ----------------------------------------------------------------------- statements
 
     def interrupt(self, node: ast.InterruptDeclaration) -> None:
-        """An interrupt with a number that it can have, and what its action may do later."""
+        """Record an interrupt with its possible number, and the effects of its action."""
         known = integer_of(self._context, node.number)
         if known is not None and 1 <= known <= 128:  # others are reported there
             self._interrupts.append(self._place(node.number, str(known)))
         self._later(node)
 
     def trigger(self, node: ast.Trigger) -> None:
-        """What the action of a trigger does, and may do later."""
+        """Record the effects of the action of a trigger."""
         self._later(node)
 
     def switch(self, node: ast.InterruptSwitch) -> None:
@@ -164,14 +164,14 @@ class _Collector:
         self._changed.add(node.counter.key)
 
     def assignment(self, node: ast.Assignment) -> None:
-        """What is assigned, and beside which literal an undeclared variable stands."""
+        """Record the assigned name, and the literal beside an undeclared variable."""
         if key := self._key(node.target):
             self._changed.add(key)
         self._assigned(node)
         self._literal(node.target, node.value)
 
     def values(self, nodes: Iterable[ast.Assignment]) -> None:
-        """What stands behind WITH."""
+        """Visit the assignments after WITH."""
         for node in nodes:
             self.assignment(node)
 
@@ -203,7 +203,7 @@ class _Collector:
     # --------------------------------------------------------------------------- keys
 
     def _key(self, node: ast.Expression) -> str:
-        """What is accessed: a name, ``$OUT[5]``, or the output that a signal stands for."""
+        """Return what is accessed: a name, ``$OUT[5]``, or the output that a signal denotes."""
         node = without_parentheses(node)
         root = root_variable(node)
         if root is None:
@@ -233,14 +233,14 @@ class _Collector:
     # --------------------------------------------------------------------------- waiting
 
     def wait(self, node: ast.WaitFor) -> None:
-        """A condition that flags alone fulfil, and that is not fulfilled while these are FALSE."""
+        """Record a WAIT FOR that only flags can fulfil and that is FALSE while these are FALSE."""
         keys: set[str] = set()
         if self._with_flags_off(node.condition, keys) is False and keys:
             shown = ", ".join(sorted(keys))
             self._waits.append((self._place(node.condition, shown), frozenset(keys)))
 
     def _with_flags_off(self, node: ast.Expression, keys: set[str]) -> bool | None:
-        """The value of a condition while all flags are FALSE; ``keys`` gets those that it asks."""
+        """Return the value of a condition while all flags are FALSE; add its flags to ``keys``."""
         match without_parentheses(node):
             case ast.BoolLiteral(value=value):
                 return value
@@ -284,7 +284,7 @@ class _Collector:
 
 
 def _members(node: ast.Expression) -> list[str]:
-    """The names behind the points of ``a.b[1].c``."""
+    """Return the component names of an expression such as ``a.b[1].c``."""
     found: list[str] = []
     while isinstance(node, ast.Member | ast.Subscript):
         if isinstance(node, ast.Member):
@@ -294,7 +294,7 @@ def _members(node: ast.Expression) -> list[str]:
 
 
 def _written_key(node: ast.Expression) -> str:
-    """The output or flag that a signal stands for."""
+    """Return the output or flag that a signal denotes."""
     match node:
         case ast.Subscript(
             base=ast.Variable(name=name), indices=(ast.IntegerLiteral(value=index),)
@@ -320,7 +320,7 @@ _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
 
 
 def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
-    """What is to be said of what the files of a project do to one another."""
+    """Yield the findings that depend on the effects of several files."""
     files = list(found)
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
     reset = frozenset[str]().union(*(one.reset for one in files))

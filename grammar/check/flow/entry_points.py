@@ -1,9 +1,9 @@
 """Entry points of routines: interrupts, calls, and selection as a program.
 
-BRAKE and RESUME belong to interrupts, and the first motion of a program has to be complete. Both
-can be judged where nothing else may enter a routine: its module has all calls of a local one, and
-a project in which nothing is missing has those of any other. A program, and not just a routine
-that is never called, is what sets up its motions: ``BAS(#INITMOV, 0)``.
+BRAKE and RESUME are only allowed in interrupt routines, and the first motion of a program must be
+complete. Both can be checked if all callers of a routine are known: for a local routine these are
+in its module, for a GLOBAL one in a complete project. A routine that sets up motions with
+``BAS(#INITMOV, 0)`` is a program, and not just a routine that is never called.
 """
 
 from __future__ import annotations
@@ -52,12 +52,12 @@ def _interrupting(routine: RoutineBody) -> list[ast.Brake | ast.Resume]:
 
 
 def _is_called_outside(context: Context, key: str) -> bool:
-    """Whether another module calls a routine, or one that is not at hand may."""
+    """Return whether another module, or a missing one, may call a routine."""
     return not context.project.is_complete or _is_called_at_hand(context, key)
 
 
 def _is_called_at_hand(context: Context, key: str) -> bool:
-    """Whether another module that is at hand calls a routine, or cannot be read."""
+    """Return whether another module of the project calls a routine or cannot be read."""
     return any(
         module.table is None or key in module.table.calls
         for module in context.project.modules
@@ -66,12 +66,12 @@ def _is_called_at_hand(context: Context, key: str) -> bool:
 
 
 def _is_program(routine: RoutineBody) -> bool:
-    """Whether a routine looks like a program: inline forms call GLOBAL ones and pass arguments."""
+    """Return whether a routine is a program: inline forms call GLOBAL ones with arguments."""
     return not routine.node.parameters and not routine.node.is_global
 
 
 class _Entered:
-    """Who calls whom in a module, and what its interrupts call."""
+    """The call graph of a module, and the routines that its interrupts call."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -96,7 +96,10 @@ class _Entered:
     def maybe_by_interrupt(
         self, routine: RoutineBody, is_called: Callable[[Context, str], bool] = _is_called_outside
     ) -> bool:
-        """Whether an interrupt may lead to a routine; ``is_called`` says of which others call."""
+        """Return whether an interrupt may lead to a routine.
+
+        ``is_called`` says whether unknown code may call a routine.
+        """
         found = {routine.node.name.key}
         todo = list(found)
         while todo:
@@ -127,7 +130,7 @@ def _outside(
 
 
 def _first_motion(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    """The first motion of a program that is never called, where it is certain which one that is."""
+    """Return the first motion of a program that is never called, if it is certain."""
     if context.module.suffix != ".src" or routine.node.parameters or routine.node.result:
         return
     key = routine.node.name.key
@@ -143,7 +146,7 @@ def _first_motion(context: Context, routine: RoutineBody) -> Iterator[Diagnostic
 
 
 def _sets_up(placed: PlacedStatement) -> bool:
-    """Whether a statement sets up the motions of a program."""
+    """Return whether a statement sets up the motions of a program."""
     match placed.statement:
         case ast.CallStatement(
             call=ast.Call(name=name, arguments=(ast.EnumConstant() as what, *_))
@@ -153,7 +156,7 @@ def _sets_up(placed: PlacedStatement) -> bool:
 
 
 def _first_motions(context: Context, routine: RoutineBody) -> list[ast.Motion]:
-    """The motions that may be the first, in the order of the text; none where calls may move."""
+    """Return the possible first motions in order; none if a called routine may move."""
     ways = routine.ways
     found: list[ast.Motion] = []
     seen: set[FlowNode] = {ways.start}
@@ -179,7 +182,7 @@ _COMPLETE = frozenset({"PTP", "SPTP", "ASYPTP"})
 
 
 def _incomplete(motion: ast.Motion) -> str:
-    """Why a motion cannot be the first one; empty where it can."""
+    """Return why a motion cannot be the first one; empty if it can."""
     if motion.kind not in _COMPLETE:
         return motion.kind
     if isinstance(motion.target, ast.Aggregate) and motion.kind != "ASYPTP":

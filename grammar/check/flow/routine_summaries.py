@@ -1,11 +1,11 @@
-"""Summaries of routines: what a call can rely on without the statements of the called routine.
+"""Summaries of routines: what callers can know without the statements of the called routine.
 
-Each routine is summarised once, when its file is checked. The summary says what becomes of its
-parameters: whether one is read before it gets a value, whether it gets one, which values it may
-have; and whether the routine returns. If that depends on a routine that is called in turn, it is a
-Horn clause: a fact about one routine follows from facts about others. `of_project` joins the
-clauses of all files to their least fixed point, however the routines call one another, and then
-reports the suspects of each file: findings that are true if facts about called routines are.
+Each routine is summarised once, when its file is checked. The summary says what happens to its
+parameters: whether a parameter is read before it is assigned, whether it is assigned, which values
+are valid; and whether the routine returns. If that depends on a routine that it calls, the summary
+has a Horn clause: a fact about one routine follows from facts about others. `of_project` computes
+the least fixed point of the clauses of all files, however the routines call one another. Then it
+reports the suspects of each file: findings that depend on facts about called routines.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _LEAVING = frozenset({ast.Return, ast.Goto})
 
 @dataclass(frozen=True, slots=True)
 class Suspect:
-    """A finding that is true if all facts of ``holds`` are and none of ``lacks`` is."""
+    """A finding that is true if all facts in ``holds`` are true and none in ``lacks``."""
 
     slug: str
     region: Region
@@ -56,10 +56,10 @@ class Suspect:
 class Summaries:
     """What the routines of the file at ``path`` do with their parameters, and its suspects.
 
-    Of each clause the first fact follows if all others are true. ``bounds`` are the values that a
-    parameter may have, ``handed_on`` pairs of a parameter and the one of a called routine that gets
-    its value. ``constants`` are passed for a parameter in some call. ``has_resume``: something in
-    the file may leave any routine by RESUME.
+    The first fact of each clause follows if all others are true. ``bounds`` are the valid values of
+    a parameter, ``handed_on`` pairs of a parameter and the one of a called routine that receives
+    it. ``constants`` are arguments in calls. ``has_resume`` if RESUME in the file may leave any
+    routine.
     """
 
     path: str
@@ -72,7 +72,7 @@ class Summaries:
 
 
 class SummaryCollector:
-    """Summarises the routines of a file one after the other."""
+    """Summarises the routines of a file one after another."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -156,7 +156,7 @@ class SummaryCollector:
     # -------------------------------------------------------------------------- variables
 
     def _early(self, flow: DataFlow) -> None:
-        """Variables without a value that a called routine reads, or gives no value."""
+        """Add suspects for variables without value that a called routine reads or leaves so."""
         passed: dict[str, set[Parameter]] = {}
         for key in flow.variables & flow.uses.keys():
             for one in flow.uses[key]:
@@ -183,7 +183,7 @@ class SummaryCollector:
     # -------------------------------------------------------------------------- the end
 
     def _end(self, routine: RoutineBody) -> None:
-        """Whether the routine returns, and what stands behind the calls of others."""
+        """Add facts on whether the routine returns, and suspects after calls that do not return."""
         context = self._context
         self._has_resume |= any(type(one.statement) is ast.Resume for one in routine.statements)
         if context.module.words or context.is_cut(routine):
@@ -230,7 +230,7 @@ def _returns(routine: RoutineBody) -> bool:
 
 
 def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
-    """The suspects of all files that are true, and the arguments that their routines cannot use."""
+    """Yield the suspects of all files that are true, and arguments with invalid values."""
     facts = _facts(clause for one in files for clause in one.clauses)
     if any(one.has_resume for one in files):
         facts = {fact for fact in facts if fact[0] != ENDLESS}
@@ -249,7 +249,7 @@ def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
 
 
 def _facts(clauses: Iterable[tuple[Fact, tuple[Fact, ...]]]) -> set[Fact]:
-    """The least fixed point of some clauses."""
+    """Return the least fixed point of some clauses."""
     found: set[Fact] = set()
     waiting: dict[Fact, list[tuple[Fact, set[Fact]]]] = {}
     todo: list[Fact] = []
@@ -271,7 +271,7 @@ def _facts(clauses: Iterable[tuple[Fact, tuple[Fact, ...]]]) -> set[Fact]:
 
 
 def _bounds(files: Iterable[Summaries]) -> dict[Parameter, dict[Bound, None]]:
-    """The values that parameters may have, from all the routines that they are handed on to."""
+    """Return the valid values of parameters, including those of routines that receive them."""
     found: dict[Parameter, dict[Bound, None]] = {}
     giving: dict[Parameter, list[Parameter]] = {}
     todo: list[tuple[Parameter, Bound]] = []

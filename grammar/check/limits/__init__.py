@@ -1,1 +1,1 @@
-"""Limits: numbers, values and lengths of names that a program may not exceed."""
+"""Limits of numbers, values and name lengths that a program must not exceed."""

@@ -1,9 +1,9 @@
-"""Velocities, accelerations and approximation that are more than the robot has, or than 100 %.
+"""Velocities, accelerations and approximation beyond the limits of the robot or beyond 100 %.
 
-The machine data say what a robot can do: ``$VEL_MA`` and ``$ACC_MA`` of the project's own $MACHINE
-list. Without these only what no robot can do is reported: m/s written as mm/s. BAS reduces what is
-too much [MOT-03, MOT-04], the variables do not, and which message comes is not documented:
-warnings.
+The limits are in the machine data: ``$VEL_MA`` and ``$ACC_MA`` of the project's own $MACHINE list.
+Without these, only values that no robot can reach are reported: m/s written as mm/s. BAS reduces
+excessive values [MOT-03, MOT-04], the variables do not, and the resulting message is not
+documented; therefore these are warnings.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def _judge(
 
 
 def _limits(checker: TypeChecker, node: ast.Expression) -> tuple[float, float, str] | None:
-    """The lowest and highest value, and which data say so."""
+    """Return the minimum and maximum value, and the machine data that determine them."""
     match node:
         case ast.Subscript(base=ast.Variable(name=name)) if name.key in _PERCENT:
             return 0, 100, "it is a percentage"
@@ -89,7 +89,7 @@ def _limits_of_part(
 
 
 def _most(checker: TypeChecker, variable: str, part: str) -> float | None:
-    """What the machine data of the project have for a component."""
+    """Return the limit of a component in the machine data of the project."""
     if variable not in _MAXIMA:
         return None
     found = checker.context.scope.find(Space.VALUE, _MAXIMA[variable])

@@ -1,4 +1,4 @@
-"""Names and numbers that a module may not exceed: 24 characters, 255 local routines."""
+"""Limits of names and numbers of a module: 24 characters, 255 local routines."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 def _declared(context: Context) -> Iterator[ast.Name]:
-    """What a file gives names to, in the order of the text; a parameter once."""
+    """Yield the names that a file declares, in the order of the text; a parameter once."""
     content = context.syntax.content
     if isinstance(content, ast.DataList):
         yield content.name

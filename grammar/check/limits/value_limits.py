@@ -1,6 +1,6 @@
-"""Numbers and values with limits: interrupts, triggers, cyclical flags.
+"""Numbers and values with limits: interrupts, triggers, cyclic flags.
 
-Only what is known before a program runs is judged.
+Only values that are known before a program runs are checked.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _STOP_MESSAGE = "$STOPMESS"
 
 
 def is_priority(number: float) -> bool:
-    """Whether a program can give this number to an interrupt or a trigger [INT-02, TRG-06]."""
+    """Return whether a program may give this number to an interrupt or trigger [INT-02, TRG-06]."""
     return number in (1, 2) or 4 <= number <= 39 or 81 <= number <= 128
 
 
@@ -44,7 +44,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 def _number(context: Context, node: ast.Expression | None) -> float | None:
-    """The value of a number that is known; ``None`` for all else."""
+    """Return the value of a constant number, or ``None``."""
     value = None if node is None else constant(context, node)
     return value if isinstance(value, int | float) and not isinstance(value, bool) else None
 
@@ -148,7 +148,7 @@ _ELSEWHERE = frozenset((
 
 
 def _is_local(context: Context, variable: ast.Variable) -> bool:
-    """Whether a variable belongs to its routine."""
+    """Return whether a variable is local to its routine."""
     found = context.found(variable.name)
     return found is not None and found.symbol.access is Access.ROUTINE
 

@@ -1,1 +1,1 @@
-"""Names: not declared, declared twice, and how unknown ones are graded over a project."""
+"""Names: undeclared, declared twice, and the certainty of unknown names over a project."""

@@ -1,7 +1,7 @@
-"""Names that are declared twice: in one scope, for everybody by two modules, or hidden by another.
+"""Names that are declared twice: in one scope, by two modules for all, or hidden by another.
 
-Folders in which people collect programs are full of copies, so only where files are laid out like a
-controller's drive is it a fault that two modules declare the same for everybody.
+Folders of collected programs are full of copies. Two modules that declare the same name for all are
+therefore only reported if the files are laid out like the drive of a controller.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _hides(context: Context, inner: Found, outer: Found) -> Diagnostic:
 
 @lru_cache(maxsize=1)
 def _clashing(project: Project) -> Mapping[Module, list[tuple[Found, Found]]]:
-    """What the modules of a controller declare for everybody after another one did."""
+    """Yield the declarations for all modules that repeat one of an earlier module."""
     found: dict[Module, list[tuple[Found, Found]]] = {}
     for clash in project.clashes if project.is_controller else ():
         if clash.space is not Space.LABEL:

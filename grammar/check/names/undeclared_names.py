@@ -1,8 +1,8 @@
 """Names in a file that nothing declares.
 
-A look-up says `NotFound` where the whole project is at hand: `check` reports these. Real backups
-seldom are whole; names that some file not at hand may declare are the `references` of the file, and
-those of all files are graded together (`grammar.check.names.unresolved_names`).
+A look-up returns `NotFound` if no file of the project is missing; `check` reports these names. Most
+real backups are incomplete. Names that a missing file may declare are the `references` of the file;
+those of all files are judged together (`grammar.check.names.unresolved_names`).
 """
 
 from __future__ import annotations
@@ -65,10 +65,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 def _slipped_declarations(context: Context) -> dict[str, tuple[Symbol, str, int]]:
-    """The variables that are declared in the file by a slip, by what they are called in use.
+    """Return the variables of the file that are declared with a slip, by the name in use.
 
-    That is what nothing uses, while a name one slip away is used and not declared: several times,
-    or once and likelier spelt as it is meant.
+    Nothing uses such a variable, while a name one slip away is used and not declared: several
+    times, or once with the more likely spelling.
     """
     open_ = context.open_uses.items()
     uses = {key: some for (space, key), some in open_ if space is Space.VALUE and key[0] != "$"}
@@ -91,7 +91,7 @@ def _own_tables(context: Context) -> tuple[Table, ...]:
 
 
 def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
-    """The variables of some tables that the file does not use, by their names in upper case."""
+    """Return the variables of some tables that the file does not use, by upper-case name."""
     used = {found.symbol for found in context.used}
     return {
         symbol.key: symbol
@@ -102,9 +102,9 @@ def _unused(context: Context, tables: Iterable[Table]) -> dict[str, Symbol]:
 
 
 def uses(context: Context) -> frozenset[str]:
-    """The names in upper case that a file uses and some file declares, or that cannot be read.
+    """Return the upper-case names that a file uses and some file declares, or in unreadable lines.
 
-    Constants of enumerations are among them with a #, components of structures with a dot.
+    Enumeration constants are included with a #, components of structures with a dot.
     """
     declared = {found.symbol.key for found in context.used if found.module}
     parts = set()
@@ -119,12 +119,12 @@ def uses(context: Context) -> frozenset[str]:
 
 
 def uses_of_unread(words: Iterable[str]) -> frozenset[str]:
-    """What text that cannot be read may use, given its words in upper case."""
+    """Return what unreadable text may use, given its words in upper case."""
     return frozenset(written for word in words for written in (word, f"#{word}", f".{word}"))
 
 
 def _near_system_names(context: Context) -> Iterator[Diagnostic]:
-    """What a list of the controller declares and is one slip away from what the tables have."""
+    """Yield declarations in a system data list that are one slip away from a known system name."""
     if not context.table.is_data:
         return
     known = context.system.variables
@@ -152,7 +152,7 @@ def _declared(context: Context, space: Space, name: str) -> Declared | None:
 
 @cache
 def _open_components() -> Typos:
-    """The components of those structures of the controller that may have more of them."""
+    """Return the components of structures of the controller that may have further components."""
     types = System.load().types.values()
     known = (one for one in types if isinstance(one, Structure) and one.is_open)
     names = (member.name for one in known for member in one.members)
@@ -166,7 +166,7 @@ def _system_typos() -> Typos:
 
 
 def lacks_data_list(project: Project, module: Module, resolution: Resolution) -> bool:
-    """Whether the data list of a program is not at hand, and the program uses unknown variables."""
+    """Return whether the data list of a program is missing and the program uses unknown names."""
     if module.suffix == ".dat" or project.data_of(module) is not None:
         return False
     return any(
@@ -202,7 +202,7 @@ def _why_hidden(hidden: Found) -> str:
 
 
 def _visible(context: Context, space: Space, span: Span) -> Iterator[str]:
-    """The names that somebody may have meant, those nearby first."""
+    """Yield the names that may be meant, nearest scope first."""
     for routine in context.routines:
         if routine.node.span[0] <= span[0] < routine.node.span[1]:
             yield from _names(routine.table.table, space)
@@ -233,7 +233,7 @@ def _names(table: Table, space: Space, access: Access | None = None) -> Iterator
 
 
 def references(context: Context) -> tuple[UnresolvedName, ...]:
-    """The names in a file that other files may declare, in the order of their first places."""
+    """Return the names that other files may declare, in the order of their first places."""
     open_: dict[tuple[Space, str], list[Use]] = {}
     slips = _slipped_declarations(context)
     for (space, key), some in context.open_uses.items():
@@ -251,7 +251,7 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
 
 
 def loose_constants(context: Context) -> Iterator[LooseConstant]:
-    """The constants in places where no enumeration at hand decides which there are."""
+    """Return the constants whose enumeration is unknown, so that any constant is possible."""
     loose: dict[str, list[ast.EnumConstant]] = {}
     for node in context.types:
         if type(node) is ast.EnumConstant and node.name.key not in _system_constants():
@@ -275,7 +275,7 @@ def loose_constants(context: Context) -> Iterator[LooseConstant]:
 
 
 def _of_unknown_types(context: Context) -> Set[ast.Node]:
-    """What is in initial values of variables whose type is not at hand."""
+    """Return the nodes in initial values of variables whose type is missing."""
     return {
         part
         for item in (context.data.items if context.data else ())
@@ -288,7 +288,7 @@ def _of_unknown_types(context: Context) -> Set[ast.Node]:
 
 
 def _parts(context: Context) -> Iterator[UnresolvedName]:
-    """The constants that enumerations of the project lack, and the components of structures."""
+    """Yield constants that enumerations of the project lack, and components of structures."""
     for type_, name, finding in context.lacking:
         at = _declared(context, Space.TYPE, type_.name)
         if isinstance(type_, Enumeration):
@@ -311,7 +311,7 @@ def _parts(context: Context) -> Iterator[UnresolvedName]:
 
 @cache
 def _system_constants() -> Mapping[str, str]:
-    """The constants of all enumerations of the controller, by themselves in upper case."""
+    """Return the constants of all enumerations of the controller in upper case."""
     known = (one for one in System.load().types.values() if isinstance(one, Enumeration))
     return {name.upper(): name for one in known for name in one.constants}
 
@@ -322,7 +322,7 @@ def _constant_typos(names: tuple[str, ...]) -> Typos:
 
 
 def _members(context: Context) -> Iterator[UnresolvedName]:
-    """The components of structures that are unknown, or of which more may exist than are known."""
+    """Yield components of structures that are unknown or may have further components."""
     unknown: dict[str, list[ast.Name]] = {}
     for name in context.resolution.unknown_members:
         unknown.setdefault(name.key, []).append(name)
@@ -376,9 +376,9 @@ _WORDS_OF_KRL = {
 
 
 def _is_without_dollar(system: System, key: str) -> bool:
-    """Whether a name is that of a variable of the controller but for the dollar sign.
+    """Return whether a name is that of a system variable without its dollar sign.
 
-    Programs use no texts of it; HOME is a position that a list not at hand declares.
+    Texts are excluded, because programs do not use them; HOME is a position in a missing data list.
     """
     known = system.variables.get(f"${key}")
     return known is not None and not (isinstance(known.type, Array) and known.type.element == CHAR)
@@ -392,7 +392,7 @@ _FOR_BAS = re.compile(
 
 
 def _may_be_elsewhere(use: Use) -> bool:
-    """Whether a name comes from a file that is not at hand; what several declare does not."""
+    """Return whether a missing file may declare a name; not if several files declare it."""
     if isinstance(use.answer, MaybeElsewhere):
         return use.answer.reason is not Reason.AMBIGUOUS
     return isinstance(use.answer, Found)  # only EXT announces it
@@ -405,7 +405,7 @@ def _may_be_unread(use: Use) -> bool:
 def _near(
     context: Context, own: Callable[[Space], Typos], prefixes: Set[str], use: Use
 ) -> tuple[str, ...]:
-    """The names that are seen there and that this one may be a slip of."""
+    """Yield the visible names of which this name may be a slip."""
     space = use.space
     if space is None or isinstance(use.answer, Found):
         return ()
@@ -434,14 +434,14 @@ def _near(
 
 
 def _prefixes(context: Context) -> frozenset[str]:
-    """The small prefixes that several names in a file have."""
+    """Return the short prefixes that several names in a file share."""
     names = {name.key: name.text for name in context.resolution.answers}
     counts = Counter(map(small_prefix, names.values()))
     return frozenset(prefix for prefix, count in counts.items() if count > 1)
 
 
 def _own_typos(context: Context, space: Space) -> Typos:
-    """The names of the file itself, of its routines and of its data list."""
+    """Return the names of the file, of its routines and of its data list."""
     tables = [*_own_tables(context)]
     data = context.project.data_of(context.module)
     if data is not None and data.table is not None:
@@ -451,11 +451,11 @@ def _own_typos(context: Context, space: Space) -> Typos:
 
 
 def _is_all_read(context: Context, use: Use) -> bool:
-    """Whether every file that a controller would look into for this name is at hand and read.
+    """Return whether all files are read in which a controller looks for this name.
 
-    For a variable: its data list, if it has one, and $CONFIG. What else is GLOBAL lies in packages,
-    and these are known by what they declare, not by what some other file calls; or in the list of a
-    program that begins as the variable does, and that list may be missing.
+    For a variable these are its data list, if it has one, and $CONFIG. Other GLOBAL data are in
+    packages, which are recognised by their declarations and not by calls; or in the data list of a
+    program whose name is a prefix of the variable's name, and that list may be missing.
     """
     project, begin = context.project, use.name.key[:SHARED]
     if not isinstance(use.answer, MaybeElsewhere) or _may_be_unread(use):

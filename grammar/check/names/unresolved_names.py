@@ -1,8 +1,8 @@
-"""Names that files use and nothing at hand declares, graded over all files of a project.
+"""Names that files use and nothing declares, judged over all files of a project.
 
-Whether such a name is a mistake or its file is missing, a single file cannot show: what decides is
-whether all that could declare it has been read, whether it is a slip of a name that is seen there,
-how often it is used, and how many more there are like it.
+A single file cannot show whether such a name is a mistake or whether its file is missing. It
+depends on whether all files that could declare it are read, whether it is a slip of a visible name,
+how often it is used, and how many similar names there are.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ _MOST_MODULES = 2
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """What a file at ``path`` declares, in upper case.
+    """A declaration in the file at ``path``, with names in upper case.
 
-    A ``part`` is a constant of an enumeration, with #, or a component of a structure, with a dot.
+    A ``part`` is an enumeration constant, with #, or a component of a structure, with a dot.
     """
 
     path: str
@@ -73,11 +73,11 @@ class Declared:
 
     @property
     def used(self) -> str:
-        """What the names that are used have in them if it is."""
+        """The key that the set of used names contains if this declaration is used."""
         return self.part or self.key
 
     def region(self, file_of: FileOf) -> Region | None:
-        """Where it is declared; ``None`` where the file does not any more."""
+        """Return the region of the declaration; ``None`` if the file no longer contains it."""
         file = file_of(self.path)
         if file is None or (table := file[0]) is None:
             return None
@@ -89,14 +89,14 @@ class Declared:
 
 @dataclass(frozen=True, slots=True)
 class UnresolvedName:
-    """A name that a file uses and that may be declared in a file that is not at hand.
+    """A name that a file uses and that a missing file may declare.
 
-    ``space`` is ``None`` for a component of a structure that is not at hand. ``region`` is the
-    first place of ``count``. ``near`` are names seen there that it may be a slip of; it
-    ``is_swapped`` with one that the data list declares and the program does not use. ``declared``
-    is where a file at hand declares the only one near. ``is_all_read``: no file is missing that
-    could declare it; ``is_certain``: the data list of the program is among those that are there.
-    A part that its type lacks is found in its file already, as ``finding``.
+    ``space`` is ``None`` for a component of a missing structure. ``region`` is the first place of
+    ``count``. ``near`` are visible names of which it may be a slip; ``is_swapped`` if the data list
+    declares one of them and the program does not use it. ``declared`` is the declaration of the
+    only similar name. ``is_all_read`` if no file is missing that could declare it; ``is_certain``
+    if the data list of the program is among the files. A component or constant that its type lacks
+    was found when the file was checked; then ``finding`` has the result.
     """
 
     space: Space | None
@@ -125,11 +125,11 @@ class UnresolvedName:
 
 @dataclass(frozen=True, slots=True)
 class LooseConstant:
-    """A constant in a place where no enumeration at hand decides which there are.
+    """A constant whose enumeration is unknown, so that any constant is possible.
 
     ``region`` is the first place of ``count`` in the file at ``path``; ``near`` are constants of
-    the controller that it may be a slip of. ``has_unknown_type``: it is the initial value of a
-    variable whose type is not at hand, which may well have it.
+    the controller of which it may be a slip. ``has_unknown_type`` if it is the initial value of a
+    variable whose type is missing; that type may have the constant.
     """
 
     name: str
@@ -143,11 +143,10 @@ class LooseConstant:
 def slipped_declarations(
     found: Iterable[UnresolvedName], used: Set[str], file_of: FileOf, spelling: Spelling
 ) -> dict[tuple[_Called, Declared | None], Diagnostic]:
-    """The findings at declarations, by the `slip` of the uses that these leave undeclared.
+    """Return findings at declarations whose misspelling leaves the uses of a name undeclared.
 
-    A declaration has a slip where nothing uses it and a name that is near has several uses, or one
-    and is likelier spelt as it is meant.
-    ``used`` are declared names that some file uses.
+    A declaration is misspelt if nothing uses it and a similar name has several uses, or one use
+    with the more likely spelling. ``used`` are declared names that some file uses.
     """
     uses: dict[tuple[_Called, Declared | None], list[UnresolvedName]] = {}
     for reference in found:
@@ -168,9 +167,9 @@ def slipped_declarations(
 def misspelt_declarations(
     spelling: Spelling, used: Set[str], file_of: FileOf
 ) -> Iterator[Diagnostic]:
-    """What nothing uses and is a slip of what other files write, or of a series of names.
+    """Yield unused declarations that are a slip of a name in other files, or of a series.
 
-    An EXT is one if it announces a routine that no file has, one slip away from one that is there.
+    An EXT is one if no file has its routine and a routine one slip away exists.
     """
     announced: list[tuple[str, Symbol]] = []
     routines: dict[str, str] = {}
@@ -202,7 +201,7 @@ def misspelt_declarations(
 
 
 def _externals(table: ModuleTable) -> Iterator[tuple[Space, Symbol]]:
-    """The routines that EXT announces in a program; in a data list they are among its symbols."""
+    """Return the routines that EXT announces in a program; a data list has them in its symbols."""
     return ((Space.ROUTINE, symbol) for symbol in table.externals.values())
 
 
@@ -214,12 +213,12 @@ def _misspelt(
 
 
 def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[Diagnostic]:
-    """What is to be said of the names that the files of a project take from elsewhere.
+    """Return the findings on names that the files of a project use from elsewhere.
 
-    An error in each file for what nothing declares though all that could is read; a warning for
-    what is a slip of a name that is seen there, or that is used again and again and comes from
-    elsewhere itself; one note for each name that remains. Where many are declared nowhere and none
-    is a slip, what declares them is missing, so that these are notes, too.
+    An undeclared name is an error if all files that could declare it are read; a warning if it is a
+    slip of a visible name, or of a name that is used often and comes from elsewhere itself;
+    otherwise a note, once for each name. If many names are undeclared and none is a slip, the file
+    that declares them is missing, and all of them are notes.
     """
     uses: dict[_Called, list[UnresolvedName]] = {}
     for reference in found:
@@ -269,9 +268,9 @@ def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[
 def of_constants(
     found: Iterable[LooseConstant], declared: Callable[[], Iterable[str]]
 ) -> Iterator[Diagnostic]:
-    """A warning for each constant that is a slip of another, which is declared or used more often.
+    """Yield a warning for each constant that is a slip of one that is declared or more frequent.
 
-    ``declared`` gives those of all enumerations of the project.
+    ``declared`` has the constants of all enumerations of the project.
     """
     uses: dict[str, list[LooseConstant]] = {}
     for one in found:
@@ -304,7 +303,7 @@ def of_constants(
 def _is_usual(
     near: tuple[int, int], wrong: tuple[int, int], name: str, other: str, spelling: Spelling
 ) -> bool:
-    """Whether a name is the right one of two: used more often, else likelier spelt, else first."""
+    """Return whether a name is the right one of two: more frequent, more likely spelt, or first."""
     if near[0] == wrong[0]:
         if near[0] > 1 or len(name) < _LONG:
             return False
@@ -317,7 +316,7 @@ def _is_usual(
 def _slipped(
     some: Sequence[UnresolvedName], used: Set[str], file_of: FileOf, spelling: Spelling
 ) -> Diagnostic | None:
-    """The finding at a declaration that nothing uses, where what is near it has several uses."""
+    """Return the finding at an unused declaration that is similar to names with several uses."""
     first, count = some[0], sum(one.count for one in some)
     at = first.declared
     if at is None or at.used in used or REST in used:
@@ -342,7 +341,7 @@ def _slipped(
 def slipped_declaration(
     slug: str, path: str, region: Region, written: str, name: str, count: int, *, is_certain: bool
 ) -> Diagnostic:
-    """A declaration that nothing uses, ``written`` one slip away from a name that many do."""
+    """Return the finding for an unused declaration ``written`` one slip away from a used name."""
     return diagnose(
         slug,
         path,

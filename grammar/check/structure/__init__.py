@@ -1,1 +1,1 @@
-"""Structure: where declarations, statements and spline segments may stand, and folds."""
+"""Structure: the places of declarations, statements and spline segments, and folds."""

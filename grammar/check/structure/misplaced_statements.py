@@ -1,7 +1,7 @@
 """Misplaced statements: in submit programs, in interrupt routines, before declarations.
 
-What an interrupt calls is known in its own module only: a routine of another module may be called
-by interrupts that are unknown here, and is left alone.
+Calls by interrupts are only known in the module that declares them. A routine of another module may
+be called by unknown interrupts and is not checked.
 """
 
 from __future__ import annotations
@@ -93,7 +93,10 @@ def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
 
 
 def _interrupt_routines(context: Context) -> Mapping[str, ast.InterruptDeclaration]:
-    """The routines of this module that its interrupts call; where one is GLOBAL, that."""
+    """Return the routines that interrupts of this module call, each with its interrupt.
+
+    If several interrupts call a routine, a GLOBAL one is returned.
+    """
     own = {routine.node.name.key for routine in context.routines}
     found: dict[str, ast.InterruptDeclaration] = {}
     for routine in context.routines:
@@ -127,7 +130,7 @@ def _in_interrupt(
 
 
 def _forbidden(statement: ast.Node, is_global: bool) -> tuple[str, str]:
-    """The slug and the message for what an interrupt routine may not do; empty for the rest."""
+    """Return slug and message for a statement that an interrupt routine must not contain."""
     match statement:
         case ast.Motion(kind=kind) if kind in SPLINE_MOTIONS:
             return "spline-in-interrupt", f"{kind} in an interrupt routine"
