@@ -1,7 +1,7 @@
-"""A session: a program, an executor, the controller and a robot put together, and what came of it.
+"""A session: combines a program, an executor, the controller and a robot, and runs them.
 
-Everything that a run depends on is in its `RunSetup`; the same program and setup give the same
-trace, to the bit, on every executor and with every robot.
+Everything on which a run depends is in its `RunSetup`; the same program and setup give the same
+trace, bit for bit, on every executor and with every robot.
 """
 
 from __future__ import annotations
@@ -124,15 +124,14 @@ class RunSetup:
 
 @dataclass(frozen=True, slots=True)
 class RunResult:
-    """What came of a run: how it ended, the trace, and where the arm went.
+    """The result of a run: how it ended, the trace, and the path of the arm.
 
-    ``executor`` is the one that has run, over whose data lists a companion can still look around.
+    ``executor`` is the executor after the run; a companion can inspect its data lists.
 
-    ``path`` is ``None`` with the robot ``none``, which takes no set-points. ``machine`` and
-    ``start`` are those that were used; ``observations`` what the arm touched, with a scene or
-    MuJoCo, and where it was asked for more torque than it bears; ``torque_note`` says
-    why torques of the project were left out; ``machine_note`` says why the
-    machine is not the project's own, where that had to be reported.
+    ``path`` is ``None`` with the robot ``none``, which receives no set-points. ``machine`` and
+    ``start`` are those that were used; ``observations`` are contacts of the arm, with a scene or
+    MuJoCo, and torques beyond its limits; ``torque_note`` says why torques of the project were left
+    out; ``machine_note`` says why the machine is not the project's own, if that had to be reported.
     """
 
     outcome: RunOutcome
@@ -245,7 +244,7 @@ def run_program(
 
 
 def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
-    """What data lists give system variables; without any, nothing is loaded to work that out."""
+    """Return the values of system variables in data lists; fast if there are none."""
     if next(data_lists(program), None) is None:
         return {}
     from interp.tree import system_values
@@ -254,7 +253,7 @@ def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
 
 
 def _arm(machine: MachineData, start: Sequence[float]) -> DeferredArm:
-    """The arm; raises `LinkError` where it cannot stand at its start."""
+    """Return the arm; raises `LinkError` if its start position is impossible."""
 
     def made() -> PlannedArm:
         from interp.robot.planning.planned_arm import PlannedArm
@@ -295,7 +294,7 @@ def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
 
 
 def _sinks(trace: Trace, program: CheckedProgram, setup: RunSetup) -> tuple[TaskSink, TaskSink]:
-    """Those of the two programs. Calls that only interrupts and $ERR go by are in no trace."""
+    """Return the sinks of both programs, without calls that only serve interrupts and $ERR."""
     is_traced = setup.is_full or setup.is_traced
     silent = None if setup.is_submit_traced else _needed_kinds(program)
     return trace.sink(keeps_calls=is_traced), trace.sink(
@@ -304,7 +303,7 @@ def _sinks(trace: Trace, program: CheckedProgram, setup: RunSetup) -> tuple[Task
 
 
 def _stand_in_arguments(units: Sequence[Unit]) -> dict[tuple[str, int, str], str]:
-    """What stand-ins are called with, as it is written: their traces have little else."""
+    """Return the calls of stand-ins with their arguments as written, for the trace."""
     names = {unit.module.name.upper() for unit in units if unit.module.folder == FOLDER}
     found: dict[tuple[str, int, str], str] = {}
     for unit in units if names else ():
@@ -356,7 +355,7 @@ def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]
 
 
 def submit_of(program: CheckedProgram) -> str | None:
-    """The submit program of a project: SPS, as controllers call it."""
+    """Return the submit program of a project, which controllers call SPS."""
     for unit in program.units.values():
         routines = program.routines_of(unit)
         if unit.module.suffix == ".sub" and routines and routines[0].node.name.key == "SPS":
@@ -365,13 +364,13 @@ def submit_of(program: CheckedProgram) -> str | None:
 
 
 def _own_sources(program: CheckedProgram) -> list[Source]:
-    """The files of the project itself, without those that stand in."""
+    """Return the files of the project itself, without stand-ins."""
     units = program.units.values()
     return [unit.source for unit in units if unit.module.folder != FOLDER]
 
 
 def _with_torques(machine: MachineData, program: CheckedProgram) -> tuple[MachineData, str]:
-    """The machine with the torques of the project's $robcor.dat, else as it is and why."""
+    """Return the machine with the torques in the project's $robcor.dat, or why it has none."""
     for unit in program.units.values():
         if unit.module.name == "$ROBCOR" and unit.module.suffix == ".dat":
             try:
@@ -382,9 +381,9 @@ def _with_torques(machine: MachineData, program: CheckedProgram) -> tuple[Machin
 
 
 def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData:
-    """The arm of the project's own machine data, else that of the profile.
+    """Return the arm in the project's machine data, or that of the profile.
 
-    Raises `LinkError` where the project has machine data of an arm that is not understood.
+    Raises `LinkError` if the project has machine data of an arm that is not understood.
     """
     source = machine_data_of(_own_sources(program))
     if source is not None:
@@ -396,7 +395,7 @@ def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData
 
 
 def _machine_of(profile: Profile) -> MachineData:
-    """The arm that a profile names. Raises `LinkError` where there is none."""
+    """Return the arm that a profile names; raises `LinkError` if there is none."""
     if profile.machine == default_machine().name.lower():
         return default_machine()
     path = model_file(f"{profile.machine}.dat")

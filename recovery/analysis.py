@@ -1,7 +1,7 @@
-"""From a survey to its record: causes found, reproducers reduced, proposals reviewed.
+"""Turns a survey into its record: finds causes, reduces reproducers, reviews proposals.
 
-Where the same files were analysed before under the same grammar, with the same negatives and the
-same code, the record is taken from there.
+If the same files were analysed before with the same grammar, negatives and code, the stored record
+is used.
 """
 
 from __future__ import annotations
@@ -35,9 +35,10 @@ def analyse(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> SurveyRecord:
-    """The record of a survey (`recovery.survey_record`); proposals are tried on ``negatives``.
+    """Return the record of a survey (`recovery.survey_record`).
 
-    ``cache`` is the folder where records are kept; ``on_found`` and ``on_done`` report progress.
+    Proposals are tried on ``negatives``. ``cache`` is the folder of stored records; ``on_found``
+    and ``on_done`` report progress.
     """
     digest = _digest(found, negatives, grammar_name)
     with ResultStore(cache, key_of(found.grammar)) as store:
@@ -62,10 +63,10 @@ def with_answers(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> StartRecord:
-    """The record of the restrictive start as part of another: what the ledger made of it.
+    """Return the record of the restrictive start with the constructs that answer its clusters.
 
     ``record`` is that of ``found``, the survey of the start. Each cluster gets ``answered_by``, and
-    ``constructs`` are those that answered (`recovery.growth.answers`).
+    ``constructs`` are those that answer clusters (`recovery.growth.answers`).
     """
     answers = answered(
         record["clusters"], found, steps, jobs=jobs, cache=cache, on_found=on_found, on_done=on_done
@@ -89,7 +90,7 @@ def _worked_out(
 
 
 def _digest(found: Survey, negatives: Sequence[Negative], grammar_name: str) -> str:
-    """What the record depends on besides the grammar and the code."""
+    """Return a digest of everything on which the record depends, besides grammar and code."""
     code = hashlib.sha256(grammar_name.encode())
     for file in found.files:
         code.update(repr((file.digest, file.places)).encode())

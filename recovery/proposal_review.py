@@ -22,7 +22,7 @@ _LINES_READ = 60
 
 
 class Reviewer:
-    """Works out what a proposal costs: programs it breaks, second readings it adds."""
+    """Determines the cost of a proposal: programs that it breaks, second readings that it adds."""
 
     def __init__(self, found: Survey, clusters: Clusters) -> None:
         self.found = found
@@ -31,14 +31,14 @@ class Reviewer:
         self._paths = Paths(self.recognizer.network)
 
     def records(self, cluster: Cluster) -> list[ProposalRecord]:
-        """The proposals of a cluster as plain data, the best first."""
+        """Return the proposals of a cluster as plain data, the best first."""
         return [
             self._record(proposal, files)
             for proposal, files in zip(cluster.proposals, cluster.restores, strict=True)
         ]
 
     def wider(self, proposal: Proposal) -> Recognizer | None:
-        """A recogniser of the grammar with the proposal."""
+        """Return a recogniser for the grammar with the proposal."""
         return edited(self.recognizer, proposal.edits)
 
     def _record(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> ProposalRecord:
@@ -73,7 +73,7 @@ class Reviewer:
         return sum(len(f.places) for f in files if wider.accepts("\n".join(f.lines())))
 
     def _ambiguities(self, proposal: Proposal) -> int:
-        """Of the lines the proposal mends, those that then have two readings."""
+        """Return the lines that the proposal makes readable in two ways."""
         wider = self.wider(proposal)
         if wider is None:
             return 0
@@ -107,7 +107,7 @@ class Reviewer:
 
     @cached_property
     def _readers_of(self) -> dict[str, list[SurveyedFile]]:
-        """Where the words that a proposal reserves stand in files that parse."""
+        """Return the places in parsing files of the words that a proposal reserves."""
         proposals = [proposal for one in self.clusters.ranked for proposal in one.proposals]
         words = sorted({word for proposal in proposals for word in _reserved(proposal)})
         found: dict[str, list[SurveyedFile]] = {word: [] for word in words}

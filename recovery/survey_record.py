@@ -34,10 +34,10 @@ _FILES_NAMED = 200
 
 
 def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> SurveyRecord:
-    """Everything a survey found, as plain data.
+    """Return all results of a survey as plain data.
 
-    Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters``
-    name the first place of a content, ``copies`` the others.
+    Counts of files include copies; ``distinct`` counts contents. ``failures`` and ``clusters`` name
+    the first file with a content, ``copies`` the others.
     """
     recognizer = Recognizer(found.grammar)
     reviewer = Reviewer(found, clusters)
@@ -51,7 +51,7 @@ def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> Survey
 
 
 def record_without_causes(found: Survey, grammar_name: str) -> SurveyRecord:
-    """What is known of a survey before causes are searched: no clusters, no failures."""
+    """Return the record of a survey before causes are searched: no clusters, no failures."""
     counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
     size = 0
     copies: list[CopyRecord] = []
@@ -198,7 +198,7 @@ def _files_by_origin(cluster: Cluster) -> list[FilesRecord]:
 
 
 def _surroundings(member: Member) -> list[LineRecord]:
-    """The numbered lines around a failure."""
+    """Return the numbered lines around a failure."""
     lines, line = member.file.lines(), member.failed.line
     first, last = max(1, line - _CONTEXT_LINES), min(len(lines), line + _CONTEXT_LINES)
     return [{"line": n, "text": lines[n - 1][:_WIDEST_LINE]} for n in range(first, last + 1)]

@@ -1,1 +1,1 @@
-"""The check measured: how fast it is, and how many planted mistakes it finds."""
+"""Benchmarks of the check: its speed, and how many planted mistakes it finds."""

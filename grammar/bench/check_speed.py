@@ -1,7 +1,7 @@
-"""Speed of the check: time by phase, with a cache, and at growing sizes.
+"""Speed of the check: time by phase, with a cache, and for growing sizes.
 
-One core. Every figure comes from a process of its own, so that nothing remembered from one
-measurement helps the next; importing modules is not counted. MB are 1,000,000 bytes.
+One core is used. Every figure comes from a separate process, so that no measurement benefits from
+what another has cached; imports are not counted. MB are 1,000,000 bytes.
 """
 
 from __future__ import annotations

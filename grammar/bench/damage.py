@@ -1,6 +1,6 @@
-"""Damage that backups arrive with: files lost or cut, names misspelt, characters exchanged.
+"""Typical damage of backups: files lost or cut, names misspelt, characters exchanged.
 
-Each kind changes the text of a file by a seed and the path of the file, whatever others there are.
+Each kind changes the text of a file depending on a seed and on the path of the file only.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def _lost(_source: Source, _chance: Random) -> str | None:
 
 
 def _misspelt(source: Source, chance: Random) -> str:
-    """One name misspelt in some of the lines."""
+    """Return the text with one name misspelt in some of the lines."""
     text = source.text
     for tokens in reversed(list(lines_of_tokens(source))):
         found = slip("name misspelt", tokens, chance) if chance.random() < _LINES else None
@@ -64,11 +64,11 @@ DAMAGES: Final[Mapping[str, Callable[[Source, Random], str | None]]] = {
 
 
 def damaged_source(source: Source, kind: str, seed: int) -> Source | None:
-    """A file after damage of a kind, as it was where the seed spares it, or ``None`` if lost.
+    """Return a file after damage, unchanged if the seed spares it, or ``None`` if it is lost.
 
-    ``files`` loses three of ten files, ``lists`` three of ten data lists. Of three of ten files
-    ``cut`` loses the end, ``lines`` one line in 20, ``names`` misspells one in 20 lines,
-    ``characters`` exchanges one in 500; ``latin`` reads them in another encoding.
+    ``files`` loses three of ten files, ``lists`` three of ten data lists. In three of ten files
+    ``cut`` loses the end, ``lines`` one line in 20, ``names`` misspells one name in 20 lines,
+    ``characters`` exchanges one in 500; ``latin`` decodes them with another encoding.
     """
     chance = Random(f"{seed} {kind} {source.path}")
     if chance.random() >= _FILES or (kind == "lists" and source.kind != "dat"):

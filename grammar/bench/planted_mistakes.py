@@ -1,10 +1,10 @@
 """Detection rate of the check: real programs damaged at random, in one place at a time.
 
-What is damaged and how is not chosen by hand: a seed draws the kind of damage, the file, the line
-and the token, each file alike however long (`grammar.bench.slips`). A mistake is found when its
-project has an error or a warning that it did not have before, and found in its place when one of
-these is on the damaged line. Files that cannot be read as they are get no mistakes, but stay in
-their projects. To leave an argument out is no mistake [SCO-13].
+Nothing is chosen by hand: a seed draws the kind of damage, the file, the line and the token, each
+file with the same probability (`grammar.bench.slips`). A mistake is found if its project has an
+error or a warning that it did not have before, and found in place if one of these is on the damaged
+line. Files that cannot be read get no mistakes, but stay in their projects. A missing argument is
+no mistake [SCO-13].
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _WORD = re.compile(r"[A-Z_$][A-Z0-9_$]*", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True)
 class _Program:
-    """A file as it is linked, as it was read, and what it gives other files."""
+    """A file as it is linked, as it was read, and its contribution to other files."""
 
     file: File
     source: Source
@@ -101,7 +101,7 @@ class _Checked:
         return program.reading.completed(checked.findings)
 
     def name_at(self, path: str, start: int) -> str:
-        """What the name is called for that begins there."""
+        """Return what the name that begins there denotes."""
         program = self.programs[path]
         text = program.source.text
         key = _WORD.match(text, start)
@@ -118,12 +118,12 @@ class _Checked:
 
     @cached_property
     def _written(self) -> Counter[str]:
-        """How often each word is written in the project, in upper case."""
+        """Return how often each word occurs in the project, in upper case."""
         texts = (program.source.text for program in self.programs.values())
         return Counter(word.upper() for text in texts for word in _WORD.findall(text))
 
     def with_text(self, path: str, text: str) -> list[Diagnostic]:
-        """The errors and warnings that are new once a file has another text."""
+        """Return the errors and warnings that are new if a file has another text."""
         before, findings = self.programs[path], dict(self.findings)
         self.programs[path] = after = _program(Source(text, path), before.file.origin)
         stem = path.rpartition(".")[0].casefold()
@@ -141,7 +141,7 @@ class _Checked:
 
 
 def _names(resolution: Resolution) -> dict[int, str]:
-    """What the names of a file are, by where they begin; constants are left out."""
+    """Return what the names of a file denote, by their start; constants are left out."""
     components = dict.fromkeys((name.span[0] for name in resolution.unknown_members), "member")
     open_ = {
         use.name.span[0]: use.space.value if use.space else "member" for use in resolution.open_uses
@@ -224,7 +224,7 @@ def measure_planted(
 def _left(
     whole: Mapping[str, _Program], missing: str, chance: random.Random
 ) -> Iterator[dict[str, _Program]]:
-    """What is left of a project when files are missing."""
+    """Return the project without the missing files."""
     match missing:
         case "others":
             yield from ({path: program} for path, program in whole.items())
@@ -255,7 +255,7 @@ def _codes(found: Iterable[Diagnostic]) -> Iterator[str]:
 
 
 def _unplanted(projects: Iterable[_Checked]) -> dict[str, Any]:
-    """The errors and warnings before anything is planted, by code, and the lines they are in."""
+    """Return the errors and warnings before any mistake is planted, by code and line."""
     codes: Counter[str] = Counter()
     lines = 0
     for project in projects:
@@ -298,7 +298,7 @@ def _trial(
 
 
 def _median_file(trials: Sequence[Mapping[str, Any]]) -> float | None:
-    """The mean number of findings of a mistake that is found, in the median file."""
+    """Return the mean number of findings of a found mistake, in the median file."""
     files: dict[str, list[int]] = {}
     for one in trials:
         if one["findings"]:
@@ -308,9 +308,9 @@ def _median_file(trials: Sequence[Mapping[str, Any]]) -> float | None:
 
 
 def _next_code(source: Source, line: int) -> int:
-    """The next line that is neither blank nor a comment: what is missing is missed there.
+    """Return the next line that is neither blank nor a comment: a missing line is noticed there.
 
-    Behind the last one it is missed at the end of the text that is left.
+    After the last line, it is noticed at the end of the remaining text.
     """
     later = (n for n in range(line + 1, len(source.lines) + 1) if _has_code(source, n))
     before = (n for n in range(line - 1, 0, -1) if source.line(n).strip())

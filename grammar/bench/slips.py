@@ -1,4 +1,4 @@
-"""Damage of programs at one place: slips in a line, lines lost or exchanged, drawn by chance."""
+"""Damage at one place of a program: slips in a line, lines lost or exchanged, drawn at random."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Token:
 
     @property
     def end(self) -> int:
-        """Where it ends in the text of the file."""
+        """The end of the token in the text of the file."""
         return self.start + len(self.text)
 
 
@@ -129,7 +129,7 @@ def slip(kind: str, tokens: Sequence[Token], chance: random.Random) -> Exchange 
 
 
 def _type_of(token: Token) -> str:
-    """The type of a plain literal; ``""`` for all else."""
+    """Return the type of a literal; ``""`` for other tokens."""
     if token.text.upper() in ("TRUE", "FALSE"):
         return "BOOL"
     if token.text.isdecimal():
@@ -138,7 +138,7 @@ def _type_of(token: Token) -> str:
 
 
 def _misspelt(words: Sequence[Token], chance: random.Random) -> Exchange | None:
-    """One slip of the finger in one of some words."""
+    """Return a slip in one of some words."""
     if not words:
         return None
     token = chance.choice(words)
@@ -152,7 +152,7 @@ def _misspelt(words: Sequence[Token], chance: random.Random) -> Exchange | None:
 
 
 def _more_arguments(tokens: Sequence[Token], chance: random.Random) -> Exchange | None:
-    """One more argument at the end of a call."""
+    """Return a call with one more argument at its end."""
     ends = []
     for index, token in enumerate(tokens[:-1]):
         if token.kind == "NAME" and tokens[index + 1].text == "(":
@@ -182,7 +182,7 @@ def _swapped(tokens: Sequence[Token], chance: random.Random) -> Exchange | None:
 
 
 def _too_large(tokens: Sequence[Token], chance: random.Random) -> Exchange | None:
-    """An index, or the number of an interrupt, far beyond all limits."""
+    """Return an index or interrupt number far beyond all limits."""
     numbers = [
         token
         for before, token, after in zip(tokens, tokens[1:], tokens[2:], strict=False)
@@ -202,12 +202,12 @@ def _too_large(tokens: Sequence[Token], chance: random.Random) -> Exchange | Non
 
 
 def cut(text: str, chance: random.Random) -> str:
-    """A text that ends early, as that of a file that was not copied to its end does."""
+    """Return a text that ends early, like a file that was not copied completely."""
     return text[: chance.randrange(len(text) // 4, len(text))] if text else ""
 
 
 def lines_of_tokens(source: Source) -> Iterator[list[Token]]:
-    """The tokens of each line that has some."""
+    """Return the tokens of each line that has some."""
     lexer: Lexer = builder().failures.recognizer.lexer
     line: list[Token] = []
     for lexeme, start in zip(lexer.lexemes(source.text), lexer.offsets(source.text), strict=True):
