@@ -104,6 +104,7 @@ bench: $(DEV)
 	@$(BIN)/krl bench recover --json reports/out/bench/recover.json $(ARGS)
 	@$(BIN)/krl bench mutation --json reports/out/bench/mutation.json $(ARGS)
 	@$(BIN)/krl bench check --json reports/out/bench/check.json $(ARGS)
+	@$(BIN)/krl bench scale --json reports/out/bench/scale.json $(ARGS)
 	@$(BIN)/krl bench vm --json reports/out/bench/vm.json
 	@$(BIN)/krl bench arm --json reports/out/bench/arm.json
 	@$(BIN)/krl bench conform --json reports/out/bench/conform.json

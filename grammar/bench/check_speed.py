@@ -1,4 +1,4 @@
-"""Speed of the check: time by phase, with a cache, and for growing sizes.
+"""Speed of the check: time by phase, and with a cache.
 
 One core is used. Every figure comes from a separate process, so that no measurement benefits from
 what another has cached; imports are not counted. MB are 1,000,000 bytes.
@@ -18,7 +18,6 @@ from typing import Any
 from grammar.check.analysis.context import Context
 from grammar.check.project.batch import CheckOptions, check_paths
 from grammar.check.project.framework import CHECKS
-from grammar.generation.cells.writing import write_cells
 from grammar.parser.tree import Tree
 from grammar.semantics.link import File, link
 from grammar.semantics.predefined import System
@@ -29,7 +28,7 @@ from grammar.syntax.source import Source
 from support.files.discovery import Found, IngestError, Skipped, discover, read_source
 from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
-from support.measure.speed import MB, ROUNDS, machine, peak_mb, scaling, shares
+from support.measure.speed import MB, ROUNDS, machine, peak_mb, shares
 
 PHASES = (
     "loading",
@@ -46,18 +45,16 @@ PHASES = (
 def measure_check(
     roots: Sequence[Path],
     *,
-    sizes: Sequence[float] = (1, 10),
     rounds: int = ROUNDS,
-    seed: int = 1,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Measure on everything below ``roots``, and on synthetic corpora of ``sizes`` MB.
+    """Measure on everything below ``roots``.
 
     ``on_step`` is called `steps` times. In the record, ``s_per_mb`` is for a first check, the best
     of ``rounds``, ``unchanged_s_per_mb`` for one that finds all results kept from the one before,
-    ``one_changed_seconds`` for one after a line was added to one file, if any file is no archive;
-    ``linear`` is the cost of a MB in the last of ``scaling`` over that in the first. The phase
-    "loading" is the grammar and the tables of the controller, which cost the same for any volume.
+    ``one_changed_seconds`` for one after a line was added to one file, if any file is no archive.
+    The phase "loading" is the grammar and the tables of the controller, which cost the same for any
+    volume.
 
     Raises `support.files.discovery.IngestError` where there is nothing to measure on.
     """
@@ -86,13 +83,12 @@ def measure_check(
         "unchanged_s_per_mb": unchanged * MB / best["bytes"],
         "one_changed_seconds": one_changed,
         "phases": shares(phases),
-        **scaling(sizes, lambda size: _scaled(size, seed), "s_per_mb", on_step),
     }
 
 
-def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
+def steps(rounds: int = ROUNDS) -> int:
     """Return how often `measure_check` calls ``on_step``."""
-    return rounds + 3 + len(sizes)
+    return rounds + 3
 
 
 # -------------------------------------------------------------------------- in a fresh process
@@ -137,14 +133,6 @@ def _one_changed(roots: Sequence[Path]) -> float | None:
         file = sorted(files, key=lambda one: (one.size, one.path))[len(files) // 2].file
         file.write_bytes(file.read_bytes() + b"\n; a comment\n")
         return float(call_isolated(_timed, copies, cache)["seconds"])
-
-
-def _scaled(size: float, seed: int) -> dict[str, Any]:
-    """Check a temporary synthetic corpus of ``size`` MB."""
-    with tempfile.TemporaryDirectory() as folder:
-        write_cells(Path(folder), round(size * MB), seed)
-        timed = call_isolated(_timed, [Path(folder)])
-    return {**timed, "s_per_mb": timed["seconds"] * MB / timed["bytes"]}
 
 
 class _Clock:

@@ -200,8 +200,8 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     yield _Step(
         "growth", ("growth", *given, "--out", str(folder / "growth")), 0.15, "growth/index.html"
     )
-    for bench in ("recover", "check", "vm", "arm", "conform"):
-        arguments = ("bench", bench, *(given if bench in ("recover", "check") else ()))
+    for bench in ("recover", "check", "scale", "vm", "arm", "conform"):
+        arguments = ("bench", bench, *(given if bench in ("recover", "check", "scale") else ()))
         if bench == "conform":
             arguments += ("--mutants", str(max(10, round(2 * minutes))), "--seed", seed)
         yield _Step(f"bench-{bench}", arguments, 0.15)

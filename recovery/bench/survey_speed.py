@@ -1,4 +1,4 @@
-"""Speed of the survey: cold and warm, beside ANTLR, and at growing sizes.
+"""Speed of the survey: cold and warm, and beside ANTLR.
 
 Every figure comes from a process of its own, so that nothing remembered from one measurement helps
 the next. Importing modules is not counted; reading the grammar, building the recogniser and, where
@@ -16,17 +16,15 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from grammar.generation.cells.writing import write_cells
 from grammar.notation import g4
 from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
-from grammar.parser.lazy_automaton import Core
 from grammar.parser.recognizer import Recognizer
 from recovery.survey.survey import Survey, survey
 from support.files.decode import Decoded, decode
 from support.files.discovery import Found, IngestError, discover, read, source_files
 from support.measure.isolated import call_isolated
-from support.measure.speed import MB, ROUNDS, machine, peak_mb, scaling, shares
+from support.measure.speed import MB, ROUNDS, machine, shares
 
 #: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed
 #: with it beforehand, so that they are the same in every run and on every machine.
@@ -37,24 +35,20 @@ def measure(
     roots: Sequence[Path],
     grammar: Grammar,
     *,
-    sizes: Sequence[float] = (1, 10, 100),
     rounds: int = ROUNDS,
     antlr_seconds: float = 60,
-    seed: int = 1,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
     """Measure on everything below ``roots``, each content once.
 
-    ``grammar`` has to be the one that the ANTLR parser was generated from. ``sizes`` are those of
-    the synthetic corpora in MB, ``antlr_seconds`` about how long ANTLR may read. ``on_step`` is
-    called `steps` times.
+    ``grammar`` has to be the one that the ANTLR parser was generated from. ``antlr_seconds`` is
+    about how long ANTLR may read. ``on_step`` is called `steps` times.
 
     In the record, ``bytes_per_s`` and ``warm_bytes_per_s`` are for a first and a second survey, all
     failures found, ``recognise_bytes_per_s`` for a yes or no to each file, the best of ``rounds``
     each; ``unchanged_s_per_mb`` is for a survey in a new process that finds its results kept from
     the one before. ``ratio_vs_antlr_python`` is how many times as long ANTLR takes for the same
-    valid texts, ``linear`` the speed on the last of ``scaling`` over that on the first, and
-    ``memory_growth_mb`` how much more memory the last took at most; ``None`` where not measured.
+    valid texts; ``None`` where not measured.
 
     Raises `support.files.discovery.IngestError` where there is nothing to measure on.
     """
@@ -94,13 +88,12 @@ def measure(
         "ratio_vs_antlr_python": beside["valid"]["ratio"],
         "antlr": beside,
         "unchanged_s_per_mb": unchanged * MB / of.bytes,
-        **scaling(sizes, lambda size: _scaled(size, grammar, seed), "bytes_per_s", on_step),
     }
 
 
-def steps(sizes: Sequence[float], rounds: int = ROUNDS) -> int:
+def steps(rounds: int = ROUNDS) -> int:
     """Return how often `measure` calls ``on_step``."""
-    return 2 * rounds + 2 + len(sizes)
+    return 2 * rounds + 2
 
 
 def _texts(roots: Sequence[Path]) -> list[str]:
@@ -287,29 +280,3 @@ def _recovering_antlr() -> Callable[[str], object]:
 
     read_on("")
     return read_on
-
-
-# ---------------------------------------------------------------------------------- scaling
-
-
-def _scaled(size: float, grammar: Grammar, seed: int) -> dict[str, Any]:
-    """Survey a synthetic corpus of ``size`` MB, written for it and removed again."""
-    with tempfile.TemporaryDirectory() as folder:
-        write_cells(Path(folder), round(size * MB), seed)
-        return call_isolated(_measured, Path(folder), grammar.text)
-
-
-def _measured(folder: Path, grammar_text: str) -> dict[str, Any]:
-    grammar = g4.read(grammar_text)
-    seconds, found = _timed_survey([folder], grammar)
-    size = sum(file.size for file in found.files)
-    return {
-        "files": len(found.files),
-        "bytes": size,
-        "failures": sum(len(file.failures) for file in found.files),
-        "seconds": seconds,
-        "bytes_per_s": size / seconds,
-        "peak_mb": peak_mb(),
-        # wherever they are: the automaton is internal to the survey
-        "cores": sum(isinstance(each, Core) for each in gc.get_objects()),
-    }

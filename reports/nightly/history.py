@@ -313,7 +313,7 @@ _COSTS = (
     "clusters_per_cause",
     "false_accept",
     "_tokens",
-    "linear",
+    "exponent",
     "memory_growth",
     "simulated_s",
 )

@@ -18,12 +18,12 @@ def test_recover_prints_a_table_and_writes_the_record(
     monkeypatch.setattr(survey_speed, "call_isolated", lambda function, *given: function(*given))
     (tmp_path / "main.src").write_text(PROGRAM, encoding="utf-8", newline="\n")
     target = tmp_path / "out" / "speed.json"
-    given = ["bench", "recover", str(tmp_path), "--sizes", "0.01", "--json", str(target)]
+    given = ["bench", "recover", str(tmp_path), "--json", str(target)]
     assert 0 == main(given)
     said, complained = capsys.readouterr()
     assert "" == complained
     assert said.startswith("1 file, 0.00 MB; 0 parse; 1 failure; Python 3.")
-    for row in ("all failures, cold", "ANTLR's Python runtime", "recording", "peak memory"):
+    for row in ("all failures, cold", "ANTLR's Python runtime", "recording"):
         assert row in said
     record = json.loads(target.read_text(encoding="utf-8"))
     assert ("recover", "KRL.g4", len(PROGRAM)) == (
@@ -32,7 +32,6 @@ def test_recover_prints_a_table_and_writes_the_record(
         record["bytes"],
     )
     assert {"bytes_per_s", "ratio_vs_antlr_python", "unchanged_s_per_mb"} <= record.keys()
-    assert [0.01] == [entry["mb"] for entry in record["scaling"]]
 
 
 @pytest.mark.parametrize("sizes", ["ten", "1,-1", "0", "1;2", "nan", "1e9"])
@@ -40,14 +39,14 @@ def test_sizes_are_megabytes(
     sizes: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Anything but sizes in MB is refused in one line before anything is measured."""
-    assert 2 == main(["bench", "recover", str(tmp_path), "--sizes", sizes])
+    assert 2 == main(["bench", "scale", str(tmp_path), "--sizes", sizes])
     said = capsys.readouterr().err
     assert f"krl: --sizes {sizes}: not a list of MB, each above 0 and up to 2,000\n" == said
 
 
 def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A path that is not there is one line on stderr and status 2."""
-    assert 2 == main(["bench", "recover", str(tmp_path / "gone"), "--sizes", ""])
+    assert 2 == main(["bench", "recover", str(tmp_path / "gone")])
     assert "gone: no such file or folder" in capsys.readouterr().err
 
 
@@ -59,6 +58,28 @@ def test_a_corpus_is_needed(
     assert 2 == main(["bench", "recover"])
     said = capsys.readouterr().err
     assert "krl: there is no corpus/ here: name files, folders or .zip archives\n" == said
+
+
+def test_scale_measures_both_commands_at_each_size(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A row for each, with the size that was written and the page, and the growth between them."""
+    (tmp_path / "main.src").write_text(PROGRAM, encoding="utf-8", newline="\n")
+    target = tmp_path / "out" / "scale.json"
+    given = ["bench", "scale", str(tmp_path), "--sizes", "0.1,0.05", "--json", str(target)]
+    assert 0 == main(given)
+    said = capsys.readouterr().out
+    record = json.loads(target.read_text(encoding="utf-8"))
+    assert ["recover", "check"] * 2 == [row["command"] for row in record["rows"]]
+    sizes = [row["bytes"] for row in record["rows"]]
+    assert 50_000 <= sizes[0] == sizes[1] < 100_000 <= sizes[2] == sizes[3] < 120_000
+    for row in record["rows"]:
+        assert 0 < row["seconds"] < 60
+        assert 30e6 < row["peak_bytes"] < 1e9
+        assert ("check" == row["command"]) == (row["page_bytes"] is None)
+    for name in ("recover", "check"):
+        assert f"{name}: exponent of CPU time over size {record[f'{name}_exponent']:.2f}" in said
+        assert 0.5 < record[f"{name}_memory_growth"] < 2
 
 
 def test_growth_names_shapes_with_their_slopes(

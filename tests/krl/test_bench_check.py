@@ -18,18 +18,18 @@ def test_figures_are_printed_and_written(
     )
     (tmp_path / "A.src").write_text("DEF A()\nEXIT\nEND\n", encoding="utf-8", newline="\n")
     target = tmp_path / "out" / "speed.json"
-    given = ["bench", "check", str(tmp_path), "--sizes", "0.01"]
+    given = ["bench", "check", str(tmp_path)]
     given += ["--planted", "0", "--json", str(target)]
     assert 0 == main(given)
     said, complained = capsys.readouterr()
     assert "" == complained
     assert said.startswith("1 file of 1 project, 0.00 MB; 1 warning; Python 3.")
-    for row in ("first check", "nothing changed", "building", "resolving", "peak memory"):
+    for row in ("first check", "nothing changed", "building", "resolving"):
         assert row in said
     assert "planted mistakes" not in said
     record = json.loads(target.read_text(encoding="utf-8"))
     assert "check" == record["bench"]
-    assert {"s_per_mb", "unchanged_s_per_mb", "phases", "linear"} <= record.keys()
+    assert {"s_per_mb", "unchanged_s_per_mb", "phases"} <= record.keys()
 
 
 def test_mistakes_are_planted_without_measuring_speed(
@@ -48,5 +48,5 @@ def test_mistakes_are_planted_without_measuring_speed(
 
 def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A path that is not there is one line on stderr and status 2."""
-    assert 2 == main(["bench", "check", str(tmp_path / "gone"), "--sizes", ""])
+    assert 2 == main(["bench", "check", str(tmp_path / "gone")])
     assert "gone: no such file or folder" in capsys.readouterr().err

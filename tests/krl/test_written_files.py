@@ -21,7 +21,15 @@ READ = {
 #: network; and pictures, which are made by the parts that make the page.
 NEVER_THE_SAME = {
     *("bench arm", "bench check", "bench conform", "bench fuzz", "bench growth"),
-    *("bench mutation", "bench recover", "bench vm", "corpus fetch", "nightly", "demo"),
+    *(
+        "bench mutation",
+        "bench recover",
+        "bench scale",
+        "bench vm",
+        "corpus fetch",
+        "nightly",
+        "demo",
+    ),
     *("construct propose", "run --video", "run --png", "run --observations"),
 }
 #: What these write holds no name and no text of others, but for a proposal, which is a TOML file of
@@ -31,6 +39,7 @@ NOTHING_STRANGE = {
     *(
         "bench mutation",
         "bench recover",
+        "bench scale",
         "bench vm",
         "conform",
         "construct list",

@@ -51,7 +51,7 @@ FILES_WANTED = [
     ("bench real-code ?", ".zip"),
     ("bench mutation --singles 1 --multiple 0 --jobs 1 --grammar ? !", ".g4"),
     ("bench mutation --singles 1 --multiple 0 --jobs 1 --negatives ? !", ".src"),
-    ("bench check --sizes= ?", ".src"),
+    ("bench check --planted=0 ?", ".src"),
 ]
 
 

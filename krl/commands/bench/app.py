@@ -11,6 +11,7 @@ from krl.commands.bench.mutation import mutation
 from krl.commands.bench.programs import programs
 from krl.commands.bench.real_code import real_code
 from krl.commands.bench.recover import recover
+from krl.commands.bench.scale import scale
 from krl.commands.bench.vm import vm
 
 app = typer.Typer(help="Measure the tools themselves.")
@@ -24,6 +25,7 @@ app.command("real-code")(real_code)
 app.command("recover")(recover)
 app.command("check")(check)
 app.command("growth")(growth)
+app.command("scale")(scale)
 
 
 @app.callback()

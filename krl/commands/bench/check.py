@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import typer
 from rich.console import Console
 
-from krl.commands.bench.scaling import SizesOption, peak, phases_table, print_growth, sizes_of
+from krl.commands.bench.phases import phases_table
 from krl.errors import FINE, as_input_errors
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
@@ -33,7 +33,6 @@ def _missing(value: str) -> str:
 def check(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
-    sizes: SizesOption = "1,10",
     planted: Annotated[
         int, typer.Option(min=0, metavar="N", help="Number of mistakes, planted one at a time.")
     ] = 120,
@@ -53,7 +52,7 @@ def check(
     ] = "mistakes",
     speed: Annotated[bool, typer.Option(help="Measure the speed.")] = True,
 ) -> int:
-    """Measure the check: seconds per MB on one core, by phase, with a cache, and at growing sizes.
+    """Measure the check: seconds per MB on one core, by phase, and with a cache.
 
     Then plant random mistakes in the programs, and count how many are found.
     """
@@ -63,13 +62,12 @@ def check(
     from support.files.discovery import IngestError
 
     check_files(json_file)
-    wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
     record: dict[str, Any] = {"bench": "check"}
     with as_input_errors(IngestError):
         if speed:
-            with progress_bar("measuring", steps(wanted)) as advance:
-                record |= measure_check(roots, sizes=wanted, on_step=advance)
+            with progress_bar("measuring", steps()) as advance:
+                record |= measure_check(roots, on_step=advance)
         if planted:
             with progress_bar("planting mistakes", planted) as advance:
                 record["planted"] = measure_planted(
@@ -86,8 +84,6 @@ def _print(record: Mapping[str, Any]) -> None:
         _print_speed(console, record)
     if "planted" in record:
         _print_planted(console, record["planted"])
-    if record.get("scaling"):
-        _print_scaling(console, record)
 
 
 def _print_speed(console: Console, record: Mapping[str, Any]) -> None:
@@ -141,21 +137,6 @@ def _print_planted(console: Console, planted: Mapping[str, Any]) -> None:
             ],
         )
     )
-
-
-def _print_scaling(console: Console, record: Mapping[str, Any]) -> None:
-    rows = [
-        (
-            f"{entry['bytes'] / MB:,.1f} MB",
-            f"{entry['files']:,}",
-            f"{entry['seconds']:.1f}",
-            f"{entry['s_per_mb']:.2f} s/MB",
-            peak(entry),
-        )
-        for entry in record["scaling"]
-    ]
-    console.print(figures(("synthetic corpus", "files", "seconds", "cost", "peak memory"), rows))
-    print_growth(console, record, "cost of a MB")
 
 
 def _seconds(value: float | None) -> str:

@@ -1,13 +1,12 @@
 """`krl bench recover`: how fast a corpus is surveyed."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Any
 
-import typer
 from rich.console import Console
 from rich.table import Table
 
-from krl.commands.bench.scaling import SizesOption, peak, phases_table, print_growth, sizes_of
+from krl.commands.bench.phases import phases_table
 from krl.errors import FINE, as_input_errors
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
@@ -20,12 +19,10 @@ from support.measure.speed import MB
 def recover(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
-    sizes: SizesOption = "1,10,100",
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the synthetic corpora.")] = 1,
 ) -> int:
-    """Measure the survey: bytes per second, beside ANTLR, with a cache, at growing sizes.
+    """Measure the survey: bytes per second, beside ANTLR, and with a cache.
 
-    One core and one process at a time; some minutes with the default sizes, most of them ANTLR's.
+    One core and one process at a time; some minutes, most of them ANTLR's.
     """
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
@@ -34,12 +31,11 @@ def recover(
     from support.files.discovery import IngestError
 
     check_files(json_file)
-    wanted = sizes_of(sizes)
     roots = programs_or_ours(paths)
     with as_input_errors(GrammarError, IngestError):
         grammar = krl_grammar()
-        with progress_bar("measuring", steps(wanted)) as advance:
-            record = measure(roots, grammar, sizes=wanted, seed=seed, on_step=advance)
+        with progress_bar("measuring", steps()) as advance:
+            record = measure(roots, grammar, on_step=advance)
     record = {"bench": "recover", "grammar": GRAMMAR.name, **record}
     write_json(record, json_file, indent=1)
     _print(record)
@@ -56,9 +52,6 @@ def _print(record: Mapping[str, Any]) -> None:
     console.print(_speeds(record))
     console.print(phases_table(record))
     console.print(_beside_antlr(record["antlr"]))
-    if record["scaling"]:
-        console.print(_scaling(record))
-        print_growth(console, record, "speed")
 
 
 def _speeds(record: Mapping[str, Any]) -> Table:
@@ -91,21 +84,6 @@ def _beside_antlr(antlr: Mapping[str, Any]) -> Table:
             )
         )
     return figures(("beside ANTLR, MB/s", "files", "MB", "tokens", "ANTLR", "ours", ""), rows)
-
-
-def _scaling(record: Mapping[str, Any]) -> Table:
-    rows = [
-        (
-            f"{entry['bytes'] / MB:,.1f} MB",
-            f"{entry['files']:,}",
-            f"{entry['seconds']:.1f}",
-            _rate(entry["bytes_per_s"]),
-            peak(entry),
-            f"{entry['cores']:,}",
-        )
-        for entry in record["scaling"]
-    ]
-    return figures(("synthetic corpus", "files", "seconds", "speed", "peak memory", "cores"), rows)
 
 
 def _rate(bytes_per_s: float) -> str:

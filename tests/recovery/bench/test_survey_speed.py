@@ -15,7 +15,6 @@ from support.files.discovery import IngestError
 
 VALID = "DEF fetch()\nDECL INT count\ncount = 1 + 12\nEND\n"
 FAILING = "DEF store()\nfold = = 3\ncount = 1\nEND\n"
-SIZES = (0.01, 0.03)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +36,7 @@ def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def record(corpus: Path, grammar: Grammar) -> dict[str, Any]:
     """A measurement on the corpus; ``told`` is how often it said that it goes on."""
     told: list[None] = []
-    found = measure([corpus], grammar, sizes=SIZES, rounds=1, on_step=lambda: told.append(None))
+    found = measure([corpus], grammar, rounds=1, on_step=lambda: told.append(None))
     return {**found, "told": len(told)}
 
 
@@ -73,23 +72,9 @@ def test_antlr_reads_the_same_bytes(record: dict[str, Any]) -> None:
         assert pytest.approx(side["antlr_seconds"] / side["our_seconds"]) == side["ratio"]
 
 
-def test_scaling_reads_corpora_of_the_sizes(record: dict[str, Any]) -> None:
-    """Each size was surveyed whole, and the growth is from the first to the last."""
-    scaling = record["scaling"]
-    assert list(SIZES) == [entry["mb"] for entry in scaling]
-    for entry in scaling:
-        assert entry["mb"] * 1e6 <= entry["bytes"]
-        assert 0 == entry["failures"]
-        assert entry["cores"] > 0
-    first, last = scaling
-    assert first["bytes"] < last["bytes"]
-    assert pytest.approx(last["bytes_per_s"] / first["bytes_per_s"]) == record["linear"]
-    assert pytest.approx(last["peak_mb"] - first["peak_mb"]) == record["memory_growth_mb"]
-
-
 def test_steps_are_reported_beforehand(record: dict[str, Any]) -> None:
     """As many steps are reported as `steps` says."""
-    assert steps(SIZES, rounds=1) == record["told"]
+    assert steps(rounds=1) == record["told"]
 
 
 def test_unchanged_files_are_not_read_again(
@@ -110,11 +95,10 @@ def test_unchanged_files_are_not_read_again(
         return [9.0, 3.0, 2.0][len(caches) - 1]
 
     monkeypatch.setattr(survey_speed, "call_isolated", noting)
-    found = measure([corpus], grammar, sizes=(), rounds=2)
+    found = measure([corpus], grammar, rounds=2)
     assert 3 == len(caches)
     assert 1 == len(set(caches))
     assert pytest.approx(2e6 / record["bytes"]) == found["unchanged_s_per_mb"]
-    assert ([], None, None) == (found["scaling"], found["linear"], found["memory_growth_mb"])
 
 
 def test_files_that_are_no_krl_are_nothing_to_measure_on(tmp_path: Path, grammar: Grammar) -> None:
