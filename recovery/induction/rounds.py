@@ -30,7 +30,8 @@ from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
 from recovery.induction.blocks import blocks_of
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
-from recovery.induction.folding import Folding, size
+from recovery.induction.folding import folds_of, size
+from recovery.induction.grammar_view import GrammarView
 from recovery.induction.inference import Inference
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
@@ -306,7 +307,7 @@ class Induction:
         operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
         taken: list[Taken] = []
         refused: dict[str, Refused] = {}
-        found = Folding(recognizer, operands, self._prefixes).candidates()
+        found = folds_of(GrammarView(recognizer, operands, self._prefixes))
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
@@ -324,7 +325,7 @@ class Induction:
                 continue
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
             review = replace(review, recognizer=narrower)
-            found = Folding(narrower, operands, self._prefixes).candidates()
+            found = folds_of(GrammarView(narrower, operands, self._prefixes))
         kept, lost = self.shown.kept(self.grammar, taken, self._names)
         if lost:
             # folds behind it are written for what it leaves: they are sought anew without it

@@ -10,7 +10,8 @@ from grammar.notation.model import Grammar
 from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from recovery.induction.folding import Folding
+from recovery.induction.folding import folds_of
+from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import Inferred
 
 _GRAMMAR = """grammar Toy;
@@ -80,7 +81,7 @@ def grammar() -> Grammar:
 def folds(grammar: Grammar) -> dict[str, Inferred]:
     """All folds of it, by their titles."""
     recognizer = Recognizer(grammar)
-    return {fold.title: fold for fold in Folding(recognizer, (), frozenset({"DIM"})).candidates()}
+    return {fold.title: fold for fold in folds_of(GrammarView(recognizer, (), frozenset({"DIM"})))}
 
 
 def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
@@ -137,7 +138,7 @@ def test_signs_that_an_operand_has(grammar: Grammar) -> None:
     text = grammar.text.replace(
         "primary : '-'? NUMBER", "primary : '-' primary | '+' primary | NUMBER"
     )
-    folds = Folding(Recognizer(read(text)), ()).candidates()
+    folds = folds_of(GrammarView(Recognizer(read(text)), ()))
     assert [] == [fold.title for fold in folds if "ahead of operands" in fold.title]
 
 
@@ -221,7 +222,7 @@ SPACE : ' '+ -> skip ;
 def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
     """Types are types everywhere, a word ahead of two lines is ahead of others, values vary."""
     grammar = read(_LIKE)
-    folds = {fold.title: fold for fold in Folding(Recognizer(grammar), ()).candidates()}
+    folds = {fold.title: fold for fold in folds_of(GrammarView(Recognizer(grammar), ()))}
     folded = apply(grammar, folds[title].edits)
     assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
 
@@ -241,9 +242,9 @@ def test_a_fold_is_offered_once(grammar: Grammar, folds: dict[str, Inferred]) ->
     again = [
         title
         for title, fold in folds.items()
-        for after in Folding(
-            Recognizer(apply(grammar, fold.edits)), (), frozenset({"DIM"})
-        ).candidates()
+        for after in folds_of(
+            GrammarView(Recognizer(apply(grammar, fold.edits)), (), frozenset({"DIM"}))
+        )
         if after.edits == fold.edits
     ]
     assert [] == again
@@ -277,7 +278,7 @@ def test_what_holds_beside_alike(title: str, accepted: str, rejected: str) -> No
         "ASSIGN : '=' ;\nNAME : [A-Z]+ ;\nNUMBER : [0-9]+ ;\nNEWLINE : '\\n' ;\nWS : ' ' -> skip ;"
     )
     grammar = read(f"{_DECLARED}{words}{tokens}\n")
-    (fold,) = (f for f in Folding(Recognizer(grammar), ()).candidates() if f.title == title)
+    (fold,) = (f for f in folds_of(GrammarView(Recognizer(grammar), ())) if f.title == title)
     after = Recognizer(apply(grammar, fold.edits))
     assert [True, False] == [after.accepts(f"{line}\n") for line in (accepted, rejected)]
 
@@ -314,7 +315,7 @@ def test_what_holds_beside_alike_in_blocks(title: str, accepted: str, rejected: 
     words = "".join(f"{w} : '{w}' ;\n" for w in _BLOCK_WORDS.split())
     text = _BLOCKS.replace("NUMBER | set", "number | set")
     grammar = read(f"{text}{words}{_BLOCK_TOKENS}")
-    (fold,) = (f for f in Folding(Recognizer(grammar), ()).candidates() if f.title == title)
+    (fold,) = (f for f in folds_of(GrammarView(Recognizer(grammar), ())) if f.title == title)
     after = Recognizer(apply(grammar, fold.edits))
     assert [True, False] == [after.accepts(f"{line}\n") for line in (accepted, rejected)]
     assert not Recognizer(grammar).accepts(f"{accepted}\n")
@@ -342,6 +343,6 @@ def test_a_bracketed_rule_stays_one() -> None:
         "program : (block NEWLINE)* EOF ;", f"program : (line NEWLINE)* EOF ;\nline : {lines} ;"
     )
     words = "".join(f"{w} : '{w}' ;\n" for w in _BLOCK_WORDS.split())
-    folds = Folding(Recognizer(read(f"{text}{words}{_BLOCK_TOKENS}")), ()).candidates()
+    folds = folds_of(GrammarView(Recognizer(read(f"{text}{words}{_BLOCK_TOKENS}")), ()))
     (fold,) = (f for f in folds if f.title == "one form for MOVE in line")
     assert "MOVE FIX? NAME '=' (number | set)" in {getattr(e, "text", "") for e in fold.edits}

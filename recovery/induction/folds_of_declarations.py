@@ -1,0 +1,199 @@
+"""Folds of declarations: types, what is ahead of them, and what follows a declared name."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, takewhile
+
+from grammar.notation.addresses import Address, sequences
+from grammar.notation.edits import AddAlternative, Insert, Replace
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule
+from recovery.induction.forms import samples_of
+from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.steps import Inferred
+from recovery.induction.symbols import BRACKETS, bracket_pairs
+from recovery.tuning import FOLDING_SYMBOLS
+
+
+def named_types(view: GrammarView) -> Iterator[Inferred]:
+    """Words that declare as types do are names: where a type may stand a name may."""
+    heads = [view.words(e[0]) for _, _, e in view.lines() if view.is_name(e[1])]
+    of_types = [words for words in heads if len(words & view.types) > 1]
+    for word in sorted(frozenset[str]().union(*of_types) - view.types - {view.lexer.name}):
+        if view.rules.names:
+            edits = (AddAlternative(view.rules.names, word),)
+            title = f"{word} is a name as types are"
+            yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+
+def words_as_types(view: GrammarView) -> Iterator[Inferred]:
+    """Words that stand where a type does, and the name behind them goes on as behind a type."""
+    found: dict[str, set[tuple[str, ...]]] = defaultdict(set)
+    longer: set[str] = set()  # words with an operand behind the name too
+    for rule, _, elements in view.lines():
+        for shape in samples_of(view.rules, elements) if _declares_some(view, elements) else ():
+            texts = [s.operand.rule if s.operand else s.text for s in shape]
+            for place, one in enumerate(texts[:-1]):
+                if place and shape[place + 1].is_operand:
+                    found[one].add((rule.name, *texts[:place], *texts[place + 2 : place + 3]))
+                    longer.update(one for s in shape[place + 2 : place + 3] if s.is_operand)
+    for choice in view.rules.word_choices:
+        for word in sorted(view.reserved & found.keys() - longer):
+            if found[word] <= found[choice]:
+                title = f"{word} is one of {choice}"
+                edits = (AddAlternative(choice, word),)
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+
+def tails(view: GrammarView) -> Iterator[Inferred]:
+    """One form for what follows a declared name, where alternatives of a rule differ in it."""
+    for rule in view.grammar.rules:
+        if rule.is_lexer or rule.name in view.rules.recursive:
+            continue
+        found: list[tuple[int, int, Sequence[Element]]] = []
+        for number in range(1, len(rule.alternatives) + 1):
+            elements = view.line(rule.name, number)
+            for place, (left, right) in enumerate(pairwise(elements), 1):
+                if view.is_name(left):
+                    break  # a name and members of it
+                if _is_kind(view, left) and view.is_name(right):
+                    signs = {e.text for e in elements[place:] if isinstance(e, Literal)}
+                    if signs.isdisjoint(BRACKETS):
+                        found.append((number, place, elements[place:]))
+                    break  # a bracket is that of a routine
+        sources = {view.source(rule.name, tail) for _, _, tail in found}
+        if len(sources) < 2:
+            continue
+        shapes = dict.fromkeys(s for _, _, tail in found for s in samples_of(view.rules, tail))
+        form = view.form(shapes)
+        edits = [
+            Replace(rule.name, (number, place + 1), form, len(tail))
+            for number, place, tail in found
+            if form and view.source(rule.name, tail) != form
+        ]
+        title = f"one form for what follows a name in {rule.name}"
+        yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def brackets(view: GrammarView) -> Iterator[Inferred]:
+    """One form for what is in brackets behind a declared name, where lines of a rule differ."""
+    for rule in view.grammar.rules:
+        found: dict[str, list[tuple[int, int, Sequence[Element]]]] = defaultdict(list)
+        for number, alternative in enumerate(() if _is_inner(view, rule) else rule.alternatives, 1):
+            for sign, start, end in bracket_pairs(alternative):
+                inside = alternative.elements[start + 1 : end]
+                if start and inside and view.is_name(alternative.elements[start - 1]):
+                    found[sign].append((number, start + 2, inside))
+        for sign, contents in found.items():
+            shapes = [s for *_, inside in contents for s in samples_of(view.rules, inside)]
+            form = view.form(dict.fromkeys(shapes))
+            edits = tuple(
+                Replace(rule.name, (number, at), form or "", len(inside))
+                for number, at, inside in contents
+                if view.source(rule.name, inside) != form
+            )
+            title = f"one form between {sign} and {BRACKETS[sign]} in {rule.name}"
+            if form and len(contents) > 1:
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def initial_values(view: GrammarView) -> Iterator[Inferred]:
+    """The same values behind a sign in all lines of a rule, where none of them is a name."""
+    for rule in view.grammar.rules:
+        found: dict[str, list[tuple[Address, list[str]]]] = defaultdict(list)
+        for address, sequence in () if _is_inner(view, rule) else sequences(rule):
+            for place, (left, right) in enumerate(pairwise(sequence.elements), 2):
+                values = _values(view, right)
+                if sign_of(left) and values:
+                    found[sign_of(left)].append(((*address, place), values))
+        for sign, places in found.items():
+            every = sorted({value for _, values in places for value in values})
+            including = view.rules.includes
+            every = [v for v in every if not any(o != v and including(o, v) for o in every)]
+            edits = tuple(
+                Replace(rule.name, at, f"({' | '.join(every)})")
+                for at, values in places
+                if values != every
+            )
+            title = f"values behind {sign} in {rule.name}"
+            yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def modifiers(view: GrammarView) -> Iterator[Inferred]:
+    """A word that may be missing ahead of two kinds of line, ahead of others like them."""
+    for rule in view.grammar.rules:
+        found: dict[str, list[int]] = defaultdict(list)
+        plain = []
+        for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+            first, *others = view.line(rule.name, number) or (None,)
+            if isinstance(first, Repeat) and first.operator == "?" and _declares(view, others):
+                found[rule.source_of(first.item)].append(number)
+            elif first is not None and _declares(view, [first, *others]):
+                plain.append(number)
+        for word, having in found.items():
+            edits = tuple(Insert(rule.name, (n, 1), f"{word}?") for n in plain)
+            if len(having) > 1 and edits and word in view.grammar.by_name:
+                title = f"{word} ahead of other lines in {rule.name}"
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def undeclared(view: GrammarView) -> Iterator[Inferred]:
+    """What may stand between a word and a type, ahead of types of a kind without that word."""
+    for rule in view.grammar.rules:
+        found = []
+        for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+            line = view.line(rule.name, number)
+            ahead = list(takewhile(lambda e: not _is_kind(view, e), line))
+            sets = [view.words(e.item if isinstance(e, Repeat) else e) for e in ahead]
+            rest = line[len(ahead) :]
+            if len(rest) > 1 and view.is_name(rest[1]) and all(len(s) == 1 for s in sets):
+                found.append((number, ahead, [min(s) for s in sets], rest))
+        for _, (first, *between), (_, *words), _ in [f for f in found if f[1]]:
+            if isinstance(first, Repeat) or not all(map(view.is_ending, between)):
+                continue
+            for number, before, own, (kind, *_) in found:
+                is_free = all(map(view.is_ending, before)) and view.words(kind)
+                if is_free and set(own) < set(words):
+                    text = view.source(rule.name, [*between, kind])
+                    edits = (Replace(rule.name, (number, 1), text, 1 + len(before)),)
+                    title = f"{', '.join(words)} without {min(view.words(first))}"
+                    breadth = FOLDING_SYMBOLS + len(between)
+                    yield Inferred(f"{title} in {rule.name}", edits, (), breadth=breadth)
+
+
+def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:
+    """Whether elements are one reserved word, a name, and no bracket behind it."""
+    words = view.words(elements[0]) if len(elements) > 2 else frozenset()
+    is_word = len(words) == 1 and view.types.isdisjoint(words)
+    return is_word and view.is_name(elements[1]) and not isinstance(elements[2], Literal)
+
+
+def _declares_some(view: GrammarView, elements: Sequence[Element]) -> bool:
+    """Whether elements begin with a reserved word of no kind, behind words that may miss."""
+    needed = [e for e in elements if not view.is_ending(e)]
+    return bool(needed and view.words(needed[0]) & view.reserved)
+
+
+def _values(view: GrammarView, element: Element) -> list[str]:
+    """The rules of values that an element is a choice of; none where one reads names."""
+    named = view.rules.matcher.rules_for((view.lexer.name_kind,))
+    every = [element]
+    if isinstance(element, Group):
+        every = [e for a in element.alternatives for e in a.elements]
+        every *= all(len(a.elements) == 1 for a in element.alternatives)
+    names = [e.name for e in every if isinstance(e, Reference) and not e.is_token]
+    is_of_values = len(names) == len(every) and named.isdisjoint(names)
+    return sorted(names) if is_of_values else []
+
+
+def _is_inner(view: GrammarView, rule: Rule) -> bool:
+    """Whether a rule is one of tokens or part of a line."""
+    return rule.is_lexer or rule.name in view.rules.within_lines
+
+
+def _is_kind(view: GrammarView, element: Element) -> bool:
+    """Whether an element is the type ahead of what is declared."""
+    words = view.words(element)
+    is_choice = isinstance(element, Reference) and element.name in view.rules.word_choices
+    return is_choice or bool(words and words <= view.types)

@@ -1,0 +1,195 @@
+"""Folds of operands and of words beside them: variables, signs, what begins or ends lines."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, takewhile
+
+from grammar.notation.addresses import Address, element_at, sequences
+from grammar.notation.edits import AddAlternative, Insert, Replace, Widen
+from grammar.notation.model import (
+    Element,
+    Group,
+    Reference,
+    Repeat,
+    Rule,
+    walk,
+)
+from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.steps import Inferred
+from recovery.tuning import FOLDING_SYMBOLS
+
+
+def trailing(view: GrammarView) -> Iterator[Inferred]:
+    """One choice for words that may end lines, of all such choices with a word in common.
+
+    Where one rule writes the same operand ahead of two of them they are alike too.
+    """
+    found: list[tuple[str, int, Sequence[Element], frozenset[str], float]] = []
+    behind: dict[tuple[str, str], frozenset[str]] = defaultdict(frozenset)
+    for rule, number, elements in view.lines():
+        run = list(takewhile(view.is_ending, reversed(elements)))
+        words = Counter(w for e in run for w in view.ending_words(e))
+        if run:
+            is_any = any(isinstance(e, Repeat) and e.operator == "*" for e in run)
+            often = math.inf if is_any else max(*words.values(), min(len(run), 2))
+            found.append((rule.name, number, run[::-1], frozenset(words), often))
+            if len(run) < len(elements) and isinstance(elements[-len(run) - 1], Reference):
+                behind[rule.name, view.source(rule.name, elements[-len(run) - 1 :][:1])] |= (
+                    frozenset(words)
+                )
+    sets = [*(f[3] for f in found), *behind.values()]
+    done: set[frozenset[str]] = set()
+    for known in sets:
+        alike = [f for f in found if f[3] & known]
+        every = frozenset[str]().union(*(f[3] for f in alike))
+        often = max(f[4] for f in alike)
+        word = f"({' | '.join(sorted(every))})"
+        text = f"{word}*" if often == math.inf else " ".join([f"{word}?"] * int(often))
+        edits = [
+            Replace(rule, (number, len(view.line(rule, number)) - len(run) + 1), text, len(run))
+            for rule, number, run, _, _ in alike
+            if view.source(rule, run) != text
+        ]
+        if len(every) > 1 and edits and every not in done:
+            done.add(every)
+            title = f"{', '.join(sorted(every))} at the end of lines"
+            yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def headers(view: GrammarView) -> Iterator[Inferred]:
+    """Any operand where a variable is all that opens a block, if most others open with any."""
+    widest, end, variable = view.rules.widest, view.profile.line_end, view.writer.variable
+    alone: list[tuple[str, int]] = []
+    others = 0
+    for name in view.rules.reaches:
+        for number, alternative in enumerate(view.grammar.by_name[name].alternatives, 1):
+            called = (e.name for e in walk(alternative) if isinstance(e, Reference))
+            is_block = any(name in view.rules.reaches.get(c, ()) for c in called)
+            match alternative.elements if is_block else ():
+                case (Reference(is_token=True), Reference() as operand, following, *_):
+                    others += operand.name == widest
+                    ends = view.source(name, [following]) == end
+                    is_one = view.is_name(operand) or operand.name == variable
+                    alone += [(name, number)] if ends and is_one else []
+    for name, number in alone if others > len(alone) else ():
+        edits = (Replace(name, (number, 2), widest or ""),)
+        title = f"any operand opens a block in {name} {number}"
+        yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+
+def leading(view: GrammarView) -> Iterator[Inferred]:
+    """Lines without a word that may be missing at their head, where the next one is a word."""
+    for rule, number, elements in view.lines():
+        first = view.words(elements[0])
+        if not first & view.prefixes:
+            continue
+        second = elements[1]
+        word = second.item if isinstance(second, Repeat) else second
+        words = view.words(word)
+        led = {w for a in rule.alternatives for e in a.elements[:1] for w in view.words(e)}
+        if words and not words & (led | view.rules.named_words):
+            # what says which line it is has to be there
+            every = view.alternative(rule.name, number).elements[2:]
+            text = f"{rule.source_of(word)} {view.source(rule.name, every)}"
+            title = f"{min(words)} without {min(first)} in {rule.name}"
+            edits = (AddAlternative(rule.name, text),)
+            yield Inferred(title, edits, (), breadth=len(every) + FOLDING_SYMBOLS)
+
+
+def signs(view: GrammarView) -> Iterator[Inferred]:
+    """Signs ahead of an operand, where another sign of the same level between operands is."""
+    alike: dict[str, frozenset[str]] = {}
+    levels = [a for r in view.rules.ladder for a in view.grammar.by_name[r].alternatives]
+    for element in (e for alternative in levels for e in walk(alternative)):
+        if isinstance(element, Group):
+            signs = [sign_of(a.elements[0]) for a in element.alternatives if len(a.elements) == 1]
+            if all(signs) and len(signs) == len(element.alternatives):
+                alike.update(dict.fromkeys(signs, frozenset(signs)))
+    for name in sorted(view.rules.within_lines):
+        alternatives = [a for a in view.grammar.by_name[name].alternatives if a.elements]
+        for number, alternative in enumerate(view.grammar.by_name[name].alternatives, 1):
+            first, *others = alternative.elements or (None,)
+            often = first.operator if isinstance(first, Repeat) else ""
+            sign = sign_of(first.item if isinstance(first, Repeat) else first)
+            rest = view.source(name, others)
+            beside = {
+                known
+                for a in alternatives
+                if view.source(name, a.elements[1:]) == rest
+                for e in walk(a.elements[0])
+                if (known := sign_of(e))
+            }
+            more = alike.get(sign, frozenset()) - beside
+            if others and more:
+                text = f"({' | '.join(sorted({sign, *more}))}){often}"
+                title = f"{', '.join(sorted(more))} ahead of operands in {name}"
+                edits = (Replace(name, (number, 1), text),)
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+
+def variables(view: GrammarView) -> Iterator[Inferred]:
+    """Variables where only values were seen, in lines or blocks that read variables too.
+
+    What one form of a statement reads its other forms read.
+    """
+    matcher, variable, lexer = view.rules.matcher, view.writer.variable, view.lexer
+    if variable is None:
+        return
+    of_names, widest = matcher.rules_for((lexer.name_kind,)), view.rules.widest
+    read = {k: matcher.rules_for((k,)) for k in range(1, len(lexer.names))}
+    kinds = {k for k, rules in read.items() if widest in rules and not lexer.is_keyword(k)}
+    values = {lexer.names[k] for k in kinds}.union(*(read[k] for k in kinds)) - of_names
+    values -= {lexer.name, *view.reserved}
+    reading = view.rules.including(variable)
+    for rule in view.grammar.rules:
+        if rule.is_lexer or rule.name in view.rules.recursive or rule.name in values:
+            continue
+        heads = {view.head(alternative.elements) for alternative in rule.alternatives}
+        is_statement = len(heads) == 1 and not heads & {"", view.kind}
+        for number, alternative in enumerate(rule.alternatives, 1):
+            forms = rule.alternatives if is_statement else [alternative]
+            called = {e.name for a in forms for e in walk(a) if isinstance(e, Reference)}
+            edits = tuple(
+                Widen(rule.name, (*address, place), variable)
+                for address, sequence in sequences(rule)
+                if address[0] == number and not _is_beside(rule, address, reading)
+                for place, element in enumerate(sequence.elements, 1)
+                if isinstance(element, Reference) and element.name in values
+            )
+            if edits and called & reading:
+                title = f"variables beside values in {rule.name} {number}"
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def named_arguments(view: GrammarView) -> Iterator[Inferred]:
+    """Yield lines in which two words name arguments, with one more argument of any name.
+
+    ``TRIGGER WHEN DISTANCE=0 DELAY=0 DO A`` has two, so ``TRIGGER … DO A PRIO=1`` may follow.
+    """
+    for rule, number, elements in view.lines():
+        named: dict[str, set[str]] = defaultdict(set)
+        for word, following in pairwise(elements):
+            if view.words(word) <= view.reserved:
+                named[sign_of(following)] |= view.words(word)
+        last = {sign_of(e) for e in walk(elements[-1])}
+        for sign, words in named.items():
+            if sign and len(words) > 1 and sign not in last:
+                name = view.rules.names or view.lexer.name
+                text = f"({name} {sign} {view.rules.widest})?"
+                edits = (Insert(rule.name, (number, len(elements) + 1), text),)
+                title = f"an argument of any name in {rule.name} {number}"
+                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+
+
+def _is_beside(rule: Rule, address: Address, some: frozenset[str]) -> bool:
+    """Whether a sequence is one of a choice of which another is one of some rules."""
+    element = element_at(rule, address[:-1]) if len(address) > 1 else None
+    group = element.item if isinstance(element, Repeat) else element
+    return isinstance(group, Group) and any(
+        isinstance(e, Reference) and e.name in some
+        for a in group.alternatives
+        for e in a.elements[: len(a.elements) == 1]
+    )

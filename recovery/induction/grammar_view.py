@@ -1,0 +1,149 @@
+"""A grammar as folds see it: which alternatives are lines of the language, and what is in them.
+
+Some reserved words are of one kind, as ``INT`` and ``REAL`` are: those that share a rule with
+names, as the rule of types has both.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import zip_longest
+
+from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule
+from grammar.parser.recognizer import Recognizer
+from recovery.induction.forms import FormWriter, is_loose
+from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
+from recovery.proposals.grammar_profile import GrammarProfile
+
+
+class GrammarView:
+    """The lines of one grammar.
+
+    ``prefixes`` are words that may be missing at the head of a line, ``types`` the words of a kind,
+    and ``kind`` is the name of the rule of these words, which need not exist yet.
+    """
+
+    def __init__(
+        self,
+        recognizer: Recognizer,
+        operands: Iterable[tuple[int, ...]],
+        prefixes: frozenset[str] = frozenset(),
+    ) -> None:
+        """Look at a grammar; ``operands`` of the corpus define what is narrow."""
+        self.prefixes = prefixes
+        self.grammar = recognizer.grammar
+        self.lexer = recognizer.lexer
+        self.rules = OperandRules(recognizer)
+        self.profile = GrammarProfile(recognizer)
+        self.writer = FormWriter(SymbolReader(self.rules), operands)
+        self.types = (self.rules.type_words | self.rules.named_words) - {self.lexer.name}
+        self.kind = f"{next(iter(self.rules.word_choices), '')}Word"
+
+    @cached_property
+    def reserved(self) -> frozenset[str]:
+        """The reserved words that are neither names nor words of a kind."""
+        words = {w for w, kind in self.lexer.kind_of.items() if self.lexer.is_keyword(kind)}
+        return frozenset(words - self.types)
+
+    def source(self, rule: str, elements: Sequence[Element]) -> str:
+        """Return elements as a rule writes them."""
+        return " ".join(map(self.grammar.by_name[rule].source_of, elements))
+
+    def is_ending(self, element: Element) -> bool:
+        """Return whether an element is a word, or a choice of words, that may be missing."""
+        return bool(self.ending_words(element))
+
+    def ending_words(self, element: Element) -> frozenset[str]:
+        """Return the words of such an element; empty if it is none."""
+        words = frozenset[str]()
+        if isinstance(element, Repeat) and element.operator != "+":
+            words = self.words(element.item)
+        return frozenset() if self.lexer.name in words else words  # any name is no word
+
+    def alternative(self, rule: str, number: int) -> Alternative:
+        """Return an alternative of a rule by its number, counted from 1."""
+        return self.grammar.by_name[rule].alternatives[number - 1]
+
+    @cached_property
+    def families(self) -> Sequence[tuple[str, str, list[int]]]:
+        """Rules and words, with the numbers of the alternatives that the word begins.
+
+        Those with most alternatives come first; each has at least one. For a word of a kind
+        `kind` stands.
+        """
+        return sorted(self._families(), key=lambda f: (-len(f[2]), f[:2]))
+
+    def _families(self) -> Iterator[tuple[str, str, list[int]]]:
+        for rule in self.grammar.rules:
+            if (
+                rule.is_lexer
+                or rule.name in self.rules.recursive
+                or all(len(a.elements) == 1 for a in rule.alternatives)
+            ):
+                continue
+            found: dict[str, list[int]] = defaultdict(list)
+            for number in range(1, len(rule.alternatives) + 1):
+                head = self.head(self.line(rule.name, number))
+                if head:
+                    found[head].append(number)
+            yield from ((rule.name, head, numbers) for head, numbers in found.items())
+
+    def lines(self) -> Iterator[tuple[Rule, int, Sequence[Element]]]:
+        """Yield the alternatives that are one line of several elements: rule, number, elements."""
+        for rule in self.grammar.rules:
+            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+                elements = self.line(rule.name, number)
+                if len(elements) > 1:
+                    yield rule, number, elements
+
+    def line(self, rule: str, number: int) -> Sequence[Element]:
+        """Return the elements of an alternative without its line end; none if it has more lines."""
+        elements = self.alternative(rule, number).elements
+        source = self.grammar.by_name[rule].source_of
+        if elements and source(elements[-1]) == self.profile.line_end:
+            elements = elements[:-1]
+        called = {e.name for e in elements if isinstance(e, Reference)}
+        return () if called & {self.profile.line_end, self.lexer.line_end} else elements
+
+    def head(self, elements: Sequence[Element]) -> str:
+        """Return the first word of a line, `kind` if it is of that kind; empty if there is none."""
+        for element, following in zip_longest(elements, elements[1:]):
+            if isinstance(element, Repeat) and element.operator != "+":
+                continue
+            words = self.words(element)
+            if words and words <= self.types and self.is_name(following):
+                return self.kind
+            return min(words) if len(words) == 1 and len(elements) > 1 else ""
+        return ""
+
+    def is_name(self, element: Element | None) -> bool:
+        """Return whether an element is a name."""
+        names = {self.lexer.name, self.rules.names}
+        return isinstance(element, Reference) and element.name in names
+
+    def words(self, element: Element) -> frozenset[str]:
+        """Return the tokens of which an element is a choice; empty if it reads anything else."""
+        match element:
+            case Reference(name=name, is_token=True):
+                return frozenset({name})
+            case Reference(name=name) if self.profile.vocabulary.is_set_of_words(name):
+                return self.profile.vocabulary.words_of(name)
+            case Group(alternatives=alternatives):
+                firsts = [self.words(a.elements[0]) for a in alternatives if len(a.elements) == 1]
+                is_all = len(firsts) == len(alternatives) and all(firsts)
+                return frozenset[str]().union(*firsts) if is_all else frozenset()
+            case _:
+                return frozenset()
+
+    def form(self, shapes: Iterable[tuple[Symbol, ...]]) -> str | None:
+        """Return the form of distinct shapes; ``None`` if there is none, or only a loose one."""
+        some = list(shapes)
+        form = self.writer.form(some)
+        return None if form and is_loose(form, some) else form
+
+
+def sign_of(element: Element | None) -> str:
+    """Return what a rule writes for an element that is one sign; empty for any other element."""
+    return f"'{element.text}'" if isinstance(element, Literal) else ""
