@@ -43,6 +43,10 @@ class _Key:
     number: int
 
 
+#: A line: its symbols with what makes them the same in two lines.
+_Keyed = Sequence[tuple[_Key, Symbol]]
+
+
 class FormWriter:
     """Writes forms for one grammar; ``operands`` of the corpus define what is narrow."""
 
@@ -68,28 +72,52 @@ class FormWriter:
                 return None
         else:
             item = ""
-        keyed = _keyed(lines)
+        return self._chained(_keyed(lines), item)
+
+    def _chained(self, keyed: Sequence[_Keyed], item: str) -> str | None:
+        """Return the chain of the lines as text; ``item`` is the text of a list."""
         factors = chain_of([[key for key, _ in line] for line in keyed])
         met: dict[_Key, list[Symbol]] = defaultdict(list)
         for line in keyed:
             for key, symbol in line:
                 met[key].append(symbol)
-        texts = []
-        for factor in factors:
+        texts: list[str] = []
+        for place, factor in enumerate(factors):
             text = self._factor(factor, met, item)
             if text is None:
                 return None
+            ended = self._ended_by_words(factor, keyed)
+            others = [line for n, line in enumerate(keyed) if n not in ended]
+            known = [s for line in others for key, s in line if key in factor.symbols]
+            first = self._factor(factor, dict.fromkeys(factor.symbols, known), item)
+            words = " | ".join(sorted(set(ended.values())))
+            if ended and known and text == f"({first} | {words})" and place + 1 < len(factors):
+                rest = self._chained([_behind(line, factor) for line in others], item)
+                ahead = _joined(factors[:place], texts, keyed)
+                return rest and f"{ahead} ({first} {rest} | {words})".strip()
             texts.append(text)
-        present = [
-            tuple(any(key in factor.symbols for key, _ in line) for line in keyed)
-            for factor in factors
-        ]
-        return _joined(factors, texts, present)
+        return _joined(factors, texts, keyed)
+
+    def _ended_by_words(self, factor: Factor[_Key], keyed: Sequence[_Keyed]) -> dict[int, str]:
+        """Return the lines that have a reserved word as the operand of a factor, with the word.
+
+        Empty if one of them goes on behind the word: it is an operand like others then.
+        """
+        lexer, found = self.rules.lexer, dict[int, str]()
+        for number, line in enumerate(keyed):
+            for place, (key, symbol) in enumerate(line, 1):
+                kinds = symbol.operand.kinds if symbol.operand and key in factor.symbols else ()
+                if len(kinds) == 1 and lexer.is_keyword(kinds[0]):
+                    if place < len(line):
+                        return {}
+                    found[number] = lexer.names[kinds[0]]
+        return found
 
     def _opened(self, lines: Sequence[tuple[Symbol, ...]]) -> list[tuple[Symbol, ...]]:
         """The lines with calls taken apart where others have brackets that are of no call.
 
-        ``DEFFCT INT F(X)`` stands beside ``DEFFCT INT F(X:IN)``.
+        ``DEFFCT INT F(X)`` stands beside ``DEFFCT INT F(X:IN)``. And a name is taken apart from
+        its index where others have one behind a type: ``EXT F(NAMED[]:IN, INT[]:IN)``.
         """
         signs = {
             right.text
@@ -97,7 +125,13 @@ class FormWriter:
             for left, right in pairwise(line)
             if left.is_operand and right.inside is not None
         } | {f"'{sign}'" for line in lines for s in line for sign in self._bracketed_words(s)}
-        return [tuple(p for s in line for p in self._parts(s, signs)) for line in lines]
+        indices = {
+            right.text
+            for line in lines
+            for left, right in pairwise(line)
+            if left.is_operand and right.text in self.rules.following.values()
+        }
+        return [tuple(p for s in line for p in self._parts(s, signs, indices)) for line in lines]
 
     def _bracketed_words(self, symbol: Symbol) -> Iterator[str]:
         """The bracket at the end of an operand, where what is in it has a word of no operand."""
@@ -106,9 +140,12 @@ class FormWriter:
             if not self.rules.words_in_brackets(kind).isdisjoint(kinds[start + 1 :]):
                 yield self.rules.lexer.display[kind]
 
-    def _parts(self, symbol: Symbol, signs: set[str]) -> tuple[Symbol, ...]:
+    def _parts(self, symbol: Symbol, signs: set[str], indices: set[str]) -> tuple[Symbol, ...]:
         kinds = symbol.operand.kinds if symbol.operand else ()
         display = self.rules.lexer.display
+        index = self.rules.following.get(kinds[1], "") if len(kinds) > 1 else ""
+        if index in indices and index in self.rules.matcher.rules_for(kinds[1:]):
+            return Symbol("", Operand(kinds[:1])), Symbol(index)
         for start in range(1, len(kinds)):
             if f"'{display[kinds[start]]}'" in signs:
                 tokens = [(kind, None) for kind in kinds]
@@ -395,7 +432,12 @@ def _sketch(texts: Iterable[str]) -> tuple[str, ...]:
     return tuple("word" if text.isupper() else text for text in texts if not text.islower())
 
 
-def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]:
+def _behind(line: _Keyed, factor: Factor[_Key]) -> _Keyed:
+    """Return the rest of a line behind the symbol that a factor reads once."""
+    return line[1 + next(n for n, (key, _) in enumerate(line) if key in factor.symbols) :]
+
+
+def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[_Keyed]:
     """The symbols of lines with what makes them the same."""
     shapes = {tuple(s.text for s in line) for line in lines}
     # two operands behind a word: other lines may have another word between, and end otherwise
@@ -412,7 +454,7 @@ def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]
             or (place and (shape[place - 1], *shape[place + 1 : place + 3]) in declared)
         )
     }
-    out = []
+    out: list[_Keyed] = []
     for line in lines:
         after = ""
         counts: Counter[str] = Counter()
@@ -443,13 +485,13 @@ def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[list[tuple[_Key, Symbol]]]
     return out
 
 
-def _joined(
-    factors: Sequence[Factor[_Key]], texts: Sequence[str], present: Sequence[tuple[bool, ...]]
-) -> str:
-    """The factors in a row: what comes and goes together in one group.
+def _joined(factors: Sequence[Factor[_Key]], texts: Sequence[str], keyed: Sequence[_Keyed]) -> str:
+    """The factors in a row: what comes and goes together in the lines in one group.
 
     What excludes each other is a choice.
     """
+    having = [{key for key, _ in line} for line in keyed]
+    present = [tuple(not keys.isdisjoint(f.symbols) for keys in having) for f in factors]
     groups: list[tuple[list[str], tuple[bool, ...], bool]] = []
     for factor, text, where in zip(factors, texts, present, strict=True):
         optional = factor.often in ("?", "*")

@@ -70,6 +70,16 @@ def writer(grammar: Grammar) -> FormWriter:
     return FormWriter(SymbolReader(OperandRules(recognizer)), [number])
 
 
+@pytest.fixture(scope="module")
+def typed() -> FormWriter:
+    """Writes forms for a grammar with types, some of which are words."""
+    text = _GRAMMAR.replace("| assignment)", "| assignment | declaration)")
+    rules = "declaration : DIM type NAME ;\n\ntype : INT | NAME ;\n\n"
+    words = "DIM : 'DIM' ;\nINT : 'INT' ;\nEXT : 'EXT' ;\nIN : 'IN' ;\n"
+    text = text.replace("LIST : 'LIST'", f"{rules}{words}LIST : 'LIST'")
+    return FormWriter(SymbolReader(OperandRules(Recognizer(read(text)))), [])
+
+
 def _symbols(writer: FormWriter, text: str) -> tuple[Symbol, ...]:
     kinds = writer.rules.recognizer.kinds(text)
     return writer.reader.symbols([(kind, None) for kind in kinds if kind])
@@ -111,6 +121,26 @@ def test_a_first_item_of_its_own(writer: FormWriter, count: int, form: str) -> N
     """What many lists begin with their first item has, and the others may."""
     lines = [f"LIST 1 A, B{', 1 C, D' * n}" for n in range(count)]
     assert form == writer.form([_symbols(writer, line) for line in lines])
+
+
+@pytest.mark.parametrize(
+    ("lines", "form"),
+    [
+        (["PAIR A", "PAIR A LEFT B", "PAIR ON"], "PAIR (NAME (LEFT NAME)? | ON)"),
+        (["PAIR A LEFT B", "PAIR ON"], "PAIR (NAME LEFT NAME | ON)"),
+        (["PAIR A", "PAIR A LEFT B", "PAIR ON LEFT B"], "PAIR (NAME | ON) (LEFT NAME)?"),
+    ],
+)
+def test_a_word_that_ends_a_line(writer: FormWriter, lines: list[str], form: str) -> None:
+    """Behind a word that stands for an operand nothing follows that no line shows there."""
+    assert form == writer.form([_symbols(writer, line) for line in lines])
+
+
+def test_an_index_behind_a_type(typed: FormWriter) -> None:
+    """A name that is a type is taken apart from its index, as words for types are."""
+    lines = ("EXT A(INT:IN, INT[1]:IN)", "EXT A(B:IN, B[1]:IN)")
+    form = "EXT NAME '(' type index? ':' IN (',' type index? ':' IN)* ')'"
+    assert form == typed.form([_symbols(typed, line) for line in lines])
 
 
 def test_a_single_word_beside_names(writer: FormWriter) -> None:
