@@ -44,7 +44,9 @@ def alternatives_of_two_rules(view: GrammarView) -> Iterator[Inferred]:
     """One form for alternatives of two rules that the same word begins."""
     for rule, word, numbers in view.families:
         for other, same, more in view.families:
-            if other != rule and same == word:
+            # a rule keeps at least one alternative
+            is_left = len(more) < len(view.grammar.by_name[other].alternatives)
+            if other != rule and same == word and is_left:
                 places = [(r, n) for r, ns in ((rule, numbers), (other, more)) for n in ns]
                 title = f"{rule} reads what {word} begins in {other}"
                 yield Inferred(title, _folded(view, word, places), ())
