@@ -86,32 +86,46 @@ class FormWriter:
             text = self._factor(factor, met, item)
             if text is None:
                 return None
-            ended = self._ended_by_words(factor, keyed)
-            others = [line for n, line in enumerate(keyed) if n not in ended]
-            known = [s for line in others for key, s in line if key in factor.symbols]
-            first = self._factor(factor, dict.fromkeys(factor.symbols, known), item)
-            words = " | ".join(sorted(set(ended.values())))
-            if ended and known and text == f"({first} | {words})" and place + 1 < len(factors):
-                rest = self._chained([_behind(line, factor) for line in others], item)
+            found = self._ended_by_words(factor, met, keyed, item)
+            if found and text == f"({found[0]} | {found[1]})" and any(found[2]):
+                rest = self._chained(found[2], item)
                 ahead = _joined(factors[:place], texts, keyed)
-                return rest and f"{ahead} ({first} {rest} | {words})".strip()
+                return rest and f"{ahead} ({found[0]} {rest} | {found[1]})".strip()
             texts.append(text)
         return _joined(factors, texts, keyed)
 
-    def _ended_by_words(self, factor: Factor[_Key], keyed: Sequence[_Keyed]) -> dict[int, str]:
-        """Return the lines that have a reserved word as the operand of a factor, with the word.
+    def _ended_by_words(
+        self,
+        factor: Factor[_Key],
+        met: Mapping[_Key, Sequence[Symbol]],
+        keyed: Sequence[_Keyed],
+        item: str,
+    ) -> tuple[str | None, str, list[_Keyed]] | None:
+        """Return what is known if some lines end with a reserved word for the operand of a factor.
 
-        Empty if one of them goes on behind the word: it is an operand like others then.
+        These are the text of the factor in the other lines, the words, and the rests of the other
+        lines. ``None`` if a line goes on behind such a word: it is an operand like others then.
         """
-        lexer, found = self.rules.lexer, dict[int, str]()
-        for number, line in enumerate(keyed):
-            for place, (key, symbol) in enumerate(line, 1):
-                kinds = symbol.operand.kinds if symbol.operand and key in factor.symbols else ()
-                if len(kinds) == 1 and lexer.is_keyword(kinds[0]):
-                    if place < len(line):
-                        return {}
-                    found[number] = lexer.names[kinds[0]]
-        return found
+        if len(factor.symbols) > 1 or met[factor.symbols[0]][0].operand is None:
+            return None
+        words, others, rests = set[str](), list[Symbol](), list[_Keyed]()
+        for line in keyed:
+            place = next((n for n, (key, _) in enumerate(line) if key in factor.symbols), None)
+            if place is None:
+                return None
+            symbol, rest = line[place][1], line[place + 1 :]
+            kinds = symbol.operand.kinds if symbol.operand else ()
+            if len(kinds) == 1 and self.rules.lexer.is_keyword(kinds[0]):
+                if rest:
+                    return None
+                words.add(self.rules.lexer.names[kinds[0]])
+            else:
+                others.append(symbol)
+                rests.append(rest)
+        if not (words and others):
+            return None
+        text = self._factor(factor, {factor.symbols[0]: others}, item)
+        return text, " | ".join(sorted(words)), rests
 
     def _opened(self, lines: Sequence[tuple[Symbol, ...]]) -> list[tuple[Symbol, ...]]:
         """The lines with calls taken apart where others have brackets that are of no call.
@@ -204,7 +218,9 @@ class FormWriter:
 
     # ---------------------------------------------------------------------------------- factors
 
-    def _factor(self, factor: Factor[_Key], met: dict[_Key, list[Symbol]], item: str) -> str | None:
+    def _factor(
+        self, factor: Factor[_Key], met: Mapping[_Key, Sequence[Symbol]], item: str
+    ) -> str | None:
         words, operands = [], []
         for key in factor.symbols:
             some = met[key][0]
@@ -430,11 +446,6 @@ def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int)
 def _sketch(texts: Iterable[str]) -> tuple[str, ...]:
     """A shape with any word for each word, and without what only follows operands."""
     return tuple("word" if text.isupper() else text for text in texts if not text.islower())
-
-
-def _behind(line: _Keyed, factor: Factor[_Key]) -> _Keyed:
-    """Return the rest of a line behind the symbol that a factor reads once."""
-    return line[1 + next(n for n, (key, _) in enumerate(line) if key in factor.symbols) :]
 
 
 def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[_Keyed]:

@@ -128,6 +128,7 @@ def test_a_first_item_of_its_own(writer: FormWriter, count: int, form: str) -> N
     [
         (["PAIR A", "PAIR A LEFT B", "PAIR ON"], "PAIR (NAME (LEFT NAME)? | ON)"),
         (["PAIR A LEFT B", "PAIR ON"], "PAIR (NAME LEFT NAME | ON)"),
+        (["PAIR A LEFT ON", "PAIR B LEFT OFF"], "PAIR NAME LEFT expression"),
         (["PAIR A", "PAIR A LEFT B", "PAIR ON LEFT B"], "PAIR (NAME | ON) (LEFT NAME)?"),
     ],
 )
