@@ -22,8 +22,9 @@ from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, Reference
 from grammar.parser.recognizer import Recognizer
-from recovery.induction import list_lengths, rounds
+from recovery.induction import folding, list_lengths, rounds
 from recovery.induction.corpus_lines import held_out
+from recovery.induction.grammar_view import GrammarView
 from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
@@ -525,28 +526,21 @@ def test_a_line_with_an_open_bracket_shows_nothing(toy: Grammar) -> None:
     assert [] == [title for title in titles if "PUT" in title]
 
 
-class _Folds:
-    """Two folds: one that loses lines, and one written for what that leaves."""
-
-    def __init__(self, recognizer: Recognizer, *_: object) -> None:
-        self.rules = recognizer.grammar.by_name
-
-    def candidates(self) -> Iterator[Inferred]:
-        called = [
-            alternative.elements for alternative in self.rules["simpleStatement"].alternatives
-        ]
-        names = [e.name for (e,) in called if isinstance(e, Reference)]
-        if "assignment" in names:
-            gone = RemoveAlternative("simpleStatement", 1), RemoveRule("assignment")
-            yield Inferred("no assignment", gone, ())
-        if "call" in names:
-            edits = (RemoveAlternative("simpleStatement", names.index("call") + 1),)
-            yield Inferred("no call", edits, ())
+def _two_folds(view: GrammarView) -> Iterator[Inferred]:
+    """Yield a fold that loses lines, and one written for what that leaves."""
+    called = [a.elements for a in view.grammar.by_name["simpleStatement"].alternatives]
+    names = [e.name for (e,) in called if isinstance(e, Reference)]
+    if "assignment" in names:
+        gone = RemoveAlternative("simpleStatement", 1), RemoveRule("assignment")
+        yield Inferred("no assignment", gone, ())
+    if "call" in names:
+        edits = (RemoveAlternative("simpleStatement", names.index("call") + 1),)
+        yield Inferred("no call", edits, ())
 
 
 def test_folds_behind_one_that_is_lost(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
     """They were written for other places and are sought anew."""
-    monkeypatch.setattr(rounds, "Folding", _Folds)
+    monkeypatch.setattr(folding, "FOLDS", (_two_folds,))
     monkeypatch.setattr(rounds, "FOLD_FILES", 0)  # only whole files show what is lost
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
     grown = _grown(toy, files)
