@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -72,7 +72,44 @@ class FormWriter:
                 return None
         else:
             item = ""
-        return self._chained(_keyed(lines), item)
+        return self._chained(self._types_first(_keyed(lines)), item)
+
+    def _types_first(self, keyed: Sequence[_Keyed]) -> list[_Keyed]:
+        """Return the lines with operands that stand alone as the first of two, if some are types.
+
+        ``INT :IN`` beside ``INT A :IN`` lacks the name, and not the type.
+        """
+        firsts = {key.after for line in keyed for key, _ in line if key.number and not key.text}
+        alone = [
+            {
+                place
+                for place, (key, symbol) in enumerate(line)
+                if symbol.is_operand and key.after in firsts and not key.number
+                if all(o.text or o.after != key.after or o == key for o, _ in line)
+            }
+            for line in keyed
+        ]
+        typed = {
+            line[place][0].after
+            for line, places in zip(keyed, alone, strict=True)
+            for place in places
+            if self._is_type(line[place][1])
+        }
+        return [
+            [
+                (replace(key, number=1), s) if n in places and key.after in typed else (key, s)
+                for n, (key, s) in enumerate(line)
+            ]
+            for line, places in zip(keyed, alone, strict=True)
+        ]
+
+    def _is_type(self, symbol: Symbol) -> bool:
+        """Return whether an operand is a reserved word for a type, or the rule of types."""
+        operand, rules = symbol.operand or Operand(), self.rules
+        is_word = len(operand.kinds) == 1 and rules.lexer.is_keyword(operand.kinds[0])
+        return operand.rule in rules.word_choices or (
+            is_word and operand.kinds[0] in rules.type_kinds
+        )
 
     def _chained(self, keyed: Sequence[_Keyed], item: str) -> str | None:
         """Return the chain of the lines as text; ``item`` is the text of a list."""
@@ -573,7 +610,7 @@ def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol,
         if out and out[-1].operand in names and rule in samples:
             out[-1] = Symbol("", samples[rule])
         else:
-            out.append(symbol)
+            out.append(Symbol(rule) if rule in rules.following.values() else symbol)
     return tuple(out)
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grammar.notation.g4 import read
+from grammar.notation.g4 import read, read_rule
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.forms import FormWriter, is_loose, samples_of
@@ -142,6 +142,14 @@ def test_an_index_behind_a_type(typed: FormWriter) -> None:
     lines = ("EXT A(INT:IN, INT[1]:IN)", "EXT A(B:IN, B[1]:IN)")
     form = "EXT NAME '(' type index? ':' IN (',' type index? ':' IN)* ')'"
     assert form == typed.form([_symbols(typed, line) for line in lines])
+
+
+def test_what_stands_between_brackets_behind_types(typed: FormWriter) -> None:
+    """Forms with a type, an index and a name, each in some, become one in which all may stand."""
+    form = "'(' type NAME? index? ':' IN ')'"
+    sequences = read_rule("all : '(' type ':' IN ')' | '(' type NAME? index ':' IN ')' ;")
+    lines = [s for a in sequences.alternatives for s in samples_of(typed.rules, a.elements)]
+    assert form == typed.form(lines)
 
 
 def test_a_single_word_beside_names(writer: FormWriter) -> None:
