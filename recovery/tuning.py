@@ -156,8 +156,6 @@ NO_LINE_RULE_COST = 12
 #: Forms of a block's first and last line, and bodies, that are combined. Not measured.
 MOST_BLOCK_FORMS = 3
 MOST_BODIES = 4
-#: Kinds of line that divide a block; with more it is taken for none. Not measured.
-MOST_MIDDLES = 3
 
 # ------------------------------------------------------------------------- search for a cause
 # `recovery.clustering.causes`, `search`. *Light* is for groups behind the heaviest.

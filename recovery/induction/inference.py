@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterator, Sequence
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.block_edits import BlockEdits
-from recovery.induction.blocks import BlockLines
 from recovery.induction.bracket_edits import BracketEdits
 from recovery.induction.line_edits import LineEdits
 from recovery.induction.line_hosts import LineHosts
@@ -19,6 +18,7 @@ from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms
+from recovery.proposals.blocks import BlockLines
 from recovery.proposals.edit_site import LinePattern
 
 

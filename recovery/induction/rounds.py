@@ -27,7 +27,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
-from recovery.induction.blocks import blocks_of
+from recovery.induction.corpus_blocks import blocks_of
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import folds_of, size

@@ -11,12 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from grammar.parser.recognizer import Recognizer
-from recovery.induction.corpus_lines import CorpusLines
-from recovery.induction.symbols import Token
-from recovery.induction.would_be_keywords import WouldBeKeywords
-from recovery.proposals.block_inference import is_balanced
-from recovery.proposals.keywords import Vocabulary
+from recovery.proposals.segmentation import Word
 from recovery.tuning import (
     BALANCED_FILES,
     BALANCED_ORIGINS,
@@ -29,9 +24,9 @@ from recovery.tuning import (
 )
 
 #: A line as its leading word, empty where it has none, and its tokens.
-_Line = tuple[str, tuple[Token, ...]]
+_Line = tuple[str, tuple[Word, ...]]
 #: Distinct lines with the origins that have them.
-_Having = dict[tuple[Token, ...], set[str]]
+_Having = dict[tuple[Word, ...], set[str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,35 +57,6 @@ class BlockLines:
     def words(self) -> frozenset[str]:
         """The words that lead lines which only such a block has."""
         return frozenset({self.opener, self.closer, *self.middles})
-
-
-def blocks_of(
-    corpus: CorpusLines,
-    keywords: WouldBeKeywords,
-    recognizer: Recognizer,
-    prefixes: frozenset[str],
-) -> list[BlockLines]:
-    """The blocks of a corpus that the grammar of the recogniser does not have."""
-    lexer = recognizer.lexer
-    name = lexer.name_kind
-    tokens = []
-    leads = []
-    for line in corpus.lines:
-        meant = dict(keywords.in_line(line))
-        at = int(len(line) > 1 and line[0] in prefixes)
-        lead = line[at]
-        if lead in keywords.words and lexer.kinds[lead] == name:
-            meant.setdefault(at, lead)
-        leads.append(lead if lexer.kinds[lead] != name or at in meant else "")
-        tokens.append(tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line)))
-    files = [
-        SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
-        for file, numbers in zip(corpus.files, corpus.of_file, strict=True)
-    ]
-    vocabulary = Vocabulary(recognizer)
-    free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
-    origins, least = keywords.least
-    return find_blocks(files, free, (origins, min(BALANCED_FILES, 1 + least)))
 
 
 def find_blocks(
@@ -144,7 +110,7 @@ def _is_pair(
     needed = max(least[1], min(BALANCED_SHARE * len(places), len(places) - damaged))
     if len(equal) < needed:
         return False
-    good = [n for n in equal if is_balanced(opener, closer, files[n].lines)]
+    good = [n for n in equal if _is_balanced(opener, closer, files[n].lines)]
     having_it = frozenset[str]().union(*(files[n].origins for n in good))
     return len(good) >= needed and len(having_it) >= least[0]
 
@@ -207,3 +173,13 @@ def _gathered(
         block.often[word] = ("*" if missing else "+") if often else ("?" if missing else "")
     block.has_body = not middles or sum(w not in middles for w in first) * BODY_PART > len(first)
     return block
+
+
+def _is_balanced(opener: str, closer: str, lines: Sequence[tuple[str, object]]) -> bool:
+    """Return whether opening and closing words are balanced."""
+    depth = 0
+    for lead, _ in lines:
+        depth += (lead == opener) - (lead == closer)
+        if depth < 0:
+            return False
+    return not depth

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recovery.induction.blocks import SourceFile, find_blocks
+from recovery.proposals.blocks import SourceFile, find_blocks
 
 
 def _file(leads: str, origin: str) -> SourceFile:
