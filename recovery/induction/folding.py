@@ -14,6 +14,7 @@ from grammar.notation.model import Grammar, walk
 from recovery.induction.folds_of_alternatives import (
     alternatives_of_a_word,
     alternatives_of_two_rules,
+    analogous_words,
     derived_words,
     lists,
     unused_rules,
@@ -57,6 +58,7 @@ FOLDS: tuple[Callable[[GrammarView], Iterator[Inferred]], ...] = (
     undeclared,
     variables,
     derived_words,
+    analogous_words,
     named_arguments,
 )
 
