@@ -156,6 +156,7 @@ line
     | MOVE target (FAST | SLOW)*
     | MOVE_REL name
     | GO expression FAST?
+    | TURN_REL expression FAST?
     | STEP expression (BY NUMBER)?
     | waiting
     | declared
@@ -191,6 +192,7 @@ STRUC : 'STRUC' ;
 SIGNAL : 'SIGNAL' ;
 MOVE : 'MOVE' ;
 MOVE_REL : 'MOVE_REL' ;
+TURN_REL : 'TURN_REL' ;
 GO : 'GO' ;
 STEP : 'STEP' ;
 START : 'START' ;
@@ -217,13 +219,13 @@ SPACE : ' '+ -> skip ;
     [
         ("FRAME is a name as types are", "DECL FRAME A\n"),
         ("GLOBAL ahead of other lines in line", "GLOBAL SIGNAL A [1]\n"),
-        ("variables beside values in line 9", "STEP 1 BY A[2]\n"),
+        ("variables beside values in line 10", "STEP 1 BY A[2]\n"),
         ("MOVE_REL goes on as MOVE does", "MOVE_REL A[1] FAST SLOW\n"),
         ("variables beside values in waiting 1", "WAIT FAST A\n"),
         ("FRAME is one of type", "DECL FRAME A[1]\n"),
         ("one form for what follows a name in line", "DECL INT A = 1\n"),
         ("GO_REL is to GO as MOVE_REL is to MOVE", "GO_REL A\n"),
-        ("an argument of any name in line 13", "START FAST=1 SLOW=1 MOVE A NEW=1+1\n"),
+        ("an argument of any name in line 14", "START FAST=1 SLOW=1 MOVE A NEW=1+1\n"),
     ],
 )
 def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
