@@ -108,7 +108,7 @@ def analogous_words(view: GrammarView) -> Iterator[Inferred]:
         for third, word, where in leading:
             new = derived.replace(base, word, 1)
             alike = endings & _endings_behind_operand(view, third, where)
-            is_new = new not in view.lexer.kind_of and affix
+            is_new = new not in view.lexer.kind_of and affix not in word
             if alike and is_new and view.rules.names:
                 known = view.grammar.by_name[rule]
                 text = known.source_of(view.alternative(rule, number)).replace(derived, new, 1)
