@@ -7,7 +7,8 @@ SARIF.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from heapq import merge
 from typing import Any, Protocol
 
 from grammar.diagnostics.codes import Severity, code
@@ -116,6 +117,11 @@ def diagnose(
 def in_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the findings without duplicates, sorted by path, place, code and message."""
     return sorted(dict.fromkeys(diagnostics), key=_key)
+
+
+def merged(parts: Iterable[Sequence[Diagnostic]]) -> Iterator[Diagnostic]:
+    """Yield the findings of different files in order; each part is in order."""
+    return merge(*parts, key=_key)
 
 
 def _key(diagnostic: Diagnostic) -> tuple[str, Region, str, str]:

@@ -280,7 +280,7 @@ def link(
     """
     projects, scope = [], SystemScope(system or System.load())
     known = {one.modules[0].path: one for one in before.projects} if before else {}
-    for root, is_controller, members in _grouped(files):
+    for root, is_controller, members in grouped(files):
         project = known.get(members[0].path)
         if project is None or not _is_of(members, project) or root != project.root:
             modules = [_module(file) for file in members]
@@ -429,17 +429,21 @@ def _placed(file: File) -> _Placed:
     return _Placed(file, tuple(folders), tuple(map(str.casefold, folders)), name.casefold())
 
 
-def _grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
-    """Yield the files of each project with its root, and whether the root holds a drive."""
-    by_origin: dict[str, list[_Placed]] = defaultdict(list)
+def grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
+    """Yield the files of each project with its root, and whether the root holds a drive.
+
+    Only their paths and origins count.
+    """
+    by_origin: dict[str, list[File]] = defaultdict(list)
     for file in files:
-        by_origin[file.origin].append(_placed(file))
+        by_origin[file.origin].append(file)
     for origin in sorted(by_origin):
+        all_ = list(map(_placed, by_origin[origin]))
         groups: dict[tuple[bool, _Folder], list[_Placed]] = defaultdict(list)
         loose = []
-        drives = {root for placed in by_origin[origin] for root in _drive_roots(placed.folded)}
-        renamed = _renamed_drives(by_origin[origin])
-        for placed in by_origin[origin]:
+        drives = {root for placed in all_ for root in _drive_roots(placed.folded)}
+        renamed = _renamed_drives(all_)
+        for placed in all_:
             root = _last(drives, placed.folded, _DRIVES)
             if root is None:
                 drive = _last(renamed.keys(), placed.folded)

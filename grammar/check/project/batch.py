@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
@@ -38,8 +38,8 @@ from grammar.check.project.result_cache import (
     state_of,
 )
 from grammar.check.project.suppression_comments import apply_suppressions
-from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
-from grammar.semantics.link import File, link
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order, merged
+from grammar.semantics.link import File, grouped
 from support.files import archives
 from support.files.decode import digest
 from support.files.discovery import Found, Skipped, discover, read
@@ -100,37 +100,69 @@ def check_paths(
 
     Raises `support.files.discovery.IngestError` where there is nothing to check.
     """
-
-    def is_left(one: Found | Skipped) -> bool:
-        return leaves_out is None or isinstance(one, Skipped) or not leaves_out(one)
-
-    asked = list(filter(is_left, discover(roots)))
-    skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
-    wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
-    there = filter(is_left, discover(around)) if around else asked
-    members = [one for one in there if isinstance(one, Found) or _is_large(one)]
-    found = [one for one in members if isinstance(one, Found)]
-    names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
-    projects = [some for some in _projects(members) if any(one.path in names for one in some)]
-    sizes = [one.size for some in projects for one in some if isinstance(one, Found)]
-    on_found(len(sizes) + len(skipped))
-    on_done(len(skipped))
-    size = sum(sizes)
-    processes = jobs or min(os.cpu_count() or 1, 1 + size // _WORTH_A_PROCESS)
-    results = []
+    work = _work_of(roots, around, leaves_out)
+    on_found(work.count + len(work.skipped))
+    on_done(len(work.skipped))
+    processes = jobs or min(os.cpu_count() or 1, 1 + work.size // _WORTH_A_PROCESS)
     with (
         gc_paused(MANY_OBJECTS),
         ResultStore(cache, "check") as store,
         StickyPool(processes) as pool,
     ):
-        for result in _run(iter(projects), pool, store, options):
-            on_done(result.files + len(result.skipped))
-            results.append(_reported(result, names))
-    return _together(results, skipped)
+
+        def results() -> Iterator[ProjectResult]:
+            for result in _run(work.taken(), pool, store, options):
+                on_done(result.files + len(result.skipped))
+                yield _reported(result, work.names)
+
+        return _together(results(), work.skipped)
+
+
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """The projects to check, of ``count`` files with ``size`` bytes.
+
+    ``names`` are the paths to report the files under, by their own paths; others are only read.
+    """
+
+    projects: deque[list[Found | Skipped]]
+    names: Mapping[str, str]
+    skipped: Sequence[Skipped]
+    count: int
+    size: int
+
+    def taken(self) -> Iterator[list[Found | Skipped]]:
+        """Yield each project, and keep none: there may be more files than memory."""
+        while self.projects:
+            yield self.projects.popleft()
+
+
+def _work_of(
+    roots: Sequence[Path], around: Sequence[Path], leaves_out: Callable[[Found], bool] | None
+) -> _Work:
+    def is_left(one: Found | Skipped) -> bool:
+        return leaves_out is None or isinstance(one, Skipped) or not leaves_out(one)
+
+    asked = list(filter(is_left, discover(roots)))
+    skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
+    if around:
+        wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
+        there = filter(is_left, discover(around))
+        members = [one for one in there if isinstance(one, Found) or _is_large(one)]
+        found = [one for one in members if isinstance(one, Found)]
+        names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
+    else:
+        members = [one for one in asked if isinstance(one, Found) or _is_large(one)]
+        names = {one.path: one.path for one in asked if isinstance(one, Found)}
+    projects = deque(some for some in _projects(members) if any(one.path in names for one in some))
+    sizes = [one.size for some in projects for one in some if isinstance(one, Found)]
+    return _Work(projects, names, skipped, len(sizes), sum(sizes))
 
 
 def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
-    """Return the results of the files in ``names``, with these names as paths."""
+    """What is to be said of a project: that of the files with a name, under that."""
+    if all(path == names.get(path) for path in result.sizes) and not result.skipped:
+        return result
     return replace(
         result,
         diagnostics=tuple(
@@ -152,34 +184,42 @@ def _place(found: Found) -> tuple[Path, str | None]:
 
 def _projects(found: Sequence[Found | Skipped]) -> Iterator[list[Found | Skipped]]:
     """Return the files of each project; files that are too large may use any of its names."""
-    by_path: dict[str, deque[Found | Skipped]] = {}
-    for candidate in found:
-        by_path.setdefault(candidate.path, deque()).append(candidate)
     files = [File(candidate.path, None, candidate.origin) for candidate in found]
-    for project in link(files).projects:
-        yield [by_path[module.path].popleft() for module in project.modules]
+    candidates = dict(zip(map(id, files), found, strict=True))
+    for _, _, members in grouped(files):
+        yield [candidates[id(file)] for file in members]
 
 
-def _together(results: Sequence[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
+def _together(results: Iterable[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
+    """The report of all projects; what is said of each is kept once."""
     # a file that could be a program is a finding, not only skipped
     start = Region(1, 1, 1, 1)
-    large = {
-        one: diagnose("too-large", one.path, start, one.reason) for one in skipped if _is_large(one)
-    }
-    left_out = [one for one in skipped if one not in large]
-    left_out += [one for result in results for one in result.skipped]
+    found: list[Sequence[Diagnostic]] = [
+        in_order(
+            diagnose("too-large", one.path, start, one.reason) for one in skipped if _is_large(one)
+        )
+    ]
+    left_out = [one for one in skipped if not _is_large(one)]
     lines: dict[tuple[str, int], str] = {}
+    paths: list[str] = []
+    size = projects = unchanged = 0
     for result in results:
+        found.append(result.diagnostics)
+        left_out += result.skipped
         lines |= result.lines
+        paths += result.sizes
+        size += sum(result.sizes.values())
+        unchanged += len(result.kept & result.sizes.keys())
+        projects += 1
     return CheckReport(
-        tuple(in_order([*large.values(), *(one for all_ in results for one in all_.diagnostics)])),
+        tuple(merged(found)),
         lines,
         tuple(sorted(left_out, key=lambda one: one.path)),
-        sum(result.files for result in results),
-        sum(sum(result.sizes.values()) for result in results),
-        len(results),
-        sum(len(result.kept & result.sizes.keys()) for result in results),
-        tuple(sorted(path for result in results for path in result.sizes)),
+        len(paths),
+        size,
+        projects,
+        unchanged,
+        tuple(sorted(paths)),
     )
 
 
