@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import operator
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any
 
 from grammar.check.analysis.accesses import accesses, called_parameters, is_passed_on
@@ -19,8 +19,9 @@ from grammar.check.flow.routine_summaries import Summaries, SummaryCollector
 from grammar.check.flow.routine_summaries import of_project as of_summaries
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.scopes import REST
-from grammar.semantics.symbols import SignalSymbol
+from grammar.semantics.symbols import Access, SignalSymbol
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from grammar.syntax.walk import left_chain, root_variable, without_parentheses
 from support.lazy_dataclass import dataclass
 
@@ -41,8 +42,8 @@ class Effects:
     ``changed`` are the names that are assigned or passed on, with a constant index as in
     ``$FLAG[3]``; ``reset`` those that may become FALSE. ``switched_on`` has interrupt numbers, and
     ``""`` for all or unknown ones. ``literals`` are undeclared variables in upper case with the
-    kinds of literals with which they are compared or to which they are set. ``summaries`` are those
-    of its routines.
+    kinds of literals with which they are compared or to which they are set. ``valueless`` are
+    variables without an initial value, ``summaries`` those of its routines.
     """
 
     interrupts: tuple[Place, ...] = ()
@@ -52,6 +53,7 @@ class Effects:
     waits: tuple[tuple[Place, frozenset[str]], ...] = ()
     changed: frozenset[str] = frozenset()
     literals: tuple[tuple[str, str, Place], ...] = ()
+    valueless: tuple[Place, ...] = ()
     summaries: Summaries | None = None
 
 
@@ -125,6 +127,7 @@ class _Collector:
                 self._call(node)
             elif type(node) is ast.Binary and node.operator in ("==", "<>"):
                 self._literal(node.left, node.right)
+        valueless = tuple(self._valueless())
         return Effects(
             tuple(self._interrupts),
             frozenset(self._on),
@@ -133,8 +136,33 @@ class _Collector:
             tuple(self._waits),
             frozenset(self._changed),
             tuple(self._literals),
+            valueless,
             self._summaries.made(),
         )
+
+    def _valueless(self) -> Iterator[Place]:
+        """Yield the variables of a data list without an initial value that only files here can set.
+
+        The controller itself sets variables of its own lists.
+        """
+        context, data = self._context, self._context.data
+        if data is None or context.table.is_system:
+            return
+        declared: dict[str, ast.Name] = {}
+        for item in data.items:
+            if isinstance(item, ast.VariableDeclaration):
+                for one in item.declarators:
+                    if one.value is None and not one.name.text.startswith("$"):
+                        declared[one.name.key] = one.name
+            elif isinstance(item, ast.Assignment) and (root := root_variable(item.target)):
+                declared.pop(root.name.key, None)
+            elif isinstance(item, ast.Importation) and (root := root_variable(item.source)):
+                self._changed.add(root.name.key)
+        for key, name in declared.items():
+            symbol = context.table.table.find(Space.VALUE, key)
+            is_own = symbol is not None and symbol.access is not Access.GLOBAL
+            if is_own or context.project.is_complete:
+                yield self._place(name, name.text)
 
     def _place(self, node: ast.Node, what: str) -> Place:
         source = self._context.source
@@ -319,8 +347,8 @@ _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
 # ------------------------------------------------------------------------------------- a project
 
 
-def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
-    """Yield the findings that depend on the effects of several files."""
+def of_project(found: Iterable[Effects], used: Set[str]) -> Iterator[Diagnostic]:
+    """Yield the findings that depend on the effects of several files; ``used`` are all names."""
     files = list(found)
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
     reset = frozenset[str]().union(*(one.reset for one in files))
@@ -332,6 +360,10 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
             yield from _never_on(one.interrupts, switched_on)
         if "$OUT" not in reset:
             yield from _never_reset(one.outputs, reset)
+        for place in one.valueless if REST not in changed else ():
+            if place.what.upper() in used and place.what.upper() not in changed:
+                message = f"{place.what} has no value, and nothing assigns to it"
+                yield diagnose("never-assigned", place.path, place.region, message)
         for place, keys in one.waits:
             if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"

@@ -162,7 +162,7 @@ def check_project(
         (constant for one in kept for constant in one.constants),
         partial(_constants_of, file_of, spelling.files),
     )
-    found += of_effects(one.effects for one in kept)
+    found += of_effects((one.effects for one in kept), used)
     return in_order(found)
 
 

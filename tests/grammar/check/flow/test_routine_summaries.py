@@ -111,3 +111,35 @@ def test_behind_a_routine_that_does_not_return(agrees: Agrees, body: str, mark: 
     agrees(files(main.format(mark), work, inner), ignored=("KRL701",))
     resume = "DEF STOP()\nBRAKE\nRESUME\nEND"
     agrees(files(main.format(""), work, inner, resume), ignored=("KRL701", "KRL505", "KRL506"))
+
+
+@pytest.mark.parametrize(
+    ("declared", "body", "is_reported"),
+    [
+        ("INT N {}", "$ANOUT[1] = N", True),
+        ("INT N=1", "$ANOUT[1] = N", False),
+        ("INT N[2]\nN[1]=1", "$ANOUT[1] = N[1]", False),
+        ("INT N", "HALT", False),
+        ("INT N", "N = 1", False),
+        ("INT N", "$ANOUT[1] = N\nFILL(N)", False),
+        ("REAL N", "ANIN ON N = 1.0 * $ANIN[1]", False),
+        ("GLOBAL INT N {}", "$ANOUT[1] = N", None),
+    ],
+)
+@pytest.mark.parametrize("is_complete", [True, None])
+def test_variables_that_nothing_gives_a_value(
+    agrees: Agrees, declared: str, body: str, *, is_reported: bool | None, is_complete: bool | None
+) -> None:
+    """A missing file may set what is GLOBAL, and an IMPORT what it stands for."""
+    is_known = is_reported or (is_reported is None and is_complete)
+    data = f"DEFDAT NEG PUBLIC\nDECL {declared}\nENDDAT"
+    given = {
+        "NEG.src": f"DEF NEG()\n{body}\nEND",
+        "FILL.src": "DEF FILL(M:OUT)\nINT M\nM = 1\nEND",
+        "NEG.dat": data.format(";> KRL417?" if is_known else ""),
+    }
+    ignored = ("KRL117", "KRL7")
+    agrees(given, with_data=True, is_complete=is_complete, ignored=ignored)
+    other = "DEFDAT OTHER\nIMPORT INT M IS /R1/NEG..N\nENDDAT"
+    given |= {"NEG.dat": data.format(""), "OTHER.dat": other}
+    agrees(given, with_data=True, is_complete=is_complete, ignored=ignored)
