@@ -170,6 +170,11 @@ static inline void krl_stay(struct krl_machine *machine, int32_t at)
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;
+/* The CASE steps from this one on that compare the same register. */
+#define SWITCH(number, out)                                                                        \
+    if (UNLIKELY(!HAS_VALUE(registers[steps[number].b])))                                          \
+        goto out_##out;                                                                            \
+    switch (INT(registers[steps[number].b]))
 /* `prepare` makes the frame of the call; `save` puts back what is not read unless the interpreter goes on within it. */
 #define CALL(number, out, function, frame, prepare, save, put, ...)                                \
     {                                                                                              \

@@ -356,6 +356,10 @@ class _Routine:
             yield self._call(place, out)
         elif name in CALLS or name in INTERPRETED:
             yield f"goto out_{out};"
+        elif name == "CASE":
+            yield from self._switch(place, out)
+        elif name == "SWITCH":
+            pass  # the C compiler makes tables itself
         elif name == "STOP":
             yield f"STOP({out})"
         elif name == "AT":
@@ -376,6 +380,21 @@ class _Routine:
                 yield f"RETURN_VALUE({place}, {out}, {self._result})"
             else:
                 yield f"DO({name}, {place}, {out}, {written}, {jump})"
+
+    def _switch(self, place: int, out: int) -> Iterator[str]:
+        """All CASE steps that follow one another, at the first of them."""
+        step = self._steps[place]
+        if place > self._body.start and self._flow.is_next_case(place):
+            return
+        yield self._each("GET", self._in_frame.intersection({step.b}))
+        yield f"SWITCH({place}, {out}) {{"
+        targets = {step.c: step.d}
+        while self._flow.is_next_case(place + 1):
+            place += 1
+            targets.setdefault(self._steps[place].c, self._steps[place].d)
+        for constant, target in targets.items():
+            yield f"case {_int(constant)}: goto do_{target};"
+        yield "}"
 
     def _call(self, place: int, out: int) -> str:
         """Return a call; cells are restored if the interpreter continues inside it."""

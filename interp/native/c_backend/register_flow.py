@@ -42,6 +42,12 @@ class RegisterFlow:
         jump = [step.d] if step.is_jump else []
         return jump if step.name in ENDS else [*jump, place + 1]
 
+    def is_next_case(self, place: int) -> bool:
+        """Whether a step compares the same register as the one before, and follows only that."""
+        step, before = self._steps[place], self._steps[place - 1]
+        is_case = step.name == before.name == "CASE" and step.b == before.b
+        return is_case and place not in self.targets
+
     def live(self, stack: Collection[int]) -> dict[int, frozenset[int]]:
         """Liveness: return by step the stack registers that are read before they are written."""
         whole = frozenset(stack)

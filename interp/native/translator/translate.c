@@ -36,16 +36,7 @@ static void instruction(struct translator *at, int32_t place)
         break;
     case KRL_JUMP_IF: krl_jump_on(at, 1, operands[0]); break;
     case KRL_JUMP_UNLESS: krl_jump_on(at, 0, operands[0]); break;
-    case KRL_CASE:
-        krl_settle_to(at, at->height - 1);
-        if (krl_is_constant(at, at->height - 1))
-            krl_settle(at, at->height - 1);
-        step = krl_emit(at, KRL_STEP_CASE);
-        step->b = at->stack[at->height - 1].kind == VARIABLE ? at->stack[at->height - 1].a
-                                                             : krl_place_of(at, at->height - 1);
-        step->c = operands[0];
-        step->d = operands[1];
-        break;
+    case KRL_CASE: krl_choose(at, place); break;
     case KRL_CALL: krl_call_routine(at, place); break;
     case KRL_RETURN: case KRL_RETURN_VALUE: krl_leave(at, place); break;
     case KRL_ASK: krl_ask(at, &at->program->asks[operands[0]], place); break;
@@ -235,7 +226,7 @@ static void code(struct translator *at)
     }
 }
 
-/* Targets become distances. */
+/* Targets become distances: of places, or of the complement of a step. */
 static void land(struct krl_machine *machine)
 {
     for (int32_t number = 0; number < machine->program.code_count; number++) {
@@ -249,7 +240,7 @@ static void land(struct krl_machine *machine)
             if (step->op == KRL_STEP_TEXT)
                 step->d = 2 * (int32_t)sizeof *step;
             else if (KRL_IS_JUMP(step->op))
-                step->d = (routine->steps[step->d] - i) * (int32_t)sizeof *step;
+                step->d = ((step->d < 0 ? ~step->d : routine->steps[step->d]) - i) * (int32_t)sizeof *step;
         }
     }
 }

@@ -142,6 +142,9 @@ void krl_jump_on(struct translator *at, int is_if, int32_t target);
 /* A jump unless the relation holds, of INT or REAL, that has this place in EQ NE LT GT LE GE. */
 void krl_jump_unless(struct translator *at, int is_real, int relation, int32_t target);
 
+/* The CASE at a place, with those that follow it. */
+void krl_choose(struct translator *at, int32_t place);
+
 /* The end of a turn of a FOR loop. */
 void krl_count_up(struct translator *at, const struct krl_instruction *instruction);
 

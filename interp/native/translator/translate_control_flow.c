@@ -1,6 +1,11 @@
 /* Translating what decides where to go on: statements, jumps, loops, calls, requests. */
 #include "translate.h"
 
+#include <stdlib.h>
+
+/* With fewer constants a table is slower: what follows waits for the selector. */
+enum { LEAST_CASES = 24, MOST_CASES = 1000 };
+
 struct krl_step *krl_to_python(struct translator *at, enum krl_matter matter, int32_t place)
 {
     krl_settle_all(at);
@@ -63,6 +68,68 @@ void krl_jump_on(struct translator *at, int is_if, int32_t target)
 void krl_jump_unless(struct translator *at, int is_real, int relation, int32_t target)
 {
     krl_relate(at, is_real ? KRL_STEP_UNLESS_EQ_REAL : KRL_STEP_UNLESS_EQ_INT, relation)->d = target;
+}
+
+static int by_constant(const void *left, const void *right)
+{
+    const struct krl_instruction *const *one = left, *const *other = right;
+    int32_t a = (*one)->operands[0], b = (*other)->operands[0];
+    return a != b ? (a > b) - (a < b) : (*one > *other) - (*one < *other);
+}
+
+/* Emits SWITCH and a CASE for each number from the lowest constant to the highest, in this order. Returns 0 if
+ * there are too few or too many of them. */
+static int as_table(struct translator *at, const struct krl_instruction *first, int32_t count, int32_t b)
+{
+    const struct krl_instruction *sorted[MOST_CASES];
+    if (count < LEAST_CASES || count > MOST_CASES)
+        return 0;
+    for (int32_t i = 0; i < count; i++)
+        sorted[i] = first + i;
+    qsort(sorted, (size_t)count, sizeof *sorted, by_constant);
+    int32_t lowest = sorted[0]->operands[0];
+    int64_t numbers = (int64_t)sorted[count - 1]->operands[0] - lowest + 1;
+    if (numbers > 2 * count)
+        return 0;
+    struct krl_step *table = krl_emit(at, KRL_STEP_SWITCH);
+    table->a = (int32_t)numbers;
+    table->b = b;
+    table->c = lowest;
+    int32_t end = at->count + (int32_t)numbers;
+    const struct krl_instruction *const *next = sorted;
+    for (int32_t number = 0; number < numbers; number++) {
+        while ((*next)->operands[0] < lowest + number)
+            next++;
+        struct krl_step *step = krl_emit(at, KRL_STEP_CASE);
+        step->b = b;
+        step->c = lowest + number;
+        step->d = (*next)->operands[0] == step->c ? (*next)->operands[1] : ~end;
+    }
+    return 1;
+}
+
+void krl_choose(struct translator *at, int32_t place)
+{
+    const struct krl_instruction *first = &at->code->body[place];
+    const uint8_t *leads = at->code->leads;
+    int32_t count = 1;
+    if (place > 0 && first[-1].op == KRL_CASE && !leads[place])
+        return; /* together with the one before */
+    while (place + count < at->code->length && first[count].op == KRL_CASE && !leads[place + count])
+        count++;
+    krl_settle_to(at, at->height - 1);
+    if (krl_is_constant(at, at->height - 1))
+        krl_settle(at, at->height - 1);
+    const struct virtual_value *top = &at->stack[at->height - 1];
+    int32_t b = top->kind == VARIABLE ? top->a : krl_place_of(at, at->height - 1);
+    if (as_table(at, first, count, b))
+        return;
+    for (int32_t i = 0; i < count; i++) {
+        struct krl_step *step = krl_emit(at, KRL_STEP_CASE);
+        step->b = b;
+        step->c = first[i].operands[0];
+        step->d = first[i].operands[1];
+    }
 }
 
 void krl_count_up(struct translator *at, const struct krl_instruction *instruction)

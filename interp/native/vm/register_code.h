@@ -12,7 +12,7 @@
 /* What decides where to go on; d is the target. */
 #define KRL_JUMPS(X)                                                                               \
     X(JUMP) X(JUMP_IF) X(JUMP_UNLESS) /* b */                                                      \
-    X(CASE) /* b, constant c; below 25 constants a table is slower, as what follows waits for b */ \
+    X(CASE) /* b, constant c */                                                                    \
     X(UNLESS_EQ_INT) X(UNLESS_NE_INT) X(UNLESS_LT_INT) X(UNLESS_GT_INT)                            \
     X(UNLESS_LE_INT) X(UNLESS_GE_INT) X(UNLESS_EQ_INT_K) X(UNLESS_NE_INT_K)                        \
     X(UNLESS_LT_INT_K) X(UNLESS_GT_INT_K) X(UNLESS_LE_INT_K) X(UNLESS_GE_INT_K)                    \
@@ -82,6 +82,7 @@
     X(CALL) X(CALL_COPY) /* arguments from a on, routine b, own frame c; and behind it d cells */  \
     X(RETURN) X(RETURN_VALUE) /* b */                                                              \
     X(END_ACTION)                                                                                  \
+    X(SWITCH)            /* the one of the a CASE steps behind it that compares b; the first one with c */ \
     X(AT)                /* the statement is that of place b */                                    \
     X(PYTHON)            /* for Python: matter tag of the instruction at place b; stack up to a */ \
     X(STOP)              /* the same, unless it may pass without a request to stop the advance run */

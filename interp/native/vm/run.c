@@ -89,6 +89,21 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
     }
 
     /* ---- the rest */
+    STEP(SWITCH)
+    {
+        krl_cell number = B;
+        if (UNLIKELY(number == KRL_NOTHING)) {
+            fault = KRL_FAULT_UNINITIALISED;
+            goto failed;
+        }
+        uint32_t entry = (uint32_t)krl_int_in(number) - (uint32_t)pc->c;
+        if (entry < (uint32_t)pc->a) {
+            pc += entry + 1;
+            JUMP();
+        }
+        pc += pc->a;
+        NEXT();
+    }
     STEP(AT)
     {
         statement = pc->b;

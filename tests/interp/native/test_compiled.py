@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -228,6 +228,33 @@ def test_indices(rows: int, columns: int) -> None:
     expected = repr(_requests(program, "vm", Limits()))
     assert ("Fail" in expected) == (rows * columns > 2 and (rows, columns) != (2, 3))
     for executor in ("native", "compiled"):
+        assert expected == repr(_requests(program, executor, Limits()))
+
+
+@pytest.mark.parametrize(
+    ("constants", "is_table"),
+    [
+        ([*range(9, 33), 5, 30, -6], True),
+        (range(-(2**31), 24 - 2**31), True),
+        (range(2**31 - 24, 2**31), True),
+        (range(23), False),
+        ([*range(40), 2000], False),
+    ],
+    ids=["gaps and one twice", "smallest", "largest", "few", "far apart"],
+)
+def test_constants_of_switch(constants: Sequence[int], is_table: bool) -> None:
+    """Many constants that lie close together are a table; the first CASE of a number is taken."""
+    from interp.native.c_backend.register_code import listing
+
+    cases = "".join(f"CASE {one}\n$OV_PRO = {place}\n" for place, one in enumerate(constants, 1))
+    selectors = {one + by for one in constants for by in (-1, 0, 1)} | {-(2**31), 2**31 - 1}
+    calls = "".join(f"TRY({one})\n" for one in sorted(selectors) if -(2**31) <= one < 2**31)
+    text = f"DEF RUN()\nINT K\n{calls}TRY(K)\nEND\nDEF TRY(N:IN)\nINT N\nSWITCH N\n{cases}"
+    program = Prepared(load([Source(text + "ENDSWITCH\nEND\n", "run.src")], "run.src"))
+    steps = listing(program.verified.program, program.verified.image)
+    assert is_table == any(" SWITCH " in line for line in steps)
+    expected = repr(_requests(program, "tree", Limits()))
+    for executor in ("vm", "native", "compiled"):
         assert expected == repr(_requests(program, executor, Limits()))
 
 
