@@ -92,14 +92,15 @@ function armIn(scene, facets, lines) {
     const touched = new Set([...touching(time)].map((name) => name.replaceAll("_", " ")));
     for (const { name, mesh, colour } of meshes) mesh.material.color.copy(touched.has(name) ? ALARM : colour);
     const frames = tools[Math.max(0, placeAt(toolTimes, time))];
-    if (!frames) return;
-    tool.matrix.copy(frameOf(frames.tool));
-    base.matrix.copy(frameOf(frames.base));
-    stem.geometry.setFromPoints([new THREE.Vector3(), new THREE.Vector3().setFromMatrixPosition(tool.matrix)]);
+    if (frames) {
+      tool.matrix.copy(frameOf(frames.tool));
+      base.matrix.copy(frameOf(frames.base));
+      stem.geometry.setFromPoints([new THREE.Vector3(), new THREE.Vector3().setFromMatrixPosition(tool.matrix)]);
+    }
+    scene.updateMatrixWorld(true); // fixed frames are not renewed otherwise before they are drawn
   }
   function tip() {
     if (!joints[hand] || !tools.length) return null;
-    tool.updateWorldMatrix(true, false);
     return new THREE.Vector3().setFromMatrixPosition(tool.matrixWorld).toArray();
   }
   return { follow, tip, isThere: links.length > 0 };

@@ -140,6 +140,25 @@ def test_the_picture_follows_the_slider_and_the_view(shown: Shown) -> None:
     assert pictures[0] == pictures[3]
 
 
+def test_the_whole_arm_is_in_the_picture(shown: Shown) -> None:
+    """However short the path, no view cuts off the arm, which is orange."""
+    tool = "$TOOL = {X 500, Y 0, Z 0, A 0, B 0, C 0}"
+    point = "{A1 0, A2 -90, A3 90, A4 0, A5 45, A6 0}"
+    browser = shown(recorded(f"DEF CELL()\n{tool}\nPTP {point}\nEND\n"))
+    for view in ("slanted", "front", "side"):
+        find(browser, f"#{view}").click()
+        _point_at(browser, 100_000)
+        picture = Image.open(BytesIO(find(browser, "#scene").screenshot_as_png)).convert("RGB")
+        pixels = np.asarray(picture, dtype=int)
+        orange = (pixels[..., 0] > 120) & (pixels[..., 0] - pixels[..., 2] > 90)
+        rows, columns = np.nonzero(orange)
+        height, width = orange.shape
+        assert orange.sum() > 2_000
+        assert 4 < min(rows.min(), columns.min())
+        assert rows.max() < height - 4
+        assert columns.max() < width - 4
+
+
 def _red(scene: WebElement) -> int:
     """How many pixels of a picture are plainly red."""
     picture = Image.open(BytesIO(scene.screenshot_as_png)).convert("RGB")
