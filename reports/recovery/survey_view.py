@@ -3,7 +3,7 @@
 All texts can be printed as they are: untrusted ones have passed through `printable`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from reports.recovery.survey_section import Section, section
@@ -99,7 +99,7 @@ def survey_view(record: Record) -> SurveyView:
         made=" · ".join(printable(clip(part, 80)) for part in made if part),
         files=count(record, "files"),
         parsed=count(record, "parsed"),
-        figures=_figures(record, clusters),
+        figures=tuple(_figures(record, clusters)),
         section=section(record, clusters),
         start=section(begun, _shown(begun), "start-") if begun else None,
         origins=_origins(record),
@@ -121,7 +121,7 @@ def _state(record: Record, clusters: Sequence[Record]) -> str:
     return "complete" if count(record, "parsed") >= count(record, "files") else "unclustered"
 
 
-def _figures(record: Record, clusters: Sequence[Record]) -> tuple[Figure, ...]:
+def _figures(record: Record, clusters: Sequence[Record]) -> Iterator[Figure]:
     files, parsed = count(record, "files"), count(record, "parsed")
     octets, parsed_octets = number(record, "bytes"), number(record, "parsed_bytes")
     distinct = optional_count(record, "distinct")
@@ -130,34 +130,31 @@ def _figures(record: Record, clusters: Sequence[Record]) -> tuple[Figure, ...]:
     failures = sum(count(cluster, "failures") for cluster in clusters)
     following = sum(count(cluster, "follows") for cluster in clusters)
     skipped = count(record, "skipped")
-    return (
-        Figure(
-            "files parse",
-            percent(parsed, files),
-            f"{parsed:,} of {counted(files, 'file')}"
-            + (f", {distinct:,} distinct" if distinct not in (None, files) else ""),
-            share(parsed, files),
-        ),
-        Figure(
-            "bytes in them",
-            percent(parsed_octets, octets),
-            f"{size(parsed_octets)} of {size(octets)}",
-            share(parsed_octets, octets),
-        ),
-        Figure("clusters", f"{count(record, 'clusters'):,}", f"{unlocking:,} unlock files alone"),
-        Figure(
-            "failures",
-            f"{failures:,}",
-            f"{following:,} only follow from others" if following else "",
-        ),
-        Figure(
-            "skipped", f"{skipped:,}", "not KRL, reasons below" if skipped else "nothing left out"
-        ),
-        Figure(
-            "seconds",
-            f"{seconds:,.1f}" if seconds >= 0.1 else f"{seconds:.2g}",
-            f"{size(octets / seconds)}/s" if seconds > 0 else "",
-        ),
+    yield Figure(
+        "files parse",
+        percent(parsed, files),
+        f"{parsed:,} of {counted(files, 'file')}"
+        + (f", {distinct:,} distinct" if distinct not in (None, files) else ""),
+        share(parsed, files),
+    )
+    yield Figure(
+        "bytes in them",
+        percent(parsed_octets, octets),
+        f"{size(parsed_octets)} of {size(octets)}",
+        share(parsed_octets, octets),
+    )
+    if _state(record, clusters) != "unclustered":
+        total = f"{count(record, 'clusters'):,}"
+        yield Figure("clusters", total, f"{unlocking:,} unlock files alone")
+        note = f"{following:,} only follow from others" if following else ""
+        yield Figure("failures", f"{failures:,}", note)
+    yield Figure(
+        "skipped", f"{skipped:,}", "not KRL, reasons below" if skipped else "nothing left out"
+    )
+    yield Figure(
+        "seconds",
+        f"{seconds:,.1f}" if seconds >= 0.1 else f"{seconds:.2g}",
+        f"{size(octets / seconds)}/s" if seconds > 0 else "",
     )
 
 

@@ -100,6 +100,8 @@ def test_what_is_still_computed_is_said(survey_record: RecordBuilder, tmp_path: 
     page = _page(record | {"pending": "the causes, in 7 files"}, tmp_path)
     assert "What is missing here: the causes, in 7 files." in page
     assert "No clusters in this record" not in page
+    assert "unlock files alone" not in page
+    assert "unlock files alone" in _page(survey_record("believable"), tmp_path)
 
 
 def test_failures_in_force_come_before_those_of_the_start(
