@@ -1,1 +1,1 @@
-"""Induction of a grammar: forms of whole lines, operands and blocks from all lines of a corpus."""
+"""Grammar induction: infers forms of lines, operands and blocks from all lines of a corpus."""

@@ -1,4 +1,4 @@
-"""Edits that add blocks of several lines where their first line may stand."""
+"""Edits that add blocks of several lines where their first line is allowed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from recovery.proposals.blocks import BlockLines
 
 
 class BlockEdits:
-    """Infers blocks of the corpus that the grammar does not have."""
+    """Infers the blocks of the corpus that the grammar lacks."""
 
     def __init__(
         self, at: LineSymbols, forms: SupportedForms, hosts: LineHosts, blocks: Sequence[BlockLines]
@@ -40,7 +40,7 @@ class BlockEdits:
                         yield Inferred(title, edits, members, is_block=True)
 
     def _opening(self, block: BlockLines) -> tuple[int, ...]:
-        """The lines that open a block."""
+        """Return the lines that open a block."""
         return tuple(
             n
             for n, symbols in enumerate(self.at.symbols)
@@ -48,7 +48,7 @@ class BlockEdits:
         )
 
     def _hosts_of_block(self, block: BlockLines) -> dict[str, None]:
-        """The rules of which a block may be an alternative."""
+        """Return the rules to which a block may be added as an alternative."""
         return dict.fromkeys(host for n in self._opening(block) for host in self._block_hosts(n))
 
     def _block_hosts(self, number: int) -> list[str]:
@@ -62,7 +62,7 @@ class BlockEdits:
         return rule in blocks or not blocks.isdisjoint(self.at.profile.near(rule))
 
     def _bodies(self, host: str) -> list[str]:
-        """What may be between the lines of a block: what is so in the blocks that a rule has."""
+        """Return the possible bodies of a block: those of the blocks that a rule already has."""
         texts = [" ".join(body) for body in self.at.profile.bodies] or [
             f"{rule}*" for rule in sorted(self.at.profile.loops & self.at.profile.of_lines)
         ]
@@ -91,9 +91,9 @@ class BlockEdits:
 
     @cached_property
     def words(self) -> frozenset[str]:
-        """The words of the blocks that could be added.
+        """Return the words of the blocks that could be added.
 
-        Where no rule has blocks, or lines in a row that could be within one, each line is its own.
+        If no rule has blocks, or sequences of lines that could be a body, each line stands alone.
         """
         having = [b for b in self.blocks if any(map(self._bodies, self._hosts_of_block(b)))]
         return frozenset[str]().union(*(block.words for block in having))

@@ -1,4 +1,4 @@
-"""Edits of what stands between the brackets of a rule, from all contents it does not read."""
+"""Edits of the contents of brackets in a rule, inferred from all contents that it does not read."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from recovery.tuning import BRACKET_ORIGINS, MISSING_RUN
 
 
 class BracketEdits:
-    """Infers contents of brackets, where what is missing is no operator."""
+    """Infers contents of brackets, if the missing part is not an operator."""
 
     def __init__(self, at: LineSymbols, forms: SupportedForms, operands: OperandEdits) -> None:
         self.at = at
@@ -25,7 +25,7 @@ class BracketEdits:
         self._operands = operands
 
     def edits(self) -> Iterator[Inferred]:
-        """What stands between the brackets of a rule, from all contents that it does not read."""
+        """Return edits of the contents of brackets, from all contents that a rule does not read."""
         found: dict[tuple[str, str], dict[tuple[Symbol, ...], list[int]]] = defaultdict(
             lambda: defaultdict(list)
         )
@@ -106,6 +106,6 @@ def _groups(symbols: Sequence[Symbol]) -> Iterator[tuple[str, tuple[Symbol, ...]
 
 
 def _runs(count: int) -> Iterator[tuple[int, int]]:
-    """Runs of so many elements, but not all of them: the first one and how many."""
+    """Yield all proper runs of consecutive elements as first index and length."""
     for length in range(1, min(MISSING_RUN, count - 1) + 1):
         yield from ((start, length) for start in range(count - length + 1))

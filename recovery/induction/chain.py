@@ -1,9 +1,9 @@
-"""Chain regular expressions from examples: what follows what, what may be left out or repeated.
+"""Learns chain regular expressions from examples: order, optional and repeated symbols.
 
-A chain is a sequence of factors ``(a | b)``, each once, optional or repeated, in which no symbol
-comes twice. Few examples suffice to learn one, for it generalises by order alone: ``a b d`` and
-``a c d`` give ``a (b | c) d``, and ``a c`` gives ``d?`` besides. Learned as CRX does (Bex, Neven,
-Schwentick, Vansummeren: Inference of concise regular expressions and DTDs, 2010).
+A chain is a sequence of factors ``(a | b)``, each occurring once, optional or repeated, in which no
+symbol occurs twice. Few examples suffice to learn one, because it generalises by order alone: ``a b
+d`` and ``a c d`` give ``a (b | c) d``, and a further ``a c`` makes it ``d?``. The algorithm is CRX
+(Bex, Neven, Schwentick, Vansummeren: Inference of concise regular expressions and DTDs, 2010).
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ _S = TypeVar("_S", bound=Hashable)
 
 @dataclass(frozen=True, slots=True)
 class Factor(Generic[_S]):
-    """One place of a chain: its symbols, in the order they were met, and how often one may come.
+    """A factor of a chain: its symbols in the order of their first occurrence, and its quantifier.
 
-    ``often`` is empty for once, else ``?``, ``+`` or ``*``.
+    ``often`` is empty for exactly once, otherwise ``?``, ``+`` or ``*``.
     """
 
     symbols: tuple[_S, ...]
@@ -28,9 +28,9 @@ class Factor(Generic[_S]):
 
 
 def chain_of(examples: Iterable[Sequence[_S]]) -> tuple[Factor[_S], ...]:
-    """The chain that reads all examples; symbols that may come in either order share a factor.
+    """Return the chain that matches all examples; symbols that occur in both orders share a factor.
 
-    The same examples in the same order give the same chain.
+    The result depends only on the examples and their order.
     """
     words = [tuple(example) for example in examples]
     symbols = list(dict.fromkeys(symbol for word in words for symbol in word))
@@ -86,7 +86,7 @@ def _merged(classes: list[list[_S]], after: dict[_S, set[_S]]) -> list[list[_S]]
 
 
 def _sorted(classes: list[list[_S]], after: dict[_S, set[_S]]) -> list[list[_S]]:
-    """The classes in an order in which nothing comes before what it follows."""
+    """Return the classes in a topological order."""
     left = list(classes)
     out: list[list[_S]] = []
     while left:

@@ -1,4 +1,4 @@
-"""A grown grammar compared with a target: files read by both, and what it should not read."""
+"""Compares a grown grammar with a target: files that both read, and what it should not read."""
 
 from __future__ import annotations
 
@@ -20,23 +20,22 @@ _SEED = 4242
 
 
 class Share(TypedDict):
-    """So many of so many."""
+    """A number out of a total."""
 
     count: int
     of: int
 
 
 class Comparison(TypedDict):
-    """How much the grown grammar reads that it should, and that it should not.
+    """How much of the target the grown grammar reads, and how much else it accepts.
 
-    ``shown`` and ``held``: of the files that the target parses, how many it parses too.
-    ``held_within_reach``: the same of those held out in which no two neighbours are, as kinds of
-    token of the target, that no file shown has. What lies beyond takes a guess.
-    ``held_known_words``: the same of those held out with no word among ``words_not_shown`` that the
-    grown grammar has not got either, as from its start: more no growth can read.
-    ``words_not_shown``: reserved words of the target in files held out that no file shown has.
-    ``sentences_rejected``: of its random sentences, how many the target rejects.
-    ``negatives_accepted``: of generated negatives, how many it accepts.
+    ``shown`` and ``held``: of the files that the target parses, how many it parses, too.
+    ``held_within_reach``: the same for held-out files without any pair of adjacent kinds of token
+    of the target that no shown file has; files beyond that require a guess. ``held_known_words``:
+    the same for held-out files without a word of ``words_not_shown`` that the grown grammar lacks,
+    too: no growth can read more. ``words_not_shown``: reserved words of the target in held-out
+    files that no shown file has. ``sentences_rejected``: how many of its random sentences the
+    target rejects. ``negatives_accepted``: how many generated negatives it accepts.
     """
 
     shown: Share
@@ -55,7 +54,10 @@ def compared(
     held: Sequence[CorpusFile],
     language: Language = KRL,
 ) -> Comparison:
-    """The grown grammar compared with the target, with sentences and negatives of a fixed seed."""
+    """Return the comparison of a grown grammar with the target.
+
+    The random sentences and negatives have a fixed seed.
+    """
     reader, reference = Recognizer(grown), Recognizer(target)
     sentences, speller, chance = Sentences(grown), Speller(grown), Random(_SEED)
     drawn = [speller.text(sentences.random(chance)) for _ in range(_SENTENCES)]
@@ -81,9 +83,9 @@ def compared(
 def within_reach(
     reference: Recognizer, shown: Sequence[CorpusFile], held: Sequence[CorpusFile]
 ) -> tuple[list[CorpusFile], list[str]]:
-    """The files held out whose neighbours are such in a file shown too, and words not shown.
+    """Return the held-out files whose adjacent tokens also occur in shown files, and unknown words.
 
-    The words are those that the reference reserves, of files held out, in no file shown.
+    The words are those that the reference reserves and that occur in held-out files only.
     """
     known = frozenset[tuple[int, int]]().union(*(_neighbours(reference, file) for file in shown))
     pairs = {file.path: _neighbours(reference, file) for file in held}

@@ -1,4 +1,4 @@
-"""Blocks of a corpus that a grammar does not have (`recovery.proposals.blocks`)."""
+"""The blocks of a corpus that a grammar lacks (`recovery.proposals.blocks`)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def blocks_of(
     recognizer: Recognizer,
     prefixes: frozenset[str],
 ) -> list[BlockLines]:
-    """The blocks of a corpus that the grammar of the recogniser does not have."""
+    """Return the blocks of a corpus that the grammar of the recogniser lacks."""
     lexer = recognizer.lexer
     name = lexer.name_kind
     tokens = []

@@ -1,4 +1,4 @@
-"""The lines of a corpus, each distinct one once, with the files and origins that have it."""
+"""The distinct lines of a corpus, each with the files and origins that contain it."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from recovery.language import CorpusFile
 def held_out(
     files: Sequence[CorpusFile], fraction: float, seed: int
 ) -> tuple[tuple[CorpusFile, ...], tuple[CorpusFile, ...], tuple[str, ...]]:
-    """The files shown, those held out, and the origins held out: a fraction, drawn by a seed.
+    """Return the shown files, the held-out files, and the held-out origins, drawn by a seed.
 
-    What an origin that is shown has too is shown.
+    A content that also occurs in a shown origin is shown.
     """
     origins = sorted({origin for file in files for origin in file.origins})
     Random(seed).shuffle(origins)
@@ -26,7 +26,7 @@ def held_out(
 
 
 class CorpusLines:
-    """Lines as lexemes in upper case, blanks, comments and line ends left out, empty lines too.
+    """Lines as upper-case lexemes without blanks, comments and line ends; empty lines are left out.
 
     ``of_file[n]`` are the numbers of the lines of file ``n``, in order.
     """

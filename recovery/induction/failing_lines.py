@@ -1,4 +1,4 @@
-"""The distinct failing lines of a corpus, with what speaks for an edit that mends them."""
+"""The distinct failing lines of a corpus, with the evidence for edits that repair them."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMB
 
 @dataclass(slots=True)
 class Occurrences:
-    """Where a distinct failing line occurs: files by their number, origins, texts, some places.
+    """Where a distinct failing line occurs: numbers of files, origins, texts, some places.
 
-    ``state`` is where the grammar stands when it fails.
+    ``state`` is the state of the recogniser at the failure.
     """
 
     files: set[int] = field(default_factory=set)
@@ -35,7 +35,7 @@ class Occurrences:
 class FailingLines:
     """The distinct failing lines of files, ``patterns[n]`` with ``occurrences[n]``.
 
-    A line with a bracket that nothing closes or opens is damaged and shows nothing.
+    Lines with unbalanced brackets are damaged and are left out.
     """
 
     def __init__(
@@ -69,11 +69,11 @@ class FailingLines:
                 self._of_file[place].add(number)
 
     def weight(self, lines: Collection[int]) -> int:
-        """The files of lines, each once a line."""
+        """Return the number of files with these lines, summed over the lines."""
         return sum(len(self.occurrences[n].files) for n in lines)
 
     def evidence(self, lines: Collection[int]) -> Evidence:
-        """What speaks for an edit that mends these lines."""
+        """Return the evidence for an edit that repairs these lines."""
         some = [self.occurrences[n] for n in sorted(lines)]
         files = {place for line in some for place in line.files}
         origins = {origin for line in some for origin in line.origins}
@@ -88,9 +88,9 @@ class FailingLines:
         recognizer: Recognizer,
         explained: Set[LinePattern],
     ) -> bool:
-        """Whether lines of a single file show edits often enough to be no slip.
+        """Return whether lines of a single file show edits often enough to be no slip.
 
-        Forms that are known may grow to read lines that are ``explained``.
+        Known forms may be extended to read lines that are ``explained``.
         """
         some = [self.occurrences[n] for n in lines]
         # where nothing else is wrong in a file a form that is known may grow by a single line, but
@@ -105,7 +105,7 @@ class FailingLines:
         return sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE
 
     def _are_misnamed(self, lines: Set[int], recognizer: Recognizer) -> bool:
-        """Whether all lines can be read with a name for the reserved word at which they fail."""
+        """Return whether all lines parse with a name for the reserved word at which they fail."""
         lexer = recognizer.lexer
         for form in (self.patterns[n].form for n in lines):
             kinds = list(form.kinds)
@@ -117,7 +117,7 @@ class FailingLines:
 
 
 def _is_balanced(words: Sequence[str]) -> bool:
-    """Whether the brackets of a line come in pairs, one within another."""
+    """Return whether the brackets of a line are balanced."""
     open_: list[str] = []
     for word in words:
         if word in BRACKETS:

@@ -1,9 +1,9 @@
-"""Folding: alternatives that say nearly the same become one, and what nothing needs goes.
+"""Folding: similar alternatives become one, and unused parts are removed.
 
-Induction writes a form for each word that begins lines. Where such words are of a kind, as ``INT``
-and ``REAL`` are, one form for all of them is shorter, and it reads what some word was not seen
-with. Each kind of fold is a function that yields folds of a grammar. None is believed:
-`recovery.induction.rounds` takes those after which the grammar reads no less.
+Induction writes a form for each word that begins lines. If such words are of one kind, as ``INT``
+and ``REAL`` are, one form for all of them is shorter, and it also reads combinations that were not
+seen. Each kind of fold is a function that yields folds of a grammar. A fold is only a candidate:
+`recovery.induction.rounds` accepts those after which the grammar reads at least as much.
 """
 
 from __future__ import annotations

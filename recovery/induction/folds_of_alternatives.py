@@ -1,4 +1,4 @@
-"""Folds of whole alternatives: those that begin with the same word, or with a word of a kind."""
+"""Folds of whole alternatives that begin with the same word, or with words of one kind."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def unused_rules(view: GrammarView) -> Iterator[Inferred]:
 
 
 def alternatives_of_a_word(view: GrammarView) -> Iterator[Inferred]:
-    """One form for alternatives that the same word begins, or words of a kind."""
+    """Yield one form for alternatives that begin with the same word, or with words of one kind."""
     for rule, word, numbers in view.families:
         # alternatives of which only some have a form in common
         groups = [numbers, *combinations(numbers, 2)] if len(numbers) > 2 else [numbers]
@@ -42,7 +42,7 @@ def alternatives_of_a_word(view: GrammarView) -> Iterator[Inferred]:
 
 
 def alternatives_of_two_rules(view: GrammarView) -> Iterator[Inferred]:
-    """One form for alternatives of two rules that the same word begins."""
+    """Yield one form for alternatives of two rules that begin with the same word."""
     for rule, word, numbers in view.families:
         for other, same, more in view.families:
             # a rule keeps at least one alternative
@@ -77,7 +77,7 @@ def lists(view: GrammarView) -> Iterator[Inferred]:
 
 
 def derived_words(view: GrammarView) -> Iterator[Inferred]:
-    """Words that are another one and more, as ``PTP_REL`` is: the same operand and ending."""
+    """Yield operand and ending of a word for a derived one: ``PTP_REL`` is derived from PTP."""
     for (rule, word, number), (other, base, place) in _derived(_leading_words(view)):
         own, wide = view.line(rule, number), view.line(other, place)
         narrow, operand = own[1], wide[1]
@@ -97,10 +97,10 @@ def derived_words(view: GrammarView) -> Iterator[Inferred]:
 
 
 def analogous_words(view: GrammarView) -> Iterator[Inferred]:
-    """Words that are to one word as two others are: ``PTP_REL`` where ``LIN`` has ``LIN_REL``.
+    """Yield words by analogy: ``PTP_REL`` belongs to ``PTP`` as ``LIN_REL`` belongs to ``LIN``.
 
-    Such a word goes on as the derived one does, and it is a name too where names have a rule. The
-    two words that are no derived ones have an operand and endings, some of which both have.
+    The new word has the form of the derived one; it is also a name if names have a rule. Both base
+    words must have a form of an operand and endings, and share some of the endings.
     """
     leading = _leading_words(view)
     for (rule, derived, number), (other, base, place) in _derived(leading):
@@ -148,7 +148,7 @@ def _endings_behind_operand(view: GrammarView, rule: str, number: int) -> frozen
 
 
 def _folded(view: GrammarView, word: str, places: Sequence[tuple[str, int]]) -> tuple[Edit, ...]:
-    """One form in the first of some alternatives, the others gone; none without a form."""
+    """Return edits that replace some alternatives by one form in the first; none without a form."""
     words: set[str] = set()
     lines = [
         shape
@@ -186,7 +186,7 @@ def _of_kind(view: GrammarView, symbol: Symbol, words: set[str]) -> Symbol:
 
 
 def _item(shape: Sequence[Symbol]) -> int:
-    """Where the first item of a list would begin: the last operand of the first in a row."""
+    """Return where the first item of a list would begin: the last operand of the first run."""
     for place in range(1, len(shape)):
         following = shape[place + 1 : place + 2]
         if shape[place].is_operand and not (following and following[0].is_operand):

@@ -1,4 +1,4 @@
-"""Folds of declarations: types, what is ahead of them, and what follows a declared name."""
+"""Folds of declarations: types, prefixes of types, and what follows a declared name."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def named_types(view: GrammarView) -> Iterator[Inferred]:
 
 
 def words_as_types(view: GrammarView) -> Iterator[Inferred]:
-    """Words that stand where a type does, and the name behind them goes on as behind a type."""
+    """Yield types for words that stand in place of a type and whose name is followed alike."""
     found: dict[str, set[tuple[str, ...]]] = defaultdict(set)
     longer: set[str] = set()  # words with an operand behind the name too
     for rule, _, elements in view.lines():
@@ -47,7 +47,7 @@ def words_as_types(view: GrammarView) -> Iterator[Inferred]:
 
 
 def tails(view: GrammarView) -> Iterator[Inferred]:
-    """One form for what follows a declared name, where alternatives of a rule differ in it."""
+    """Yield one form for what follows a declared name, if alternatives of a rule differ in it."""
     for rule in view.grammar.rules:
         if rule.is_lexer or rule.name in view.rules.recursive:
             continue
@@ -77,7 +77,7 @@ def tails(view: GrammarView) -> Iterator[Inferred]:
 
 
 def brackets(view: GrammarView) -> Iterator[Inferred]:
-    """One form for what is in brackets behind a declared name, where lines of a rule differ."""
+    """Yield one form for brackets after a declared name, if lines of a rule differ in it."""
     for rule in view.grammar.rules:
         found: dict[str, list[tuple[int, int, Sequence[Element]]]] = defaultdict(list)
         for number, alternative in enumerate(() if _is_inner(view, rule) else rule.alternatives, 1):
@@ -99,7 +99,7 @@ def brackets(view: GrammarView) -> Iterator[Inferred]:
 
 
 def initial_values(view: GrammarView) -> Iterator[Inferred]:
-    """The same values behind a sign in all lines of a rule, where none of them is a name."""
+    """Yield the same values after a sign for all lines of a rule, if none of them is a name."""
     for rule in view.grammar.rules:
         found: dict[str, list[tuple[Address, list[str]]]] = defaultdict(list)
         for address, sequence in () if _is_inner(view, rule) else sequences(rule):
@@ -121,7 +121,7 @@ def initial_values(view: GrammarView) -> Iterator[Inferred]:
 
 
 def modifiers(view: GrammarView) -> Iterator[Inferred]:
-    """A word that may be missing ahead of two kinds of line, ahead of others like them."""
+    """Yield a word that is optional in front of two kinds of line for further kinds like them."""
     for rule in view.grammar.rules:
         found: dict[str, list[int]] = defaultdict(list)
         plain = []
@@ -139,7 +139,7 @@ def modifiers(view: GrammarView) -> Iterator[Inferred]:
 
 
 def undeclared(view: GrammarView) -> Iterator[Inferred]:
-    """What may stand between a word and a type, ahead of types of a kind without that word."""
+    """Yield the prefix between a word and a type in front of types of a kind without that word."""
     for rule in view.grammar.rules:
         found = []
         for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
@@ -163,20 +163,20 @@ def undeclared(view: GrammarView) -> Iterator[Inferred]:
 
 
 def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:
-    """Whether elements are one reserved word, a name, and no bracket behind it."""
+    """Return whether elements are one reserved word and a name without a bracket after it."""
     words = view.words(elements[0]) if len(elements) > 2 else frozenset()
     is_word = len(words) == 1 and view.types.isdisjoint(words)
     return is_word and view.is_name(elements[1]) and not isinstance(elements[2], Literal)
 
 
 def _declares_some(view: GrammarView, elements: Sequence[Element]) -> bool:
-    """Whether elements begin with a reserved word of no kind, behind words that may miss."""
+    """Return whether elements begin with a reserved word of no kind, after optional words."""
     needed = [e for e in elements if not view.is_ending(e)]
     return bool(needed and view.words(needed[0]) & view.reserved)
 
 
 def _values(view: GrammarView, element: Element) -> list[str]:
-    """The rules of values that an element is a choice of; none where one reads names."""
+    """Return the rules of values of which an element is a choice; none if one reads names."""
     named = view.rules.matcher.rules_for((view.lexer.name_kind,))
     every = [element]
     if isinstance(element, Group):
@@ -188,12 +188,12 @@ def _values(view: GrammarView, element: Element) -> list[str]:
 
 
 def _is_inner(view: GrammarView, rule: Rule) -> bool:
-    """Whether a rule is one of tokens or part of a line."""
+    """Return whether a rule is a token rule or part of a line."""
     return rule.is_lexer or rule.name in view.rules.within_lines
 
 
 def _is_kind(view: GrammarView, element: Element) -> bool:
-    """Whether an element is the type ahead of what is declared."""
+    """Return whether an element is the type in front of a declared name."""
     words = view.words(element)
     is_choice = isinstance(element, Reference) and element.name in view.rules.word_choices
     return is_choice or bool(words and words <= view.types)

@@ -1,4 +1,4 @@
-"""Folds of operands and of words beside them: variables, signs, what begins or ends lines."""
+"""Folds of operands and words beside them: variables, signs, first and last parts of lines."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from recovery.tuning import FOLDING_SYMBOLS
 
 
 def trailing(view: GrammarView) -> Iterator[Inferred]:
-    """One choice for words that may end lines, of all such choices with a word in common.
+    """Yield one choice for words at the end of lines, from choices that share a word.
 
-    Where one rule writes the same operand ahead of two of them they are alike too.
+    Choices are also joined if one rule has the same operand in front of two of them.
     """
     found: list[tuple[str, int, Sequence[Element], frozenset[str], float]] = []
     behind: dict[tuple[str, str], frozenset[str]] = defaultdict(frozenset)
@@ -185,7 +185,7 @@ def named_arguments(view: GrammarView) -> Iterator[Inferred]:
 
 
 def _is_beside(rule: Rule, address: Address, some: frozenset[str]) -> bool:
-    """Whether a sequence is one of a choice of which another is one of some rules."""
+    """Return whether a sequence is in a choice that also contains one of some rules."""
     element = element_at(rule, address[:-1]) if len(address) > 1 else None
     group = element.item if isinstance(element, Repeat) else element
     return isinstance(group, Group) and any(

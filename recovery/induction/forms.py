@@ -1,9 +1,9 @@
 """Forms: one text of a rule that reads all lines, or all contents of brackets, of one kind.
 
-Commas become lists first. Then every symbol is named by the word or sign before it, so that the
-operand behind ``TO`` is another one than that behind ``STEP``; words that only some lines have are
-passed over for this. What is left is a chain (`recovery.induction.chain`), and each operand in it
-is written as the narrowest rules that read all examples of it.
+Commas become lists first. Then every symbol is named after the word or sign before it, so that the
+operand after ``TO`` differs from the one after ``STEP``; words that only some lines have are
+skipped for this. The result is a chain (`recovery.induction.chain`), in which each operand is
+written as the narrowest rules that read all of its examples.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _LIST = "…"
 
 @dataclass(frozen=True, slots=True)
 class _Key:
-    """What makes a symbol of a form the same in two lines: its text, and what it follows."""
+    """The identity of a symbol of a form in different lines: its text and what it follows."""
 
     text: str
     after: str
@@ -48,7 +48,7 @@ _Keyed = Sequence[tuple[_Key, Symbol]]
 
 
 class FormWriter:
-    """Writes forms for one grammar; ``operands`` of the corpus define what is narrow."""
+    """Writes forms for one grammar; ``operands`` of the corpus define which rules are narrow."""
 
     def __init__(self, reader: SymbolReader, operands: Iterable[tuple[int, ...]]) -> None:
         self.reader = reader
@@ -58,7 +58,7 @@ class FormWriter:
         )
 
     def form(self, given: Iterable[Sequence[Symbol]]) -> str | None:
-        """The text of a rule that reads all the lines; ``None`` where an operand has no rule."""
+        """Return the text of a rule that reads all lines; ``None`` if an operand has no rule."""
         lines = [tuple(line) for line in given]
         some = [line for line in lines if line]
         if len(some) < len(lines):
@@ -138,10 +138,11 @@ class FormWriter:
         keyed: Sequence[_Keyed],
         item: str,
     ) -> tuple[str | None, str, list[_Keyed]] | None:
-        """Return what is known if some lines end with a reserved word for the operand of a factor.
+        """Return a factor whose place some lines end with a reserved word.
 
-        These are the text of the factor in the other lines, the words, and the rests of the other
-        lines. ``None`` if a line goes on behind such a word: it is an operand like others then.
+        The result has the text of the factor in the other lines, the words, and the rests of the
+        other lines. It is ``None`` if a line continues after such a word, which is then an ordinary
+        operand.
         """
         if len(factor.symbols) > 1 or met[factor.symbols[0]][0].operand is None:
             return None
@@ -165,10 +166,10 @@ class FormWriter:
         return text, " | ".join(sorted(words)), rests
 
     def _opened(self, lines: Sequence[tuple[Symbol, ...]]) -> list[tuple[Symbol, ...]]:
-        """The lines with calls taken apart where others have brackets that are of no call.
+        """Return the lines with calls taken apart if other lines have brackets that are not calls.
 
-        ``DEFFCT INT F(X)`` stands beside ``DEFFCT INT F(X:IN)``. And a name is taken apart from
-        its index where others have one behind a type: ``EXT F(NAMED[]:IN, INT[]:IN)``.
+        ``DEFFCT INT F(X)`` occurs beside ``DEFFCT INT F(X:IN)``. A name is separated from its index
+        if others have an index after a type: ``EXT F(NAMED[]:IN, INT[]:IN)``.
         """
         signs = {
             right.text
@@ -185,7 +186,7 @@ class FormWriter:
         return [tuple(p for s in line for p in self._parts(s, signs, indices)) for line in lines]
 
     def _bracketed_words(self, symbol: Symbol) -> Iterator[str]:
-        """The bracket at the end of an operand, where what is in it has a word of no operand."""
+        """Return the bracket at the end of an operand if it contains a word that is no operand."""
         kinds = symbol.operand.kinds if symbol.operand else ()
         for start, kind in enumerate(kinds):
             if not self.rules.words_in_brackets(kind).isdisjoint(kinds[start + 1 :]):
@@ -213,7 +214,7 @@ class FormWriter:
     def _items(
         self, lines: Sequence[tuple[Symbol, ...]]
     ) -> tuple[list[tuple[Symbol, ...]], str | None] | None:
-        """The lines with lists as one symbol, and the text of a list; ``None`` without any."""
+        """Return the lines with lists as one symbol, and the text of a list, or ``None``."""
         cut = [split_at_commas(line) for line in lines]
         behind = [piece for pieces in cut for piece in pieces[1:]]
         if not behind:
@@ -246,7 +247,7 @@ class FormWriter:
     def _first_item(
         self, ahead: Sequence[tuple[Symbol, ...]], behind: Sequence[tuple[Symbol, ...]]
     ) -> str | None:
-        """The form of a first item, where many lists begin with what only some go on with."""
+        """Return the form of a first item, if many lists begin with what only some continue."""
         shapes = {tuple(s.text for s in piece) for piece in ahead}
         others = {tuple(s.text for s in piece) for piece in behind}
         if len(ahead) < MANY_LISTS or () in others or not shapes < others:
@@ -286,7 +287,7 @@ class FormWriter:
         return text if len(words) == 1 else f"({text})"
 
     def _is_covered(self, rule: str, others: Collection[str]) -> bool:
-        """Whether a rule is a choice of words each of which another of the rules reads."""
+        """Return whether a rule is a choice of words that the other rules read."""
         known = self.rules.grammar.by_name.get(rule)
         every = [a.elements for a in known.alternatives] if known and not known.is_lexer else [()]
         words = {e[0].name for e in every if len(e) == 1 and isinstance(e[0], Reference)}
@@ -297,7 +298,7 @@ class FormWriter:
         return bool(frozenset[str](others).difference({rule}).intersection(*read))
 
     def cover(self, operands: Sequence[Operand]) -> list[str] | None:
-        """The narrowest rules or tokens that read the operands together; ``None`` without any."""
+        """Return the narrowest rules or tokens that together read the operands, or ``None``."""
         names = self.rules.lexer.names
         kinds = {o.kinds for o in operands if o.kinds}
         needed = {o.rule for o in operands if o.rule}
@@ -343,14 +344,14 @@ class FormWriter:
         return self._of_values(found)
 
     def _of_values(self, found: list[str]) -> list[str]:
-        """The rules with variables for mere names: beside values a name is one of a variable."""
+        """Return the rules with variables for bare names: names among values are variables."""
         if len(found) > 1 and self._name() in found and self.variable:
             return [self.variable if rule == self._name() else rule for rule in found]
         return found
 
     @cached_property
     def variable(self) -> str | None:
-        """The narrowest rule of names and of what may follow them, and of no other value."""
+        """Return the narrowest rule of names with what may follow them, and of no other value."""
         rules, lexer = self.rules, self.rules.lexer
         others = [(k,) for k in lexer.kind_of.values() if k != rules.lexer.name_kind]
         values = [kinds for kinds in others if rules.matcher.is_operand(kinds[0])]
@@ -360,7 +361,7 @@ class FormWriter:
         return min(fitting, key=self._breadth, default=None) if rules.followed else None
 
     def _indexed(self, kinds: set[tuple[int, ...]], needed: set[str]) -> str | None:
-        """A name with what may follow it in brackets; ``None`` where operands are anything else."""
+        """Return a name with optional brackets; ``None`` if operands are anything else."""
         matcher, name = self.rules.matcher, self._name()
         behind: set[str | None] = set()
         for first, *rest in kinds:
@@ -393,13 +394,13 @@ class FormWriter:
         return found if is_constant or count <= READ_TOGETHER_SHARE * self._reads[wide] else None
 
     def _breadth(self, rule: str) -> tuple[int, ...]:
-        """What a rule reads, first of the corpus, then of what other rules are."""
+        """Return what a rule reads: operands of the corpus first, then the size of other rules."""
         usual = self.rules.usual
         inner = sum(self.rules.includes(rule, other) for other in usual)
         return self._reads[rule], inner, -self.rules.uses[rule], usual.index(rule)
 
     def _has_operator(self, kinds: Sequence[int]) -> bool:
-        """Whether an operand is names with signs between them, and more than one operand."""
+        """Return whether an operand consists of several names with signs between them."""
         tokens = [(kind, None) for kind in kinds]
         is_of_names = set(kinds[::2]) == {self.rules.lexer.name_kind}
         return is_of_names and len(self.reader.symbols(tokens, atoms=True)) > 1
@@ -408,33 +409,33 @@ class FormWriter:
         return self._name() if kind == self.rules.lexer.name_kind else self.reader.text(kind)
 
     def _name(self) -> str:
-        """What is written for a name."""
+        """Return the text for a name."""
         return self.rules.names or self.rules.lexer.name
 
 
 def is_loose(form: str, lines: Sequence[Sequence[Symbol]]) -> bool:
-    """Whether a form can have fewer operands than any of its lines, lists as short as they may be.
+    """Return whether a form allows fewer operands than any of its lines, with shortest lists.
 
-    Parts that exclude each other may then all be left out.
+    Parts that exclude each other can then all be left out.
     """
     words = frozenset[str]().union(*map(texts_of, lines))
     return _fewest(read_rule(f"form : {form} ;").alternatives, words) < min(map(_operands, lines))
 
 
 def texts_of(line: Sequence[Symbol]) -> frozenset[str]:
-    """The texts of a line's symbols, those in brackets too."""
+    """Return the texts of a line's symbols, including those in brackets."""
     inner = (texts_of(symbol.inside) for symbol in line if symbol.inside)
     return frozenset(symbol.text for symbol in line).union(*inner)
 
 
 def _operands(line: Sequence[Symbol]) -> int:
-    """The operands of a line up to its first comma, those in brackets too."""
+    """Return the operands of a line up to its first comma, including those in brackets."""
     first = split_at_commas(line)[0]
     return sum(s.is_operand if s.inside is None else _operands(s.inside) for s in first)
 
 
 def _fewest(alternatives: Iterable[Alternative], words: Set[str]) -> int:
-    """The operands of that of the alternatives which has fewest, where ``words`` are none."""
+    """Return the operands of the alternative with the fewest; ``words`` are no operands."""
     return min(sum(_fewest_of(e, words) for e in a.elements) for a in alternatives)
 
 
@@ -451,7 +452,7 @@ def _fewest_of(element: Element, words: Set[str]) -> int:
 
 
 def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
-    """The pieces of a line between its commas, at least one."""
+    """Return the pieces of a line between its commas, at least one."""
     pieces: list[list[Symbol]] = [[]]
     for symbol in line:
         if symbol.text == _COMMA:
@@ -462,7 +463,7 @@ def split_at_commas(line: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
 
 
 def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int) -> int:
-    """How many symbols at the end of a list's first piece belong to the list."""
+    """Return how many symbols at the end of a list's first piece belong to the list."""
     texts = {text for shape in shapes for text in shape}
     heads = [s.text for s in first]
     if _sketch(heads) in set(map(_sketch, shapes)):
@@ -481,12 +482,12 @@ def _suffix(first: Sequence[Symbol], shapes: set[tuple[str, ...]], longest: int)
 
 
 def _sketch(texts: Iterable[str]) -> tuple[str, ...]:
-    """A shape with any word for each word, and without what only follows operands."""
+    """Return a shape in which all words are equal, without what only follows operands."""
     return tuple("word" if text.isupper() else text for text in texts if not text.islower())
 
 
 def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[_Keyed]:
-    """The symbols of lines with what makes them the same."""
+    """Return the symbols of lines with their identities."""
     shapes = {tuple(s.text for s in line) for line in lines}
     # two operands behind a word: other lines may have another word between, and end otherwise
     declared = {s[i : i + 3] for s in shapes for i in range(len(s)) if s[i : i + 3][1:] == ("", "")}
@@ -534,9 +535,9 @@ def _keyed(lines: Sequence[Sequence[Symbol]]) -> list[_Keyed]:
 
 
 def _joined(factors: Sequence[Factor[_Key]], texts: Sequence[str], keyed: Sequence[_Keyed]) -> str:
-    """The factors in a row: what comes and goes together in the lines in one group.
+    """Return the text of consecutive factors, grouping those that occur together.
 
-    What excludes each other is a choice.
+    Factors that exclude each other become a choice.
     """
     having = [{key for key, _ in line} for line in keyed]
     present = [tuple(not keys.isdisjoint(f.symbols) for keys in having) for f in factors]
@@ -582,7 +583,7 @@ def _joined(factors: Sequence[Factor[_Key]], texts: Sequence[str], keyed: Sequen
 
 
 def _is_group(text: str) -> bool:
-    """Whether a text is one group in parentheses."""
+    """Return whether a text is one group in parentheses."""
     if not (text.startswith("(") and text.endswith(")")):
         return False
     depth = 0
@@ -596,12 +597,12 @@ def _is_group(text: str) -> bool:
 
 
 def samples_of(rules: OperandRules, sequence: Sequence[Element]) -> list[tuple[Symbol, ...]]:
-    """What elements of a rule read, as symbols: with and without each part that may be left out."""
+    """Yield what elements of a rule read, as symbols, with and without each optional part."""
     return [_grouped(rules, line) for line in _sequences(rules, sequence)]
 
 
 def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
-    """The symbols with a name and what follows it in brackets as one operand, as it is read."""
+    """Return the symbols with a name and its brackets as one operand, as they are read."""
     out: list[Symbol] = []
     names = {Operand((rules.lexer.name_kind,)), Operand((), rules.names or "")}
     samples = rules.followed
@@ -617,7 +618,7 @@ def _with_index(rules: OperandRules, symbols: Sequence[Symbol]) -> tuple[Symbol,
 def _grouped(
     rules: OperandRules, symbols: Sequence[Symbol], *, is_line: bool = True
 ) -> tuple[Symbol, ...]:
-    """The symbols with what is between two brackets as one of them, types as they are read."""
+    """Return the symbols with the contents of brackets as one symbol; types as they are read."""
     out: list[Symbol] = []
     at = 0
     kind_of = rules.lexer.kind_of
@@ -640,7 +641,7 @@ def _grouped(
 def _sequences(
     rules: OperandRules, sequence: Sequence[Element], within: frozenset[str] = frozenset()
 ) -> list[tuple[Symbol, ...]]:
-    """The samples of elements; ``within`` are rules that are not written out once more."""
+    """Yield the samples of elements; the rules in ``within`` are not expanded again."""
     lines: list[tuple[Symbol, ...]] = [()]
     for element in sequence:
         lines = [(*line, *more) for line in lines for more in _samples(rules, element, within)]

@@ -1,7 +1,7 @@
-"""A grammar as folds see it: which alternatives are lines of the language, and what is in them.
+"""The view of a grammar for folds: which alternatives are whole lines, and their elements.
 
-Some reserved words are of one kind, as ``INT`` and ``REAL`` are: those that share a rule with
-names, as the rule of types has both.
+Some reserved words are of one kind, as ``INT`` and ``REAL`` are: those in a rule together with
+names, as in the rule of types.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from recovery.proposals.grammar_profile import GrammarProfile
 class GrammarView:
     """The lines of one grammar.
 
-    ``prefixes`` are words that may be missing at the head of a line, ``types`` the words of a kind,
-    and ``kind`` is the name of the rule of these words, which need not exist yet.
+    ``prefixes`` are optional words at the beginning of a line, ``types`` the words of a kind, and
+    ``kind`` is the name of the rule of these words, which may not exist yet.
     """
 
     def __init__(

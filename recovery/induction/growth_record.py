@@ -1,7 +1,7 @@
 """The result of an automatic recovery, as a ledger and as a record.
 
-The ledger is a folder of constructs like that of the grammar in force
-(`recovery.ledger.ledger`), so it is read, shown and replayed by the same commands.
+The ledger is a folder of constructs like that of the project's grammar (`recovery.ledger.ledger`),
+so the same commands read, show and replay it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _LONGEST_EDIT = 1_000
 
 @dataclass(slots=True)
 class Growth:
-    """Steps so far: their constructs in order, the grammar after them, and the rounds as data."""
+    """The steps so far: constructs in order, the resulting grammar, and the rounds as data."""
 
     start: Grammar
     grammar: Grammar
@@ -85,9 +85,9 @@ class Growth:
 def without(
     start: Grammar, constructs: Sequence[Construct], struck: Iterable[str]
 ) -> tuple[list[Construct], list[Construct]]:
-    """The constructs that are left when some are struck out, and those that went with them.
+    """Return the constructs that remain after some are struck out, and those removed with them.
 
-    What no longer fits goes too; the numbers are given anew.
+    Constructs that no longer apply are removed, too; the numbers are assigned again.
     """
     wanted = set(struck)
     left: list[Construct] = []
@@ -109,9 +109,10 @@ def without(
 def without_some(
     start: Grammar, constructs: Sequence[Construct], count: int, seed: int
 ) -> tuple[Grammar, list[Construct]]:
-    """The grammar without ``count`` constructs drawn by a seed, and all that went.
+    """Return the grammar without ``count`` constructs drawn by a seed, and all removed constructs.
 
-    What needs one of them goes with it. Raises `ValueError` where there are not so many.
+    Constructs that depend on one of them are removed, too. Raises `ValueError` if there are too
+    few.
     """
     ids = sorted(construct.id for construct in constructs)
     left, gone = without(start, constructs, Random(seed).sample(ids, count))

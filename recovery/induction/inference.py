@@ -1,7 +1,8 @@
-"""Edits inferred from all failing lines of a kind at once: operators, brackets, statements, blocks.
+"""Infers edits from all failing lines of a kind at once: operators, brackets, statements, blocks.
 
-Each source looks at the lines from another side and writes edits that hold for many of them. None
-is believed: `recovery.induction.rounds` tries them all and takes those that prove themselves.
+Each source examines the lines from a different point of view and writes edits that apply to many of
+them. The edits are only candidates: `recovery.induction.rounds` tries all of them and keeps those
+that have evidence.
 """
 
 from __future__ import annotations
@@ -47,13 +48,13 @@ class Inference:
         self.profile = self._at.profile
 
     def inner(self) -> Iterator[Inferred]:
-        """What is missing within operands: operators, what stands in brackets."""
+        """Return edits inside operands: operators and contents of brackets."""
         operands = OperandEdits(self._at, self._forms)
         yield from operands.edits()
         yield from BracketEdits(self._at, self._forms, operands).edits()
 
     def outer(self) -> Iterator[Inferred]:
-        """What is missing of whole lines and blocks of lines."""
+        """Return edits of whole lines and blocks of lines."""
         hosts = LineHosts(self._at)
         blocks = BlockEdits(self._at, self._forms, hosts, self._blocks)
         yield from blocks.edits()

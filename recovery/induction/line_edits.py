@@ -1,4 +1,4 @@
-"""Edits that add or change a line of the grammar: statements, declarations and the like."""
+"""Edits that add or change lines of the grammar, such as statements and declarations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from recovery.tuning import ALIKE_SHARE, ALIKE_WORDS
 
 
 class LineEdits:
-    """Infers forms of lines by their first word, or first sign where they begin with a name."""
+    """Infers forms of lines by their first word, or first sign if they begin with a name."""
 
     def __init__(
         self,
@@ -64,7 +64,7 @@ class LineEdits:
             yield Inferred(f"blank lines in {rule}", (edit,), members)
 
     def _line_rules(self) -> Iterator[Inferred]:
-        """A kind of line where another one is expected."""
+        """Return edits that allow a kind of line where another one is expected."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         written_out = self.hosts.written_out
         kinds_of = sorted(self.at.profile.of_lines | written_out)
@@ -110,9 +110,9 @@ class LineEdits:
     def _families(
         self, groups: dict[tuple[tuple[str, ...], str], list[int]]
     ) -> Iterator[tuple[tuple[tuple[str, ...], str], list[int]]]:
-        """The groups, those of the same head and signs in one whose lines may be the same rules.
+        """Return the groups, joined if they have equal heads and signs and may be the same rules.
 
-        What has a sign in one place and not in another is a form of its own there.
+        Lines with a sign at different places have different forms.
         """
         done: list[tuple[set[str], str, list[int], set[str]]] = []
         for (hosts, head), members in groups.items():
@@ -131,7 +131,7 @@ class LineEdits:
     def _of_many_words(
         self, families: Sequence[tuple[tuple[tuple[str, ...], str], list[int]]]
     ) -> Iterator[Inferred]:
-        """One form for lines that begin with different words and go on alike."""
+        """Return one form for lines that begin with different words and continue alike."""
         gathered: dict[tuple[str, ...], list[tuple[str, list[int], set[tuple[str, ...]]]]]
         gathered = defaultdict(list)
         for (hosts, head), members in families:
@@ -168,7 +168,7 @@ class LineEdits:
                     )
 
     def _opened_in_group(self, number: int) -> bool:
-        """Whether a line fails within brackets that a rule of the grammar writes."""
+        """Return whether a line fails within brackets that a rule of the grammar writes."""
         index = self.at.lines[number].form.index
         opened = self.at.opened(self.at.tokens[number], index) if index else None
         if opened is None:
@@ -176,12 +176,12 @@ class LineEdits:
         return self.at.writing(number, self.at.shown(self.at.tokens[number][opened])) is not None
 
     def _is_begun(self, number: int) -> bool:
-        """Whether the grammar reads more than the first operand of a line and a sign behind it."""
+        """Return whether the grammar reads more of a line than its first operand and a sign."""
         first = self.symbols[number][0].operand
         return first is not None and self.at.lines[number].form.index > 1 + len(first.kinds)
 
     def _head(self, symbols: Sequence[Symbol]) -> str:
-        """What says which kind of line it is: its first word, behind one that may be missing."""
+        """Return the word that identifies a line: the first one after an optional prefix."""
         texts = [symbol.text for symbol in symbols[:3]]
         if symbols[0].is_operand:
             return " ".join(["_", *texts[1:2]])
@@ -236,7 +236,7 @@ class LineEdits:
     def _grown(
         self, head: str, shapes: dict[tuple[Symbol, ...], list[int]], members: Sequence[int]
     ) -> Iterator[Inferred]:
-        """An alternative that begins with the same words, so that it reads these lines too."""
+        """Return edits of an alternative with the same first words, to read these lines, too."""
         words = head.split()
         for rule, place, first in self.hosts.all_lines:
             inside = [e for e in first if not (isinstance(e, Repeat) and e.operator == "?")]
@@ -270,9 +270,9 @@ class LineEdits:
     def _one_choice(
         self, rule: str, first: Sequence[Element], shapes: dict[tuple[Symbol, ...], list[int]]
     ) -> tuple[dict[tuple[Symbol, ...], list[int]], list[tuple[Symbol, ...]]]:
-        """The shapes and what the elements of a rule read, a choice of words ahead as one symbol.
+        """Return shapes and samples of a rule, with a choice of leading words as one symbol.
 
-        What goes on behind one of the words may go on behind the others.
+        What follows one of these words may follow the others.
         """
         words = self.hosts.words_of(first[0])
         if len(words) < 2 or isinstance(first[0], Repeat):
@@ -288,7 +288,7 @@ class LineEdits:
     def _tails(
         self, rule: str, place: Address, count: int, members: Sequence[int]
     ) -> dict[Address, dict[tuple[Symbol, ...], list[int]]]:
-        """What lines go on with where elements of a rule may be all of a line, by the place."""
+        """Return by place how lines continue where elements of a rule may be a whole line."""
         *outer, first = place
         places = {(*outer, first + n) for n in range(1, count + 1)}
         found: dict[Address, dict[tuple[Symbol, ...], list[int]]] = {}
@@ -301,7 +301,7 @@ class LineEdits:
         return found
 
     def _places(self, number: int, rule: str) -> set[Address]:
-        """Where in a rule the grammar stands when a line fails."""
+        """Return the places in a rule at which the grammar is when a line fails."""
         recognizer = self.at.recognizer
         sites = recognizer.sites(self.at.state(number))
         within = (site for site in sites if recognizer.network.rule[site[0]] == rule)
@@ -309,9 +309,9 @@ class LineEdits:
 
 
 def go_on_alike(some: Set[tuple[str, ...]], others: Set[tuple[str, ...]]) -> bool:
-    """Whether two words go on alike, by the kinds of what follows each at the head of a line.
+    """Return whether two words are followed alike, by the kinds of what follows at line starts.
 
-    Of a word that always has another one ahead nothing is known.
+    Nothing is known about a word that always follows another one.
     """
     return bool(some and others) and (
         len(some & others) >= ALIKE_SHARE * min(len(some), len(others))

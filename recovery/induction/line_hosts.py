@@ -1,4 +1,4 @@
-"""The lines that a grammar writes, and the rules that a failing line could be."""
+"""The lines that a grammar contains, and the rules to which a failing line could belong."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from recovery.induction.line_symbols import LineSymbols
 
 
 class LineHosts:
-    """Where lines stand in the grammar of some failing lines."""
+    """The rules of a grammar in which some failing lines could be alternatives."""
 
     def __init__(self, at: LineSymbols) -> None:
         self.at = at
 
     @cached_property
     def leading(self) -> dict[str, int]:
-        """The words that alternatives begin with, lists of words left out, and of how many."""
+        """The words with which alternatives begin, and of how many; word lists are left out."""
         found: dict[str, int] = defaultdict(int)
         for _, _, first in self._alternatives():
             for word in self.words_of(first[0]):
@@ -28,7 +28,7 @@ class LineHosts:
 
     @cached_property
     def inner_words(self) -> frozenset[str]:
-        """The words that lines within blocks begin with."""
+        """The words with which lines within blocks begin."""
         return frozenset[str]().union(*(self.words_of(e[0]) for _, _, e in self._inner_lines()))
 
     def _alternatives(self) -> Iterator[tuple[str, int, tuple[Element, ...]]]:
@@ -54,7 +54,7 @@ class LineHosts:
         return [*outer, *self._inner_lines()]
 
     def _inner_lines(self) -> Iterator[tuple[str, Address, tuple[Element, ...]]]:
-        """The lines within blocks and at their end: rule, place of the first element, elements."""
+        """Yield the lines within blocks and at their end: rule, first index, elements."""
         end = self.at.profile.line_end
         for rule in self.at.grammar.rules:
             for address, sequence in () if rule.is_lexer else sequences(rule):
@@ -70,7 +70,7 @@ class LineHosts:
                         yield rule.name, (*address, start + 1), elements[start:stop]
 
     def is_within_line(self, element: Element) -> bool:
-        """Whether an element reads nothing with a line end in it."""
+        """Return whether an element reads nothing that contains a line end."""
         called = {e.name for e in walk(element) if isinstance(e, Reference) and not e.is_token}
         return called <= self.at.rules.within_lines
 
@@ -84,11 +84,11 @@ class LineHosts:
         return self._hosts_of[before]
 
     def has_statements(self, hosts: Sequence[str]) -> bool:
-        """Whether one of some rules gathers what is all of a line but its end."""
+        """Return whether one of some rules contains whole lines without their ends."""
         return not self._whole_lines.isdisjoint(hosts)
 
     def ending(self, host: str) -> str:
-        """What an alternative of a rule ends with: a line end, where those of the rule do."""
+        """Return the end of an alternative of a rule: a line end, if its alternatives have one."""
         profile = self.at.profile
         return f" {profile.line_end}" if profile.closing(host) else ""
 
@@ -156,7 +156,7 @@ class LineHosts:
         return frozenset(found & self.at.rules.reaches.keys())
 
     def words_of(self, element: Element) -> frozenset[str]:
-        """The words that an element is: one, or a choice of them, no name among them."""
+        """Return the words of an element that is one word or a choice of words, without names."""
         match element:
             case Reference(name=name, is_token=True) if name.isupper():
                 return frozenset({name})

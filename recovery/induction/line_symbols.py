@@ -1,4 +1,4 @@
-"""Failing lines as symbols, and where the grammar stands when each of them fails."""
+"""Failing lines as symbols, with the state of the grammar at each failure."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PREFIXES = frozenset({"+", "-", "NOT"})
 
 
 class LineSymbols:
-    """The failing lines of one grammar, ``tokens[n]`` and ``symbols[n]`` of ``lines[n]``."""
+    """The failing lines of one grammar: ``tokens[n]`` and ``symbols[n]`` of ``lines[n]``."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class LineSymbols:
         ]
 
     def _listed(self, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
-        """The symbols with reserved words as operands where they are items of a list of names."""
+        """Return the symbols with reserved words as operands if they are in a list of names."""
         name = Symbol("", Operand((self.lexer.name_kind,)))
         ends = [i for i, symbol in enumerate(symbols) if symbol.text == "','"] + [len(symbols)]
         items = {right - 1 for left, right in pairwise(ends) if right == left + 2}
@@ -76,7 +76,7 @@ class LineSymbols:
         )
 
     def known_groups(self, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
-        """The symbols with groups, where a rule is such a group, as operands of that rule."""
+        """Return the symbols with each group that a rule reads as an operand of that rule."""
         out = []
         for symbol in symbols:
             rule = self.rules.bracketed.get(symbol.text.strip("'"))
@@ -89,11 +89,11 @@ class LineSymbols:
         return tuple(out)
 
     def shown(self, token: Token) -> str:
-        """The text of a sign or a word, the name of any other kind; empty for no token."""
+        """Return the text of a sign or word, or the name of another kind; empty for no token."""
         return self.lexer.display[token[0]] if token[0] > 0 else ""
 
     def text(self, token: Token) -> str | None:
-        """What an edit writes for a word or a sign; ``None`` for what is neither."""
+        """Return the text that an edit writes for a word or sign; ``None`` for other tokens."""
         kind, word = token
         if word:
             return word
@@ -105,7 +105,7 @@ class LineSymbols:
         return f"'{shown}'" if shown != self.lexer.names[kind] else None
 
     def ends_operand(self, tokens: Sequence[Token], at: int) -> bool:
-        """Whether an operand may end right before a place."""
+        """Return whether an operand may end before an index."""
         kind, word = tokens[at - 1]
         return not word and (
             (kind > 0 and self.rules.matcher.is_operand(kind))
@@ -113,7 +113,7 @@ class LineSymbols:
         )
 
     def begins_operand(self, tokens: Sequence[Token], at: int) -> bool:
-        """Whether an operand may begin at a place."""
+        """Return whether an operand may begin at an index."""
         kind, word = tokens[at]
         if word or kind <= 0:
             return False
@@ -126,17 +126,17 @@ class LineSymbols:
         )
 
     def state(self, number: int) -> State:
-        """Where the grammar stands when a line fails."""
+        """Return the state of the recogniser at the failure of a line."""
         form = self.lines[number].form
         before = self.recognizer.restore(form.before)
         return self.recognizer.run(before, form.kinds[: form.index])[0]
 
     def expected(self, number: int) -> frozenset[int]:
-        """The kinds of token that could come where a line fails."""
+        """Return the kinds of token that are expected where a line fails."""
         return self.recognizer.expected(self.state(number))
 
     def opened(self, tokens: Sequence[Token], index: int) -> int | None:
-        """The place of the innermost bracket that is open at a token."""
+        """Return the index of the innermost bracket that is open at a token."""
         depth = 0
         for place in range(min(index, len(tokens)) - 1, -1, -1):
             shown = self.shown(tokens[place])
@@ -149,7 +149,7 @@ class LineSymbols:
         return None
 
     def writing(self, number: int, sign: str) -> str | None:
-        """The innermost rule at work that writes the bracket."""
+        """Return the innermost active rule that writes the bracket."""
         for rule in reversed(self.contexts[number].rules):
             for alternative in self.grammar.by_name[rule].alternatives:
                 if any(opening == sign for opening, _, _ in bracket_pairs(alternative)):

@@ -1,7 +1,7 @@
-"""Lists that are never long are bounded, where many are seen.
+"""Bounds the length of lists that are never long, if there are many examples.
 
-A form is written from the lines that fail, few of which may have a list. So it is decided at the
-end, over all files that are read.
+A form is written from failing lines, few of which may contain a list. Therefore this is decided at
+the end, over all files that can be read.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def bounded_lists(
 
 
 def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
-    """How many items stand behind the first one, by what is repeated: alike in all of a rule."""
+    """Return the numbers of items after the first one, by repeated element, over a whole rule."""
     found: dict[str, Counter[int]] = defaultdict(Counter)
     for address, sequence in () if rule.is_lexer else sequences(rule):
         for place, element in enumerate(sequence.elements, 1):
@@ -58,7 +58,7 @@ def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
 
 
 def _is_list(element: Element) -> bool:
-    """Whether an element is ``(',' item)*``."""
+    """Return whether an element is ``(',' item)*``."""
     match element:
         case Repeat(item=Group(alternatives=(sequence,)), operator="*"):
             return isinstance(sequence.elements[0], Literal) and sequence.elements[0].text == ","

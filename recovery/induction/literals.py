@@ -1,7 +1,7 @@
-"""Forms of literals that the lexer cuts apart: ``1.5E-3`` read as a number, a name, a sign.
+"""Forms of literals that the lexer splits: ``1.5E-3`` read as a number, a name, a sign.
 
-No two operands touch. Where a literal and a name do, they are one literal; its characters by class
-make a chain as the symbols of a line do.
+Two operands are never adjacent without a blank. If a literal and a name are, they are one literal;
+its characters by class form a chain as the symbols of a line do.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ _Class = tuple[str, str]
 def split_literals(
     lines: Iterable[tuple[str, int]], lexer: Lexer
 ) -> tuple[AddAlternative, frozenset[int], tuple[str, ...]] | None:
-    """The alternative that reads the split literals of lines, the files with any, the literals.
+    """Return the alternative that reads split literals of lines, the files with any, the literals.
 
-    ``lines`` come with the number of the file that has them. ``None`` where none is split.
+    Each of ``lines`` comes with the number of its file. The result is ``None`` without split
+    literals.
     """
     files: set[int] = set()
     owners: Mapping[str, list[str]] = defaultdict(list)

@@ -1,4 +1,4 @@
-"""Words that are keywords in one place and names in all others: alternatives of a rule of names."""
+"""Words that are keywords in one place and names elsewhere: alternatives of a rule of names."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ NAMES = "name"
 
 
 def softened(edits: Iterable[Edit], soft: Collection[str], names: str | None) -> tuple[Edit, ...]:
-    """The edits with those words that they reserve and that are ``soft`` left names in a rule."""
+    """Return the edits with those reserved words that are ``soft`` added to a rule of names."""
     tokens = [e for e in edits if isinstance(e, AddToken)]
     more = (AddAlternative(names, e.name) for e in tokens if names and e.name in soft)
     return (*tokens, *more, *(e for e in edits if not isinstance(e, AddToken)))
 
 
 def names_kept(step: Taken, used: Collection[str], names: str | None) -> Taken:
-    """The step with words that it reserves and lines use left names too."""
+    """Return the step with the words that it reserves, and that lines use, added to the names."""
     words = [e.name for e in step.edits if isinstance(e, AddToken) and e.name in used]
     more = tuple(AddAlternative(names, word) for word in words if names)
     return replace(step, edits=(*step.edits, *(e for e in more if e not in step.edits)))
 
 
 def with_names(grammar: Grammar, token: str) -> Taken:
-    """A step that gives names a rule of their own; ``token`` is that of names."""
+    """Return a step that introduces a rule of names; ``token`` is the token of names."""
     edits: list[Edit] = []
     rules = [rule for rule in grammar.rules if not rule.is_lexer]
     for rule in rules:

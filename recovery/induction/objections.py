@@ -1,7 +1,7 @@
-"""Objections to edits: they do not fit, or accept what must stay rejected.
+"""Objections to edits: they conflict, or accept programs that must be rejected.
 
-That are written negatives; and lines that can be read, with one token lost or doubled, where an
-edit lets more of them pass than lines have shown it: a broken file teaches such forms.
+These programs are written negatives, and readable lines with one token lost or doubled: an edit
+must not accept more of those than lines have shown, as broken files suggest such forms.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from recovery.tuning import GAIN_PER_NEGATIVE
 
 @dataclass(frozen=True)  # without slots, as it keeps what its recogniser reads
 class EditReview:
-    """Reviews edits of the grammar of a recogniser by the negatives that are ``rejected``.
+    """Reviews edits of a recogniser's grammar with the negatives that are ``rejected``.
 
-    ``reserved_in`` gives the words of a line that cannot be names (`recovery.language.Language`),
+    ``reserved_in`` returns the words of a line that cannot be names (`recovery.language.Language`),
     ``texts`` are programs that the recogniser reads.
     """
 
@@ -42,10 +42,10 @@ class EditReview:
         gain: float = 0.0,
         most_damaged: float = math.inf,
     ) -> str:
-        """Why edits are not to be taken; empty where nothing speaks against them.
+        """Return why edits must not be accepted; empty without an objection.
 
-        ``grammar`` has edits since, so that not all of those that were tried ``alone`` are left; an
-        edit of more ``gain`` may accept more. Of the lines of the texts, each with one token lost
+        ``grammar`` contains later edits, so some of the edits tried ``alone`` may be gone; an edit
+        with more ``gain`` may accept more negatives. Of the lines of the texts with one token lost
         or doubled, it may accept ``most_damaged`` more.
         """
         try:
@@ -91,10 +91,10 @@ class EditReview:
         return frozenset(found)
 
     def _is_read_anew(self, wider: Recognizer, negative: Negative) -> bool:
-        """Whether a negative was rejected at the line that is wrong, all words of it known.
+        """Return whether a negative was rejected at its wrong line, with all words of it known.
 
-        One that was rejected at another line has shown nothing about the wrong one so far; nor has
-        one that misuses a word which both grammars take for a name.
+        A negative that was rejected at another line says nothing about the wrong line yet; nor does
+        one that misuses a word which both grammars read as a name.
         """
         if negative.line is None:
             return True

@@ -1,4 +1,4 @@
-"""Edits of what operands are: operators, names that are reserved words, what is in brackets."""
+"""Edits of operands: operators, names that are reserved words, contents of brackets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from recovery.tuning import LEVEL_SYMBOLS
 
 
 class OperandEdits:
-    """Infers what may be an operand; ``operators`` and ``operator_lines`` are those it finds."""
+    """Infers what may be an operand; it sets ``operators`` and ``operator_lines``."""
 
     def __init__(self, at: LineSymbols, forms: SupportedForms) -> None:
         self.at = at
@@ -26,7 +26,7 @@ class OperandEdits:
         self.operators: set[str] = {f"'{sign}'" for sign in PREFIXES}
 
     def edits(self) -> Iterator[Inferred]:
-        """All of them; what is between the brackets of a rule is sought behind these."""
+        """Return all edits of operands; contents of brackets are examined after the others."""
         yield from self._between_operands()
         yield from self._words_as_names()
         yield from self._words_as_types()
@@ -80,7 +80,7 @@ class OperandEdits:
                 prefix[text].append(number)
 
     def _as_infix(self, text: str) -> Iterator[tuple[tuple[Edit, ...], int]]:
-        """The edits for each level of operators, and the place of that level on the ladder."""
+        """Return the edits for each level of operators, and its index in the ladder."""
         words = self.forms.reserving(text)
         is_word = text[0] != "'"
         for level, rule in enumerate(self.at.rules.ladder):
@@ -151,7 +151,7 @@ class OperandEdits:
                 yield Inferred(title, edits, every)
 
     def _words_as_types(self) -> Iterator[Inferred]:
-        """Reserved words ahead of a name, where a rule gives a choice of words and names."""
+        """Return reserved words in front of a name, if a rule has a choice of words and names."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         lexer, choices = self.at.lexer, self.at.rules.word_choices
         for number, line in enumerate(self.at.lines):
@@ -168,7 +168,7 @@ class OperandEdits:
             yield Inferred(f"{word} as {rule}", edits, tuple(members), is_strict=True)
 
     def _name_places(self, number: int) -> Iterator[tuple[str, Address]]:
-        """The places of names, none in operands, where a line fails."""
+        """Return the indices of names outside operands at which a line fails."""
         recognizer, rules = self.at.recognizer, self.at.rules
         names = {rules.names, self.at.lexer.name}
         others = {*names, *rules.recursive}
@@ -180,7 +180,7 @@ class OperandEdits:
                     yield rule.name, place
 
     def _operand_forms(self) -> Iterator[Inferred]:
-        """What stands in brackets of its own where an operand can be."""
+        """Return the contents of brackets that stand alone where an operand is possible."""
         found: dict[str, list[int]] = defaultdict(list)
         name = self.at.lexer.name_kind
         for number, line in enumerate(self.at.lines):

@@ -1,8 +1,8 @@
-"""Rounds: read the corpus, infer edits from failures, keep those that hold, repeat.
+"""Rounds of a growth: read the corpus, infer edits from failures, keep those that hold, repeat.
 
-Several edits are taken in a round. Each is first tried on the lines it was inferred from; then the
-most useful are looked at one by one. Refused are those that rest on too little, that accept a
-program which must stay rejected, and that lose lines which could be read.
+A round accepts several edits. Each is first tried on the lines from which it was inferred; then the
+most useful ones are examined one by one. Edits are refused if they have too little evidence, accept
+a program that must be rejected, or lose lines that could be read.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ _Scored = tuple[float, Inferred, frozenset[int]]
 
 
 class Induction:
-    """Grows a grammar from the files it is shown; others are held out and only read."""
+    """Grows a grammar from the shown files; held-out files are only read."""
 
     def __init__(
         self,
@@ -153,7 +153,7 @@ class Induction:
         *,
         inner: bool,
     ) -> tuple[list[Taken], list[Refused]]:
-        """What is taken and what refused, of what is inferred from the lines that fail."""
+        """Return accepted and refused edits among those inferred from the failing lines."""
         recognizer = review.recognizer
         keywords = self._words(recognizer, failures, least)
         if inner:
@@ -207,7 +207,7 @@ class Induction:
     def _words(
         self, recognizer: Recognizer, failures: Failures, least: tuple[int, int]
     ) -> WouldBeKeywords:
-        """The words that the files have as keywords; worked out anew for another lexer."""
+        """Return the keywords of the files; computed again for another lexer."""
         lexer = recognizer.lexer
         if self._corpus is None:
             self._corpus = CorpusLines(self.shown.files, lexer)
@@ -251,7 +251,7 @@ class Induction:
         least: tuple[int, int],
         explained: Set[LinePattern],
     ) -> tuple[list[Taken], list[Refused]]:
-        """The edits that fit together and each deserve it."""
+        """Return the edits that are compatible and each have enough evidence."""
         grammar = self.grammar
         operands = OperandRules(review.recognizer).recursive
         taken: list[Taken] = []
@@ -349,7 +349,7 @@ class Induction:
     def _with_literals(
         self, failures: Failures, recognizer: Recognizer, least: int
     ) -> Taken | None:
-        """A step that gives literals a form that the lexer cuts apart; ``None`` without any."""
+        """Return a step for literals that the lexer splits; ``None`` without such literals."""
         lines: list[tuple[str, int]] = []
         for place, (file, of_file) in enumerate(zip(self.shown.files, failures, strict=True)):
             source = source_lines(file.text) if of_file else []
@@ -375,13 +375,13 @@ class Induction:
 
 
 def _size(edit: Edit) -> int:
-    """How many symbols an edit writes; what may come any number of times counts thrice more."""
+    """Return the number of symbols that an edit writes; an unbounded part counts four times."""
     text = getattr(edit, "text", "")
     return len(text.split()) + UNBOUNDED_SYMBOLS * len(re.findall(r"[)\w][*+]", text))
 
 
 def _adds_form(edits: Sequence[Edit]) -> bool:
-    """Whether edits add a form rather than let one read more."""
+    """Return whether edits add a form, instead of extending one."""
     return any(isinstance(edit, AddAlternative) for edit in edits)
 
 
@@ -392,7 +392,7 @@ def _led_by(word: str, failures: Sequence[Failure]) -> int:
 def _line_gain(
     trial: EditTrial, found: Inferred, table: FailingLines
 ) -> tuple[float, frozenset[int]]:
-    """What edits do for the lines they were inferred from, in files, and for which."""
+    """Return the gain of edits on the lines from which they were inferred, and these lines."""
     result = trial.result(found.edits, found.lines)
     if found.is_strict:  # a line that fails further on says little for what reads so much
         return table.weight(result.mended), result.mended

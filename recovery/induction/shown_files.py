@@ -1,4 +1,4 @@
-"""The files that a growth is shown: how they read under a grammar, and what a step would lose."""
+"""The shown files of a growth: how they read under a grammar, and what a step would lose."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ Failures = Sequence[Sequence[Failure]]
 
 
 class ShownFiles:
-    """Reads the files; what was read under the last few grammars is kept."""
+    """Reads the files; results for the last few grammars are cached."""
 
     def __init__(self, files: Sequence[CorpusFile]) -> None:
         self.files = files
         self._read: dict[str, tuple[FailureFinder, Failures]] = {}
 
     def failures(self, grammar: Grammar) -> tuple[FailureFinder, Failures]:
-        """What finds failures under a grammar, and those of all files."""
+        """Return the failure finder of a grammar, and the failures of all files."""
         known = self._read.pop(grammar.sha256, None)
         if known is None:
             finder = FailureFinder(Recognizer(grammar))
@@ -40,10 +40,10 @@ class ShownFiles:
     def kept(
         self, grammar: Grammar, taken: Sequence[Taken], names: str | None
     ) -> tuple[list[Taken], list[Refused]]:
-        """The steps without those under which a file fails earlier than it did, and these.
+        """Return the steps without those under which a file fails earlier than before, and these.
 
-        A word of a step that lines use as a name is left one in the rule of ``names`` before, if
-        more files show the step than have these lines.
+        A word of a step that lines use as a name is added to the rule of ``names`` first, if more
+        files show the step than have these lines.
         """
         before = self.failures(grammar)[1]
         after = self.failures(apply(grammar, joined(taken)))[1]
@@ -86,14 +86,14 @@ class ShownFiles:
         return kept, lost
 
     def gains(self, grammar: Grammar, taken: Sequence[Taken]) -> bool:
-        """Whether with the steps more files parse, or as many and fewer lines fail."""
+        """Return whether the steps let more files parse, or as many with fewer failing lines."""
         before, after = self.failures(grammar)[1], self.failures(apply(grammar, joined(taken)))[1]
         return _standing(after) > _standing(before)
 
     def _is_outvoted(self, places: Sequence[int], step: Taken) -> bool:
-        """Whether files are of one origin, and a step is shown by more origins and files.
+        """Return whether files have one origin, and more origins and files show a step.
 
-        As many origins will do for words with which lines of their own begin, and places for files.
+        As many origins suffice for words that begin their own lines, and places for files.
         """
         origins = frozenset[str]().union(*(self.files[p].origins for p in places))
         words = {edit.name for edit in step.edits if isinstance(edit, AddToken)}
@@ -105,15 +105,15 @@ class ShownFiles:
 
 
 def reading(failures: Failures) -> Reading:
-    """How many files parse and how many lines fail."""
+    """Return how many files parse and how many lines fail."""
     return Reading(sum(not found for found in failures), len(failures), sum(map(len, failures)))
 
 
 def _first(failures: Sequence[Failure]) -> float:
-    """The first line that fails: those before it are read for certain, others in places guessed."""
+    """Return the first failing line; earlier lines are certainly read, later places are guessed."""
     return failures[0].line if failures else math.inf
 
 
 def _standing(failures: Failures) -> tuple[int, int]:
-    """How far files are read, more is better: those that parse, then lines that fail, negated."""
+    """Return how well files are read, more is better: parsing files, then minus failing lines."""
     return sum(not found for found in failures), -sum(map(len, failures))

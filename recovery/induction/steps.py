@@ -1,4 +1,4 @@
-"""Steps of a growth: edits accepted or refused, their evidence, and how files then parse."""
+"""The steps of a growth: accepted and refused edits, their evidence, and how files then parse."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit
 
 @dataclass(frozen=True, slots=True)
 class Inferred:
-    """Edits, why they were written, and the lines they were written for.
+    """Edits, their reason, and the lines from which they were inferred.
 
-    Those that are ``is_strict`` read so much that they may accept nothing which must be rejected.
-    ``breadth`` is how much more they read than others for the same lines, in symbols of a rule.
+    Edits that are ``is_strict`` read so much that they must not accept any program that must be
+    rejected. ``breadth`` is how much more they read than others for the same lines, in symbols of a
+    rule.
     """
 
     title: str
@@ -26,7 +27,7 @@ class Inferred:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What speaks for edits: files and origins with lines that they mend, and up to ten places."""
+    """The evidence for edits: files and origins with lines that they repair, and some places."""
 
     files: int
     origins: int
@@ -36,7 +37,7 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """A step of the growth: edits, why, and on what evidence."""
+    """A step of the growth: edits, reason and evidence."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -45,7 +46,7 @@ class Taken:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """Edits that were tried and not taken, with the reason."""
+    """Edits that were tried and refused, with the reason."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -64,7 +65,7 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One round: how the files read before it, what it took and what it refused."""
+    """One round: how the files read before it, and its accepted and refused edits."""
 
     shown: Reading
     held: Reading
@@ -73,7 +74,7 @@ class Round:
 
 
 def joined(steps: Sequence[Taken]) -> list[Edit]:
-    """The edits of all steps; what two of them reserve or add alike comes once."""
+    """Return the edits of all steps, without duplicates."""
     found: list[Edit] = []
     for edit in (edit for step in steps for edit in step.edits):
         if not (isinstance(edit, AddToken | AddAlternative) and edit in found):

@@ -1,4 +1,4 @@
-"""Forms that enough origins show, and what they cost a grammar."""
+"""Forms that enough origins show, and their cost for a grammar."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
 
 class SupportedForms:
-    """Writes forms of failing lines in which all neighbours are such in enough origins."""
+    """Writes forms of failing lines in which every pair of neighbours occurs in enough origins."""
 
     def __init__(self, at: LineSymbols, origins: Sequence[Collection[str]], least: int = 1) -> None:
         """``origins[n]`` are those that have line ``n``.
@@ -34,10 +34,10 @@ class SupportedForms:
         old: Sequence[tuple[Symbol, ...]] = (),
         least: int = 1,
     ) -> Iterator[str]:
-        """Forms of ``old`` shapes and these: all, those that recur, those whose words recur.
+        """Return forms of ``old`` shapes and these: of all, of recurring ones, of recurring words.
 
-        One odd line must not spoil the form, nor one origin: neighbours are such in ``least``, if
-        that is more than is asked of all forms and so many have the shapes.
+        One odd line must not spoil a form, nor one origin: pairs of neighbours must occur in
+        ``least`` origins, if that is more than all forms need and as many origins have the shapes.
         """
         having = {shape: self.origins_of(numbers) for shape, numbers in shapes.items()}
         least = min(least, len(frozenset[str]().union(*having.values())))
@@ -57,7 +57,7 @@ class SupportedForms:
         yield from dict.fromkeys(t for t, some in found if t and not is_loose(t, some))
 
     def origins_of(self, numbers: Iterable[int]) -> frozenset[str]:
-        """Those that have one of some lines."""
+        """Return the origins that have one of some lines."""
         return frozenset[str]().union(*(self._origins[n] for n in numbers))
 
     def supported(
@@ -66,7 +66,7 @@ class SupportedForms:
         old: Sequence[tuple[Symbol, ...]] = (),
         least: int = 0,
     ) -> list[tuple[Symbol, ...]]:
-        """Those in which all neighbours are such in enough origins, or in an ``old`` shape.
+        """Return shapes whose neighbours all occur in enough origins, or in an ``old`` shape.
 
         ``shapes`` come with the origins that have them.
         """
@@ -81,7 +81,7 @@ class SupportedForms:
         return [shape for shape in shapes if pairs[shape] <= enough]
 
     def pairs(self, symbols: Sequence[Symbol], group: str = "") -> Iterator[tuple[str, ...]]:
-        """What stands beside what, in groups in brackets too; operands by their sort."""
+        """Yield adjacent symbols, including those in brackets; operands by their sort."""
         for left, right in pairwise(["", *map(self.finer_sort, symbols), ""]):
             yield group, left, right
         for symbol in symbols:
@@ -89,13 +89,13 @@ class SupportedForms:
                 yield from self.pairs(symbol.inside, f"{group}{symbol.text}")
 
     def sort(self, symbol: Symbol) -> str:
-        """A symbol by its text, an operand by the bracket it ends with."""
+        """Return the sort of a symbol: its text, or for an operand the bracket at its end."""
         kinds = symbol.operand.kinds if symbol.operand else ()
         shown = self.at.shown((kinds[-1], None)) if kinds else ""
         return symbol.text or (shown if shown in BRACKETS.values() else "_")
 
     def finer_sort(self, symbol: Symbol) -> str:
-        """The sort of a symbol; operands by their rule, and by whether they begin with a name."""
+        """Return a finer sort: operands by their rule, and whether they begin with a name."""
         if symbol.operand is None or symbol.operand.rule:
             return symbol.text or (symbol.operand.rule if symbol.operand else "")
         first = symbol.operand.kinds[0]
@@ -103,7 +103,7 @@ class SupportedForms:
         return "name" if is_name else self.sort(symbol)
 
     def reserving(self, *texts: str) -> tuple[Edit, ...]:
-        """The edits that reserve the words in texts of rules that the grammar lacks."""
+        """Return the edits that reserve the words in texts of rules that the grammar lacks."""
         found = {w for text in texts for w in WORD.findall(re.sub(r"'[^']*'", " ", text))}
         words = sorted(w for w in found if w not in self.at.grammar.by_name)
         lists = [
@@ -115,7 +115,7 @@ class SupportedForms:
         return (*map(AddToken, words), *entered)
 
     def lost(self, old: Sequence[Element], text: str) -> int:
-        """What a text costs for the rules that the old elements call and it does not."""
+        """Return the cost of a text for rules that the old elements call and it does not."""
         written = set(re.findall(r"\w+", text))
         called = {
             e.name for o in old for e in walk(o) if isinstance(e, Reference) and not e.is_token
@@ -127,7 +127,7 @@ class SupportedForms:
 
 
 def optional(text: str) -> str:
-    """A text that may be missing; what may be already stays as it is."""
+    """Return a text as optional; unchanged if it is optional already."""
     if not re.fullmatch(r"\S+", text):
         return f"({text})?"
     if text[-1] == "+":

@@ -1,7 +1,7 @@
-"""Lines as symbols: words and signs as they are, operands as one symbol each, brackets by pairs.
+"""Lines as symbols: words and signs, operands as one symbol each, and groups in brackets.
 
-An operand is what a rule of operands reads, as long as possible; which rules these are the grammar
-says. What no rule reads yet stays words, signs and groups in brackets.
+An operand is the longest sequence that a rule of operands reads; the grammar determines which rules
+these are. Everything that no rule reads yet remains words, signs and groups in brackets.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Token = tuple[int, str | None]
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """What was read as an operand: its kinds of token, or a rule that the grammar has there."""
+    """The tokens that were read as an operand, or a rule that the grammar has at that place."""
 
     kinds: tuple[int, ...] = ()
     rule: str = ""
@@ -38,9 +38,9 @@ class Operand:
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A word or sign with the ``text`` it has in a rule, an operand, or a group in brackets.
+    """A word or sign with its ``text`` in a rule, an operand, or a group in brackets.
 
-    The ``inside`` of a group are the symbols between its brackets, ``text`` is the opening one.
+    For a group, ``inside`` are the symbols between its brackets, and ``text`` is the opening one.
     """
 
     text: str
@@ -49,12 +49,12 @@ class Symbol:
 
     @property
     def is_operand(self) -> bool:
-        """Whether it stands for an operand."""
+        """Whether it is an operand."""
         return self.operand is not None
 
 
 class OperandRules:
-    """Which rules of a grammar read operands."""
+    """The rules of a grammar that read operands."""
 
     def __init__(self, recognizer: Recognizer) -> None:
         self.grammar = recognizer.grammar
@@ -72,7 +72,7 @@ class OperandRules:
 
     @cached_property
     def names(self) -> str | None:
-        """The rule of all names, where there is one: the only rule that has the token of names."""
+        """The rule of all names, if there is one: the only rule with the token of names."""
         having = [
             rule.name
             for rule in self.grammar.rules
@@ -102,13 +102,13 @@ class OperandRules:
 
     @cached_property
     def named_words(self) -> frozenset[str]:
-        """The tokens that are names: that of names, and words that the rule of names has."""
+        """The tokens that are names: the token of names, and words in the rule of names."""
         words = Vocabulary(self.recognizer).words_of(self.names) if self.names else frozenset()
         return words | {self.lexer.name}
 
     @cached_property
     def type_words(self) -> frozenset[str]:
-        """Words of which some rule gives a choice beside names."""
+        """The words that some rule offers as an alternative to names."""
         return frozenset[str]().union(*self.word_choices.values())
 
     @cached_property
@@ -124,7 +124,7 @@ class OperandRules:
 
     @cached_property
     def recursive(self) -> frozenset[str]:
-        """The largest set of rules within a line that call each other: those of expressions."""
+        """The largest set of mutually recursive rules within a line: those of expressions."""
         groups = {
             frozenset(o for o in called & self.within_lines if name in self.reaches[o])
             for name, called in self.reaches.items()
@@ -134,7 +134,7 @@ class OperandRules:
 
     @cached_property
     def widest(self) -> str | None:
-        """The rule of all operands: of those that call each other the one most used outside."""
+        """The rule of all operands: the recursive rule that other rules use most."""
         uses = {
             name: sum(
                 name in called
@@ -149,7 +149,7 @@ class OperandRules:
 
     @cached_property
     def ladder(self) -> tuple[str, ...]:
-        """The rules that an operand may be all of, from the widest on: its levels of operators."""
+        """The rules that alone can be an operand, from the widest down: the levels of operators."""
         found: list[str] = [self.widest] if self.widest else []
         for name in found:
             found += [n for n in self.alone(name) if n not in found]
@@ -163,7 +163,7 @@ class OperandRules:
                 yield needed[0].name
 
     def gathers(self, name: str, some: Collection[str]) -> bool:
-        """Whether the levels of operands that a rule calls are some, each an alternative."""
+        """Return whether the operand levels that a rule calls are exactly some, one each."""
         for alternative in self.grammar.by_name[name].alternatives:
             called = {e.name for e in walk(alternative) if isinstance(e, Reference)}
             levels = called.intersection(self.ladder)
@@ -173,12 +173,12 @@ class OperandRules:
         return True
 
     def includes(self, wide: str, narrow: str) -> bool:
-        """Whether a rule may consist of another one."""
+        """Return whether a rule may consist of another one."""
         return narrow == wide or narrow in self._consisting.get(wide, ())
 
     @cached_property
     def _consisting(self) -> Mapping[str, frozenset[str]]:
-        """The rules that each rule may consist of."""
+        """The rules of which each rule may consist."""
         alone = {name: set(self.alone(name)) for name in self._called}
         return {name: frozenset(reached(alone, name)) for name in alone}
 
@@ -188,9 +188,10 @@ class OperandRules:
 
     @cached_property
     def usual(self) -> tuple[str, ...]:
-        """Rules that may be written for an operand: those that other places use, in their order.
+        """The rules that may be written for an operand: those that are used elsewhere, in order.
 
-        None that a reserved word begins which is neither a value nor a type: that is a statement.
+        Rules that begin with a reserved word which is neither a value nor a type are statements and
+        are left out.
         """
         inner = self.recursive - {self.widest}
         begun = [
@@ -209,7 +210,7 @@ class OperandRules:
 
     @cached_property
     def uses(self) -> Mapping[str, int]:
-        """How many rules use a rule, levels of operators left out."""
+        """The number of rules that use a rule, not counting levels of operators."""
         return {
             name: sum(
                 name in called for rule, called in self._called.items() if rule not in self.ladder
@@ -219,7 +220,7 @@ class OperandRules:
 
     @cached_property
     def bracketed(self) -> Mapping[str, str]:
-        """The rule that is a pair of brackets and what is between, by the opening one."""
+        """The rules that are a pair of brackets with contents, by opening bracket."""
         found: dict[str, str] = {}
         for name in self._called:  # in the order of the grammar
             if name in self.within_lines and len(self.grammar.by_name[name].alternatives) == 1:
@@ -241,7 +242,7 @@ class OperandRules:
 
     @cached_property
     def followed(self) -> Mapping[str, Operand]:
-        """An example of a name with each rule of ``following``, by the rule and by its sign."""
+        """Examples of a name with each rule of ``following``, by the rule and by its sign."""
         lexer = self.recognizer.lexer
         found: dict[str, Operand] = {}
         for opening, rule in self.following.items():
@@ -274,7 +275,7 @@ class OperandRules:
         return {opening: frozenset(kinds) for opening, kinds in found.items()}
 
     def is_part(self, rule: str) -> bool:
-        """Whether a rule is a part of one other rule and of nothing else."""
+        """Return whether a rule is used by one other rule only."""
         return rule not in self.ladder and sum(rule in c for c in self._called.values()) == 1
 
     @cached_property
@@ -295,7 +296,7 @@ def _is_optional(element: Element) -> bool:
 
 
 def operands_of(lines: Iterable[tuple[Symbol, ...]]) -> list[tuple[int, ...]]:
-    """The distinct operands of lines and of the groups in them, as kinds of token."""
+    """Return the distinct operands of lines and of their groups, as kinds of token."""
     found: dict[tuple[int, ...], None] = {}
     todo = list(lines)
     for symbols in todo:
@@ -341,9 +342,9 @@ class SymbolReader:
         self._type_kinds = frozenset(filter(self.lexer.is_keyword, rules.type_kinds))
 
     def symbols(self, tokens: Sequence[Token], *, atoms: bool = False) -> tuple[Symbol, ...]:
-        """The symbols of tokens, which are a line or part of one.
+        """Return the symbols of the tokens of a line or of a part of one.
 
-        With ``atoms`` no operand has operators: ``X -1`` are two then.
+        With ``atoms``, operands have no operators: ``X -1`` is two operands then.
         """
         out: list[Symbol] = []
         at = 0
@@ -371,7 +372,7 @@ class SymbolReader:
         return tuple(out)
 
     def _group(self, text: str, tokens: Sequence[Token]) -> Symbol:
-        """A group in brackets; the rule that reads it, where that only follows operands."""
+        """Return a group in brackets, with the rule that reads it if it only follows operands."""
         rule = self.rules.bracketed.get(self.lexer.display[tokens[0][0]])
         kinds = tuple(kind for kind, _ in tokens)
         if rule and rule not in self.rules.ladder and rule in self.rules.matcher.rules_for(kinds):
@@ -380,7 +381,7 @@ class SymbolReader:
         return Symbol(text, None, self.symbols(tokens[1:-1], atoms=True))
 
     def text(self, kind: int) -> str:
-        """What a rule writes for a token."""
+        """Return what a rule writes for a token."""
         if kind <= 0:
             return UNKNOWN
         shown = self.lexer.display[kind]
@@ -390,7 +391,7 @@ class SymbolReader:
     def _operand(
         self, tokens: Sequence[Token], at: int, before: Sequence[Symbol], *, atoms: bool
     ) -> int:
-        """How many tokens from a place are an operand; 0 where none begins there."""
+        """Return how many tokens from an index are an operand; 0 if none begins there."""
         kind = tokens[at][0]
         if kind <= 0:
             return 0
@@ -409,7 +410,7 @@ class SymbolReader:
         return self._longest_of(tuple(k for k, _ in tokens[at:end]), atoms=atoms)
 
     def is_value(self, kind: int) -> bool:
-        """Whether a word is a value or leads one, as TRUE and NOT do, and no name."""
+        """Return whether a word is a value or begins one, as TRUE and NOT do, and is no name."""
         rule, matcher = self.rules.widest, self.rules.matcher
         if self.rules.names and self.rules.names in matcher.rules_for((kind,)):
             return False
@@ -433,7 +434,7 @@ class SymbolReader:
         return known
 
     def closer(self, tokens: Sequence[Token], at: int) -> int | None:
-        """The place of the bracket that closes the one at a place, if there are both."""
+        """Return the index of the closing bracket for the one at an index, if there is one."""
         opening = self.lexer.display[tokens[at][0]] if tokens[at][0] > 0 else ""
         if opening not in BRACKETS:
             return None

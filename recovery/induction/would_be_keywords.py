@@ -1,10 +1,10 @@
 """Names in a corpus that are keywords missing from the grammar, decided over all lines.
 
-A name is meant as a keyword where no name can be: at the head of a line with an operand behind it,
-or alone; beside an operand with no sign between. The last says only that one of the two is one.
-What distinguishes them is their surroundings: in the same surroundings a language has few keywords
-and any number of names. So only surroundings with few different words count, and a word has to be
-found in such surroundings nearly always, in several origins.
+A name is meant as a keyword where no name is possible: at the beginning of a line before an
+operand, or alone on a line; or beside an operand without a sign between. The last case only says
+that one of the two is a keyword. Keywords and names are distinguished by their context: in one
+context a language has few keywords, but any number of names. So only contexts with few different
+words count, and nearly all uses of a word must be in such contexts, in several origins.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def names_read(
 
 
 class WouldBeKeywords:
-    """The words that the lines of a corpus have as keywords, under one lexer."""
+    """The words that the lines of a corpus use as keywords, under one lexer."""
 
     def __init__(
         self,
@@ -186,10 +186,9 @@ class WouldBeKeywords:
         )
 
     def _of_types(self) -> frozenset[str]:
-        """Names of types: between a word and a last operand, where others have a type.
+        """Return names of types: between a word and a last operand, where others have a type.
 
-        None begins a line or is ahead of two operands. And the names behind them, of what they
-        declare.
+        They begin no line and do not precede two operands. The names after them are returned, too.
         """
         typed: set[tuple[str, str]] = set()
         found: dict[tuple[str, str], set[str]] = defaultdict(set)
@@ -239,11 +238,11 @@ class WouldBeKeywords:
         )
 
     def _is_word(self, lexeme: str) -> bool:
-        """Whether the grammar reserves a word, or the corpus has it as a keyword."""
+        """Return whether the grammar reserves a word, or the corpus uses it as a keyword."""
         return lexeme in self.words or self.lexer.is_keyword(self.lexer.kinds[lexeme])
 
     def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
-        """The places of a line where a keyword is meant, with the words."""
+        """Yield the places of a line where a keyword is meant, with the words."""
         return tuple(
             (use.place, use.word)
             for use in self._uses(line)
@@ -256,7 +255,7 @@ class WouldBeKeywords:
         )
 
     def _uses(self, line: Sequence[str]) -> Iterator[_Use]:
-        """The names of a line; those within braces have values beside them anyway."""
+        """Yield the names of a line; those in braces are skipped, as values are beside them."""
         kinds = [self.lexer.kinds[lexeme] for lexeme in line]
         depth = 0
         is_headed = self.lexer.is_keyword(kinds[0]) or (
@@ -298,12 +297,12 @@ class WouldBeKeywords:
                 yield _Use(place, word, _PLAIN, False)
 
     def _is_headed_oddly(self, line: Sequence[str], kinds: Sequence[int]) -> bool:
-        """Whether two operands are side by side, so that a word of the line is a keyword."""
+        """Return whether two operands are adjacent, so that a word of the line is a keyword."""
         values = [kind in self._values for kind in kinds[1:]]
         return "{" not in line and any(a and b for a, b in pairwise(values))
 
     def _is_beside(self, line: Sequence[str], place: int) -> bool:
-        """Whether the operand at a place has another one or a type right behind it."""
+        """Return whether another operand or a type follows the operand at an index."""
         found = [self.lexer.kinds[lexeme] for lexeme in line[place : place + 2]]
         return len(found) > 1 and (found[1] in self._values or line[place + 1] in self._types)
 
@@ -319,12 +318,12 @@ class WouldBeKeywords:
 
 
 def _is_of_types(surroundings: _Surroundings) -> bool:
-    """Whether they are a word and an operand, between which the names of types stand."""
+    """Return whether a context is a word and an operand with the name of a type between."""
     _, ahead, behind = surroundings
     return behind == _OPERAND and ahead not in ("", _OPERAND) and ahead.isidentifier()
 
 
 def _in_expression(line: Sequence[str], place: int) -> bool:
-    """Whether a place is behind an equals sign or within brackets, where no type can be."""
+    """Return whether a place is after an equals sign or in brackets, where no type is possible."""
     ahead = line[:place]
     return "=" in ahead or ahead.count("(") > ahead.count(")")
