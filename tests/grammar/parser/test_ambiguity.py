@@ -1,19 +1,17 @@
 """A text is ambiguous when it has two derivations, counted one by one."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from itertools import islice
 from random import Random
 
 import pytest
 
 from grammar.notation.g4 import read
-from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat
+from grammar.notation.model import Grammar
 from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences
-
-#: A derivation: the rule and what it was made of, tokens as their names.
-Tree = tuple[object, ...]
+from tests.grammar.parser.readings import Readings
 
 HEAD = "grammar T;\n"
 WORDS = "IF THEN ELSE END A B C".split()
@@ -107,67 +105,6 @@ def test_deep_nesting_is_looked_through() -> None:
 # ------------------------------------------------------------------- counted independently
 
 
-class Derivations:
-    """All derivations of some tokens, each once, found by trying everything.
-
-    Of rounds of a loop that read nothing two in a row are tried: more would go on for ever.
-    """
-
-    def __init__(self, grammar: Grammar, tokens: Sequence[str]) -> None:
-        self.grammar = grammar
-        self.tokens = tokens
-        self._known: dict[tuple[str, int], frozenset[tuple[Tree, int]]] = {}
-
-    def __iter__(self) -> Iterator[Tree]:
-        whole = self._of_rule(self.grammar.start, 0)
-        return (tree for tree, end in whole if end == len(self.tokens))
-
-    def _of_rule(self, name: str, at: int) -> frozenset[tuple[Tree, int]]:
-        if (name, at) not in self._known:
-            alternatives = self.grammar.by_name[name].alternatives
-            found = (t for a in alternatives for t in self._of_sequence(a.elements, at))
-            self._known[name, at] = frozenset(islice(found, 4_000))
-        return self._known[name, at]
-
-    def _of_sequence(self, elements: Sequence[Element], at: int) -> Iterator[tuple[Tree, int]]:
-        if not elements:
-            yield (), at
-            return
-        for first, middle in self._of(elements[0], at):
-            for rest, end in self._of_sequence(elements[1:], middle):
-                yield (*first, *rest), end
-
-    def _of(self, element: Element, at: int) -> Iterator[tuple[Tree, int]]:
-        match element:
-            case Group(alternatives=alternatives):
-                for alternative in alternatives:
-                    yield from self._of_sequence(alternative.elements, at)
-            case Repeat(item=item, operator=operator):
-                if operator != "+":
-                    yield (), at
-                yield from self._of(item, at) if operator == "?" else self._rounds(item, at, 2)
-            case Literal() | Reference():
-                yield from self._of_symbol(self.grammar.token_of(element), at)
-            case _:
-                raise AssertionError(element)
-
-    def _rounds(self, item: Element, at: int, idle: int) -> Iterator[tuple[Tree, int]]:
-        for first, middle in self._of(item, at):
-            left = 2 if middle != at else idle - 1
-            if left >= 0:
-                yield first, middle
-                for rest, end in self._rounds(item, middle, left):
-                    yield (*first, *rest), end
-
-    def _of_symbol(self, name: str, at: int) -> Iterator[tuple[Tree, int]]:
-        rule = self.grammar.by_name.get(name)
-        if rule is not None and not rule.is_lexer:
-            for tree, end in self._of_rule(name, at):
-                yield ((name, tree),), end
-        elif at < len(self.tokens) and self.tokens[at] == name:
-            yield (name,), at + 1
-
-
 @pytest.mark.parametrize("seed", range(40))
 def test_it_is_what_counting_derivations_says(
     seed: int, random_grammar: Callable[[Random], Grammar]
@@ -179,7 +116,7 @@ def test_it_is_what_counting_derivations_says(
     for _ in range(6):
         sentence = [*Sentences(grammar).random(chance, 6), "EOF"][-9:]
         kinds = [recognizer.lexer.kind_of[name] for name in sentence]
-        count = len(set(islice(Derivations(grammar, sentence), 3)))
+        count = len(list(islice(Readings(grammar, sentence), 3)))
         assert (count > 1) == is_ambiguous(recognizer, recognizer.start, kinds), sentence
 
 

@@ -1,7 +1,7 @@
 """Coverage: what trees exercise of a grammar, counted by hand and by a slow plain reading."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable
 from random import Random
 
 import pytest
@@ -9,12 +9,7 @@ import pytest
 from grammar.notation.addresses import Address
 from grammar.notation.g4 import read
 from grammar.notation.model import (
-    Alternative,
-    Element,
     Grammar,
-    Group,
-    Literal,
-    Reference,
     Repeat,
     walk,
 )
@@ -25,6 +20,7 @@ from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from grammar.parser.tree import ParseNode, Tree
+from tests.grammar.parser.readings import first_way
 
 WORDS = "".join(f"{word} : '{word}' ;\n" for word in "ABCDE") + "COMMA : ',' ;\n"
 SPACE = "SPACE : ' ' -> skip ;\n"
@@ -95,62 +91,6 @@ def test_unused_alternatives() -> None:
 
 
 # ------------------------------------------------------------------- counted independently
-
-#: What is met on a way through a rule: places of symbols, alternatives and rounds.
-Met = tuple[tuple[str, Address, int], ...]
-
-
-def through(
-    grammar: Grammar, alternatives: Sequence[Alternative], at: Address, symbols: Sequence[str]
-) -> Iterator[tuple[Met, Sequence[str]]]:
-    """Every way to read a beginning of the symbols, in the order of the text, and what is left."""
-    for number, alternative in enumerate(alternatives, 1):
-        for met, left in in_row(grammar, alternative.elements, (*at, number), 1, symbols):
-            yield (("taken", at, number), *met), left
-
-
-def in_row(
-    grammar: Grammar, elements: Sequence[Element], at: Address, place: int, symbols: Sequence[str]
-) -> Iterator[tuple[Met, Sequence[str]]]:
-    if not elements:
-        yield (), symbols
-        return
-    for first, middle in at_element(grammar, elements[0], (*at, place), symbols):
-        for rest, left in in_row(grammar, elements[1:], at, place + 1, middle):
-            yield (*first, *rest), left
-
-
-def at_element(
-    grammar: Grammar, element: Element, at: Address, symbols: Sequence[str]
-) -> Iterator[tuple[Met, Sequence[str]]]:
-    match element:
-        case Reference() | Literal():
-            if symbols and symbols[0] == grammar.token_of(element):
-                yield (("symbol", at, 0),), symbols[1:]
-        case Group(alternatives=alternatives):
-            yield from through(grammar, alternatives, at, symbols)
-        case Repeat(item=item, operator=operator):
-            for met, rounds, left in in_rounds(grammar, item, operator, at, symbols):
-                yield (*met, ("rounds", at, rounds)), left
-
-
-def in_rounds(
-    grammar: Grammar, item: Element, operator: str, at: Address, symbols: Sequence[str]
-) -> Iterator[tuple[Met, int, Sequence[str]]]:
-    for first, middle in at_element(grammar, item, at, symbols):
-        if operator != "?" and len(middle) < len(symbols):
-            for rest, rounds, left in in_rounds(grammar, item, "*", at, middle):
-                yield (*first, *rest), rounds + 1, left
-        else:
-            yield first, 1, middle
-    if operator != "+":
-        yield (), 0, symbols
-
-
-def first_way(grammar: Grammar, node: ParseNode) -> Met:
-    symbols = [c.rule if isinstance(c, ParseNode) else c.kind for c in node.children]
-    ways = through(grammar, grammar.by_name[node.rule].alternatives, (), symbols)
-    return next(met for met, left in ways if not left)
 
 
 def note(grammar: Grammar, node: ParseNode, found: Counts) -> None:

@@ -1,7 +1,7 @@
 """Parse trees: what they consist of, where, and which one where there are several."""
 
 import gc
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from random import Random
 
@@ -9,12 +9,7 @@ import pytest
 
 from grammar.notation.g4 import read
 from grammar.notation.model import (
-    Alternative,
-    Element,
     Grammar,
-    Group,
-    Literal,
-    Reference,
     Repeat,
     walk,
 )
@@ -27,9 +22,7 @@ from grammar.parser.parse import Parser, Stop
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences
 from grammar.parser.tree import ParseNode, Token, Tree
-
-#: A tree as a test writes it: a rule and what it was made of, tokens as their names.
-Plain = tuple[object, ...]
+from tests.grammar.parser.readings import Plain, Readings, plain
 
 WORDS = "".join(f"{word} : '{word}' ;\n" for word in "ABCDE")
 SIGNS = "COMMA : ',' ;\nNEWLINE : '\\n' ;\nSPACE : ' ' -> skip ;\n"
@@ -43,11 +36,6 @@ def parsed(parser: Parser, text: str) -> Tree:
     tree = parser.parse(text)
     assert isinstance(tree, Tree), tree
     return tree
-
-
-def plain(node: ParseNode) -> Plain:
-    below = [plain(c) if isinstance(c, ParseNode) else c.kind for c in node.children]
-    return (node.rule, *below)
 
 
 def tree_of(rules: Sequence[str], text: str) -> Plain:
@@ -277,63 +265,6 @@ def test_the_reading_that_antlr_takes(rules: Sequence[str], text: str, expected:
     assert expected == tree_of(rules, text)
 
 
-class Readings:
-    """The trees of some tokens, found by trying everything in the order in which it is written.
-
-    For grammars without `endless_loops`.
-    """
-
-    def __init__(self, grammar: Grammar, tokens: Sequence[str]) -> None:
-        self.grammar = grammar
-        self.tokens = [*tokens, "EOF"]
-
-    def first(self) -> Plain | None:
-        """The tree of the first reading, if there is one."""
-        ways = self._of_rule(self.grammar.start, 0)
-        return next((tree for tree, end in ways if end == len(self.tokens)), None)
-
-    def _of_rule(self, name: str, start: int) -> Iterator[tuple[Plain, int]]:
-        for below, end in self._of_choice(self.grammar.by_name[name].alternatives, start):
-            yield (name, *below), end
-
-    def _of_choice(
-        self, alternatives: Sequence[Alternative], start: int
-    ) -> Iterator[tuple[Plain, int]]:
-        for alternative in alternatives:
-            yield from self._of_sequence(alternative.elements, start)
-
-    def _of_sequence(self, elements: Sequence[Element], start: int) -> Iterator[tuple[Plain, int]]:
-        if not elements:
-            yield (), start
-            return
-        for left, middle in self._of_element(elements[0], start):
-            for right, end in self._of_sequence(elements[1:], middle):
-                yield (*left, *right), end
-
-    def _of_element(self, element: Element, start: int) -> Iterator[tuple[Plain, int]]:
-        match element:
-            case Reference(name=name) if not element.is_token:
-                for tree, end in self._of_rule(name, start):
-                    yield (tree,), end
-            case Reference() | Literal():
-                name = self.grammar.token_of(element)
-                if self.tokens[start : start + 1] == [name]:
-                    yield (name,), start + 1
-            case Group(alternatives=alternatives):
-                yield from self._of_choice(alternatives, start)
-            case Repeat(item=item, operator=operator):
-                yield from self._of_rounds(item, operator, start)
-                if operator != "+":
-                    yield (), start
-
-    def _of_rounds(self, item: Element, operator: str, start: int) -> Iterator[tuple[Plain, int]]:
-        for left, middle in self._of_element(item, start):
-            if operator != "?":
-                for right, end in self._of_rounds(item, operator, middle):
-                    yield (*left, *right), end
-            yield left, middle
-
-
 def endless_loops(grammar: Grammar) -> bool:
     """Whether a loop may go round without reading, which ANTLR refuses."""
     lengths = shortest_lengths(grammar)
@@ -362,7 +293,8 @@ def test_random_grammars(random_grammar: Callable[[Random], Grammar], seed: int)
                 continue
             text = "".join(tokens).replace("NEWLINE", "\n")
             tree = parsed(parser, text)
-            assert Readings(grammar, tokens).first() == plain(tree.root), (grammar.text, text)
+            first = next(iter(Readings(grammar, [*tokens, "EOF"])))
+            assert first == plain(tree.root), (grammar.text, text)
             ambiguous = is_ambiguous(recognizer, recognizer.start, recognizer.kinds(text))
             several += ambiguous
             assert not (ambiguous and tree.is_unique), (grammar.text, text)
