@@ -185,16 +185,6 @@ def test_bad_input_ends_in_findings(capsys: pytest.CaptureFixture[str], elsewher
     ]
 
 
-def test_names_that_steer_terminals_are_shown(
-    capsys: pytest.CaptureFixture[str], elsewhere: Path
-) -> None:
-    """Nothing of other people's files reaches the terminal as a command."""
-    text = "DEF A()\n\x1b[31mN = = 1\nEND\n"
-    (elsewhere / "A.src").write_text(text, encoding="utf-8")
-    check("A.src")
-    assert "\x1b" not in "".join(capsys.readouterr())
-
-
 @pytest.mark.parametrize("kind", ["json", "sarif"])
 def test_records_steer_no_terminal_either(
     kind: str, capsys: pytest.CaptureFixture[str], tmp_path: Path

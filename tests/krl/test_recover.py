@@ -27,7 +27,6 @@ STEP = b"DEF A()\r\nFOR I=1 TO 9 STEP %s\r\nENDFOR\r\nEND\r\n"
 RETURN = b"DEF B()\nRETURN 1\nEND\n"
 #: What the small grammar of the tests does not read; it is surveyed in no time.
 TWO = b"DEF B()\nWAIT X Y\nEND\n"
-posix_only = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
 pytestmark = pytest.mark.usefixtures("elsewhere")
 
 
@@ -350,46 +349,6 @@ def test_a_corpus_that_parses_is_reported(
     assert "Nothing is missing" in capsys.readouterr().out
 
 
-HOSTILE = (
-    "\x1b[2J\x1b]0;owned\x07 A = [red]B[/red] 1",
-    "\u009b31m X \u202e Y \u2066 Z",
-    "[/bold] [link=file:///]A[/link] :smile: 3 4",
-    "A=1\x08\x08\x08\x00 9 9",
-)
-
-
-def test_source_cannot_steer_the_terminal(
-    small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Escape sequences, bidirectional marks and markup of a program are shown, never obeyed."""
-    texts = {f"p{n}": f"DEF A()\n{line}\nEND\n".encode() for n, line in enumerate(HOSTILE)}
-    lay(tmp_path / "corpus", **texts)
-    assert 0 == recover(tmp_path / "corpus", "--out", tmp_path / "out", grammar=small)
-    said, complaint = capsys.readouterr()
-    assert "" == complaint
-    assert [] == [line for line in said.splitlines() if not line.isprintable()]
-    assert len(record(tmp_path / "out")["failures"]) >= 3
-
-
-@posix_only
-def test_names_cannot_steer_the_terminal(
-    small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A file may be called anything; what is said of it stays on its line."""
-    root = tmp_path / "corpus"
-    root.mkdir()
-    for name in ("a\x1b[31m.src", "b\nc.src", "d\u202e.src", "[-e].src"):
-        (root / name).write_bytes(TWO)
-    (root / "f\x1b]0;x\x07.src").write_bytes(b"\0" * 99)
-    assert 0 == recover(root, "--out", tmp_path / "out", grammar=small)
-    said, complaint = capsys.readouterr()
-    assert [] == [line for line in (said + complaint).splitlines() if not line.isprintable()]
-    data = record(tmp_path / "out")
-    paths = [data["failures"][0]["path"], *(c["path"] for c in data["copies"])]
-    assert 4 == len(paths)
-    assert all(path.isprintable() for path in paths + [s["path"] for s in data["skipped"]])
-
-
 def test_an_output_folder_may_be_called_anything(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -400,15 +359,6 @@ def test_an_output_folder_may_be_called_anything(
         out = tmp_path / "[bold]out[-b]"
     assert 0 == recover(corpus, "--out", out)
     assert f"Page: {out / 'index.html'}" in capsys.readouterr().out
-
-
-@posix_only
-def test_a_missing_place_cannot_steer_the_terminal(capsys: pytest.CaptureFixture[str]) -> None:
-    """What is complained about is quoted, never obeyed."""
-    assert 2 == recover("no\x1b[2Jwhere\nat all.src")
-    complaint = capsys.readouterr().err
-    assert 1 == complaint.count("\n")
-    assert complaint.strip().isprintable()
 
 
 # --------------------------------------------------------------------- the restrictive start

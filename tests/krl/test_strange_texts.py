@@ -15,13 +15,15 @@ from krl.cli import main
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no such names of files")
 
 #: What steers a terminal, a page, a log of GitHub or a spreadsheet, and half of a character.
-STRANGE = '=1+1\x1b[31m\n::error::x\u202e"><img src=x onerror=alert(1)><script>x\udcff'
+STRANGE = '=1+1\x1b[31m[/bold]\n::error::x\u202e"><img src=x onerror=alert(1)><script>x\udcff'
 PROGRAM = f"""DEF A()
 INT I ; {STRANGE!r} <script>alert(1)</script>
 CHAR C[9]
 C[]="<img src=x onerror=alert(1)>\x1b[31m\u202e"
 U\x9b31m=1
 I="<script>alert(1)</script>"
+[/bold] [link=file:///]A[/link] :smile: 3 4
+I=1\x08\x08\x00 \u2066 9
 BOGUS <script>alert(1)</script> \x1b]0;x\x07
 HALT
 END
