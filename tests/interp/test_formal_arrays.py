@@ -72,47 +72,6 @@ def test_what_was_left_out_is_passed_on(go: Run) -> None:
     assert ("uninitialised", 13) == _fault(go, _q("r(t[])", 't[1]="a"'))
 
 
-@pytest.mark.parametrize(
-    ("name", "expression", "expected"),
-    [
-        ("N", "STRLEN(t[])", 0),
-        ("B", 'STRCOMP(t[],"",#CASE_SENS)', True),
-        ("N", 'STRFIND(1,t[],"a",#CASE_SENS)', 0),
-        ("N", 'STRFIND(1,"abc",t[],#CASE_SENS)', 0),
-    ],
-)
-def test_what_was_left_out_reads_as_the_empty_text(
-    go: Run, name: str, expression: str, expected: object
-) -> None:
-    """A function that reads a text finds none in a parameter left out [FCT-04] (unconfirmed)."""
-    assert [expected] == _assigned(go, _q(f"{name}={expression}"), name)
-
-
-def test_what_was_left_out_is_copied_as_the_empty_text(go: Run) -> None:
-    """STRCOPY and STRADD take nothing from a parameter that was left out [FCT-04]."""
-    head = 'q()\nEND\nDEF q(t[]:OUT)\nDECL CHAR t[]\nDECL CHAR s[4]\nDECL INT N\ns[]="abc"\n'
-    assert [3] == _assigned(go, f"DEF main()\n{head}N=STRADD(s[],t[])\nEND\n")
-    assert [0] == _assigned(
-        go, f"DEF main()\n{head}IF STRCOPY(s[],t[]) THEN\nN=STRLEN(s[])\nENDIF\nEND\n"
-    )
-
-
-@pytest.mark.parametrize(
-    "body",
-    [
-        't[]="abc"',
-        'B=STRCOPY(t[],"a")',
-        "B=STRCLEAR(t[])",
-        "N=STRADD(t[],t[])",
-        "N=STRDECLLEN(t[])",
-        'B=t[1]=="a"',
-    ],
-)
-def test_what_was_left_out_cannot_be_changed(go: Run, body: str) -> None:
-    """Nothing can be put into a parameter that was left out, nor has it elements or a size."""
-    assert ("uninitialised", 8) == _fault(go, _q(body))
-
-
 def test_only_texts_are_empty(go: Run) -> None:
     """An array of numbers that was left out has no value for a routine of the controller."""
     text = "DEF main()\nq()\nEND\nDEF q(p[]:OUT)\nDECL INT p[]\nERR_RAISE(p[])\nEND\n"
@@ -192,29 +151,11 @@ def _rooms(text: str, name: str) -> list[int]:
     return [one.sizes[0] or 0 for one in found if isinstance(one, Array)]
 
 
-def test_arrays_of_unknown_size_are_copied(go: Run) -> None:
-    """An array passed on :IN to a routine that changes it stays as it was [SCO-06]."""
-    assert [3, 9, 5] == _assigned(go, _COPIED)
-    assert [3, 2, 1] * 3 == _assigned(go, _COPIED, "M")
-
-
 def test_copies_have_room_for_the_largest() -> None:
     """The room is that of the largest array that comes there, through however many routines."""
     assert [9] == _rooms(_COPIED, "OUTER")
     assert [9] == _rooms(_COPIED, "INNER")
     assert [7] == _rooms(_COPIED.replace("  outer(w[])\n", ""), "OUTER")
-
-
-def test_a_copy_is_made_when_the_argument_is_evaluated(go: Run) -> None:
-    """What a later argument changes is not seen by the routine [SCO-06]."""
-    text = (
-        'DEF main()\nDECL CHAR s[3]\ns[]="abc"\nouter(s[],s[])\nEND\n'
-        "DEF outer(p[]:IN,o[]:OUT)\nDECL CHAR p[],o[]\n"
-        "inner(o[],change(o[]))\nEND\n"
-        'DEFFCT INT change(o[]:OUT)\nDECL CHAR o[]\no[]="x"\nRETURN 1\nENDFCT\n'
-        "DEF inner(p[]:IN,k:IN)\nDECL CHAR p[]\nDECL INT k,N\nN=STRLEN(p[])\nEND\n"
-    )
-    assert [3] == _assigned(go, text)
 
 
 def test_several_copies_in_one_call(go: Run) -> None:
@@ -233,12 +174,3 @@ def test_several_copies_in_one_call(go: Run) -> None:
     assert [678, 3] == values
     assert isinstance(seen.last, Fail)
     assert "index" == getattr(seen.last.fault, "slug", None)
-
-
-def test_what_was_left_out_is_not_copied(go: Run) -> None:
-    """A parameter that was left out has nothing to be copied [SCO-13]."""
-    text = (
-        "DEF main()\nouter()\nEND\nDEF outer(p[]:IN)\nDECL CHAR p[]\ninner(p[])\nEND\n"
-        "DEF inner(p[]:IN)\nDECL CHAR p[]\nEND\n"
-    )
-    assert ("uninitialised", 6) == _fault(go, text)

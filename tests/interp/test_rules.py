@@ -33,6 +33,7 @@ from interp.values.operators import BINARY, UNARY
 
 _TABLE = Path(__file__).parent / "data" / "rules.tsv"
 _ROWS = [line.split("\t") for line in _TABLE.read_text(encoding="utf-8").splitlines()[1:]]
+_ROUTINES = 64
 _PROGRAM = """DEF CASE_{number}()
 DECL {type} R
 DECL INT I,J,BIG,OFS,N[2,3]
@@ -70,21 +71,23 @@ END
 
 
 @pytest.fixture(scope="module")
-def program() -> CheckedProgram:
-    """One routine for each row of the table."""
-    routines = [
+def programs() -> list[tuple[CheckedProgram, Verified]]:
+    """One routine for each row of the table, in programs of `_ROUTINES`, which load faster."""
+    texts = [
         _PROGRAM.format(
             number=number, type=row[1], expression=row[2], before=row[4].replace(" ~ ", "\n")
         )
         for number, row in enumerate(_ROWS)
     ]
-    return load([Source("".join(routines), "main.src")], "main.src", strict=False)
-
-
-@pytest.fixture(scope="module")
-def verified(program: CheckedProgram) -> Verified:
-    """The same as bytecode."""
-    return verify(compile_program(program).program)
+    checked = [
+        load(
+            [Source("".join(texts[first : first + _ROUTINES]), "main.src")],
+            "main.src",
+            strict=False,
+        )
+        for first in range(0, len(texts), _ROUTINES)
+    ]
+    return [(one, verify(compile_program(one).program)) for one in checked]
 
 
 def _on_tree(program: CheckedProgram, _verified: Verified, name: str, sink: Sink) -> Executor:
@@ -103,15 +106,14 @@ def _in_c(_program: CheckedProgram, verified: Verified, name: str, sink: Sink) -
 
 @pytest.mark.parametrize("make", [_on_tree, _on_vm, *([_in_c] if AVAILABLE else [])])
 def test_rules(
-    program: CheckedProgram,
-    verified: Verified,
+    programs: list[tuple[CheckedProgram, Verified]],
     make: Callable[[CheckedProgram, Verified, str, Sink], Executor],
 ) -> None:
     """Each expression has the value, or the fault, that its rules tell, on every executor."""
     wrong = {}
     for number, row in enumerate(_ROWS):
         wanted = row[3] if row[3].startswith("!") else json.loads(row[3])
-        found = _outcome(partial(make, program, verified, f"CASE_{number}"))
+        found = _outcome(partial(make, *programs[number // _ROUTINES], f"CASE_{number}"))
         if wanted != found:
             wrong[row[0], row[2]] = found, wanted
     assert {} == wrong

@@ -17,18 +17,13 @@ from grammar.semantics.types import (
     INT_MAX,
     INT_MIN,
     REAL,
-    UNKNOWN,
-    Aggregate,
-    Array,
-    Constant,
     Enumeration,
     Structure,
-    Text,
     Type,
 )
 from interp.values.faults import FAULTS, Fault
 from interp.values.geometric_operator import inverted
-from interp.values.json_form import from_json, to_json
+from interp.values.json_form import from_json
 from interp.values.operators import (
     BINARY,
     PRIMITIVES,
@@ -40,7 +35,7 @@ from interp.values.operators import (
     kind_of_value,
     select,
 )
-from interp.values.values import REAL_MAX, StructureValue, Value, constant, empty, single, zero
+from interp.values.values import REAL_MAX, StructureValue, Value, constant, single
 
 COLOUR = Enumeration("COLOUR", ("RED", "GREEN"))
 RED, GREEN = constant(COLOUR, "RED"), constant(COLOUR, "GREEN")
@@ -62,129 +57,6 @@ def _pose(name: str, *numbers: float, **others: float) -> StructureValue:
 
 
 # ---------------------------------------------------------------------------------- tables of cases
-
-_INT = [
-    ("+", 2, 3, 5),
-    ("+", INT_MAX, INT_MIN, -1),
-    ("-", 2, 3, -1),
-    ("-", INT_MIN, INT_MIN, 0),
-    ("*", -4, 3, -12),
-    ("*", 46340, 46340, 2147395600),
-    ("*", 65536, -32768, INT_MIN),
-    ("/", 10, 3, 3),
-    ("/", -7, 2, -3),
-    ("/", 7, -2, -3),
-    ("/", -7, -2, 3),
-    ("/", 6, -2, -3),
-    ("/", 1, 2, 0),
-    ("/", -1, 2, 0),
-    ("/", 0, -5, 0),
-    ("/", 30000, 60000, 0),
-    ("/", INT_MIN, 1, INT_MIN),
-    ("/", INT_MIN, 2, -1073741824),
-]
-_REAL = [
-    ("+", 1.5, 2.25, 3.75),
-    ("+", TENTH, FIFTH, 0.30000001192092896),
-    ("+", 16777216.0, 1.0, 16777216.0),
-    ("+", single(1e-45), single(1e-45), single(3e-45)),
-    ("-", 1.5, 2.25, -0.75),
-    ("*", 3.0, TENTH, 0.30000001192092896),
-    ("*", single(1e-30), single(1e-30), 0.0),
-    ("/", 1.0, 3.0, 0.3333333432674408),
-    ("/", -7.0, 2.0, -3.5),
-    ("/", 0.0, 2.0, 0.0),
-]
-_MIXED = [
-    ("+", 1, 0.5, 1.5),
-    ("-", 0.5, 1, -0.5),
-    ("*", 3, 0.5, 1.5),
-    ("/", 1, 2.0, 0.5),
-    ("/", 1.0, 2, 0.5),
-    ("+", 16777217, 0.0, 16777216.0),
-]
-_RELATIONS = [
-    *(("==", 1, 1, True), ("==", 1, 2, False), ("<>", 1, 2, True), ("<>", 1, 1, False)),
-    *(("<", 1, 2, True), ("<", 2, 2, False), (">", 2, 1, True), (">", 2, 2, False)),
-    *(("<=", 2, 2, True), ("<=", 3, 2, False), (">=", 2, 2, True), (">=", 1, 2, False)),
-    *(("<", INT_MIN, INT_MAX, True), (">", INT_MIN, INT_MAX, False)),
-    *(("==", 0.5, 0.5, True), ("==", 0.5, 0.25, False), ("<>", 0.5, 0.25, True)),
-    *(("<", 0.25, 0.5, True), (">", 0.25, 0.5, False), ("<=", 0.5, 0.5, True)),
-    *((">=", 0.25, 0.5, False), ("==", 0.0, -0.0, True), ("<>", 0.5, 0.5, False)),
-    *((">", 0.5, 0.25, True), ("<", 0.5, 0.25, False), ("<=", 0.5, 0.25, False)),
-    *((">=", 0.5, 0.5, True), ("<", 0.5, 0.5, False), (">", 0.5, 0.5, False)),
-    *(("==", 1, 1.0, True), ("<", 1.0, 2, True), ("==", 16777217, 16777216.0, True)),
-    *(("==", "A", "A", True), ("<", "A", "B", True), (">=", "a", "B", True)),
-    *(("==", "A", 65, True), ("<", 64, "A", True), ("==", "A", 65.0, True), (">", "A", 64.5, True)),
-    *(("==", True, True, True), ("==", True, False, False), ("<>", True, False, True)),
-    *(("<>", False, False, False), ("==", RED, RED, True), ("==", RED, GREEN, False)),
-    *(("<>", RED, GREEN, True), ("<>", GREEN, GREEN, False)),
-]
-_LOGIC = [
-    *(("AND", False, False, False), ("AND", False, True, False), ("AND", True, False, False)),
-    *(("AND", True, True, True), ("OR", False, False, False), ("OR", False, True, True)),
-    *(("OR", True, False, True), ("OR", True, True, True), ("EXOR", False, False, False)),
-    *(("EXOR", False, True, True), ("EXOR", True, False, True), ("EXOR", True, True, False)),
-]
-_BITS = [
-    *(("B_AND", 12, 10, 8), ("B_OR", 12, 10, 14), ("B_EXOR", 12, 10, 6)),
-    *(("B_AND", -1, 255, 255), ("B_AND", INT_MIN, -1, INT_MIN), ("B_OR", INT_MIN, INT_MAX, -1)),
-    *(("B_EXOR", -1, INT_MAX, INT_MIN), ("B_EXOR", 5, 5, 0), ("B_AND", "a", 223, 65)),
-]
-_SIGNS = [
-    *(("+", 5, 5), ("+", -2.5, -2.5), ("-", 5, -5), ("-", 2.5, -2.5), ("-", INT_MAX, -INT_MAX)),
-    *(("NOT", True, False), ("NOT", False, True)),
-    *(("B_NOT", 0, -1), ("B_NOT", 10, -11), ("B_NOT", INT_MIN, INT_MAX), ("B_NOT", -1, 0)),
-    ("B_NOT", "A", -66),
-]
-
-
-@pytest.mark.parametrize(
-    ("operator", "left", "right", "expected"),
-    [*_INT, *_REAL, *_MIXED, *_RELATIONS, *_LOGIC, *_BITS],
-)
-def test_operators_of_two(operator: str, left: Value, right: Value, expected: Value) -> None:
-    """Each operator gives its value in its type [TYP-02, ARI-01, ARI-02, ARI-07, ARI-10]."""
-    found = apply(operator, left, right)
-    assert expected == found
-    assert type(expected) is type(found)
-
-
-@pytest.mark.parametrize(("operator", "operand", "expected"), _SIGNS)
-def test_operators_of_one(operator: str, operand: Value, expected: Value) -> None:
-    """Signs keep the type, NOT works on BOOL, B_NOT on the 32 bits of an INT [ARI-05, ARI-07]."""
-    found = apply_unary(operator, operand)
-    assert expected == found
-    assert type(expected) is type(found)
-
-
-@pytest.mark.parametrize(
-    ("operator", "left", "right", "slug"),
-    [
-        *(("+", INT_MAX, 1, "overflow"), ("+", INT_MIN, -1, "overflow")),
-        *(("-", INT_MIN, 1, "overflow"), ("-", 0, INT_MIN, "overflow")),
-        *(("*", 65536, 32768, "overflow"), ("*", INT_MIN, -1, "overflow")),
-        *(("/", INT_MIN, -1, "overflow"), ("/", 1, 0, "division_by_zero")),
-        *(("/", 0, 0, "division_by_zero"), ("/", INT_MIN, 0, "division_by_zero")),
-        *(("/", 1.0, 0.0, "division_by_zero"), ("/", 0.0, 0.0, "division_by_zero")),
-        *(("/", 1.0, -0.0, "division_by_zero"), ("/", 1, 0.0, "division_by_zero")),
-        *(("+", REAL_MAX, REAL_MAX, "overflow"), ("-", -REAL_MAX, REAL_MAX, "overflow")),
-        *(("*", 1e38, 10.0, "overflow"), ("/", 1e38, 0.0009765625, "overflow")),
-    ],
-)
-def test_what_has_no_value_faults(operator: str, left: Value, right: Value, slug: str) -> None:
-    """Overflow and division by zero are faults: nothing wraps, nothing is infinite [ARI-12]."""
-    with pytest.raises(Fault) as caught:
-        apply(operator, left, right)
-    assert slug == caught.value.slug
-
-
-def test_smallest_int_has_no_opposite() -> None:
-    """The sign of the smallest INT cannot be turned [TYP-01, ARI-12]."""
-    with pytest.raises(Fault) as caught:
-        apply_unary("-", INT_MIN)
-    assert "overflow" == caught.value.slug
-
 
 _SAMPLES: list[Value] = [1, 1.0, True, "A", RED, _pose("FRAME", 1, 2, 3, 0, 0, 0)]
 
@@ -221,23 +93,6 @@ def _type_of(value: Value) -> Type:
     return scalars.get(type(value)) or value.type  # type: ignore[union-attr]
 
 
-@pytest.mark.parametrize(
-    "value", [zero(Array(INT, (2,))), zero(_type("LOAD")), zero(_type("AXIS"))]
-)
-def test_compound_values_are_no_operands(value: Value) -> None:
-    """Arrays, and structures that are no poses, are operands of nothing [ARI-10, ARI-11]."""
-    for operator in BINARY:
-        with pytest.raises(Fault):
-            apply(operator, value, value)
-
-
-def test_empty_text_is_no_operand() -> None:
-    """An empty text, which the checker lets stand for a letter, has no code [TYP-03]."""
-    with pytest.raises(Fault) as caught:
-        apply("==", "A", "")
-    assert "operand" == caught.value.slug
-
-
 # ---------------------------------------------------------------------------------- selection
 
 
@@ -270,40 +125,11 @@ def test_selection_reports_conversions(
     assert primitive == (None if found.primitive is None else found.primitive.name)
 
 
-@pytest.mark.parametrize(
-    ("operator", "kinds"),
-    [
-        *(("+", ("CHAR", "INT")), ("+", ("BOOL", "BOOL")), ("<", ("BOOL", "BOOL"))),
-        *(("<", ("ENUM", "ENUM")), ("AND", ("INT", "INT")), ("B_AND", ("REAL", "INT"))),
-        *((":", ("FRAME", "INT")), ("==", ("FRAME", "FRAME")), ("NOT", ("INT",))),
-        *(("B_NOT", ("BOOL",)), ("+", ("BOOL",)), ("-", ("CHAR",)), ("==", ("BOOL", "INT"))),
-    ],
-)
-def test_selection_refuses(operator: str, kinds: tuple[Kind, ...]) -> None:
-    """No primitive is chosen where the operator does not work [ARI-10, ARI-11]."""
-    assert select(operator, *kinds) is None
-
-
 @pytest.mark.parametrize(("operator", "kinds"), [("%", ("INT", "INT")), ("*", ("INT",))])
 def test_selection_of_no_operator(operator: str, kinds: tuple[Kind, ...]) -> None:
     """What is no operator, or not one of so many operands, is our own mistake."""
     with pytest.raises(ValueError, match="is no operator"):
         select(operator, *kinds)
-
-
-@pytest.mark.parametrize(
-    ("type_", "kind"),
-    [
-        *((INT, "INT"), (REAL, "REAL"), (BOOL, "BOOL"), (CHAR, "CHAR"), (COLOUR, "ENUM")),
-        *((Constant("RED"), "ENUM"), (Text(1), "CHAR"), (Text(2), None), (UNKNOWN, None)),
-        *((_type("FRAME"), "FRAME"), (_type("E6POS"), "FRAME"), (_type("AXIS"), None)),
-        *((Aggregate(("X",)), "FRAME"), (Aggregate(("A1",), _type("AXIS")), None)),
-        (Array(INT, (2,)), None),
-    ],
-)
-def test_kinds_of_types(type_: Type, kind: Kind | None) -> None:
-    """The kind of an operand is known from its type, before the program runs."""
-    assert kind == kind_of(type_)
 
 
 def test_kinds_of_values_are_those_of_their_types() -> None:
@@ -360,21 +186,6 @@ def test_primitives_keep_their_word(name: str, data: st.DataObject) -> None:
         assert result == single(result)
     if type(result) is int:
         assert INT_MIN <= result <= INT_MAX
-
-
-@pytest.mark.parametrize(("code", "letter"), [(0, "\0"), (65, "A"), (255, "\xff")])
-def test_letters_have_codes(code: int, letter: str) -> None:
-    """A CHAR and its code become each other [TYP-03]."""
-    assert letter == PRIMITIVES["int_to_char"].function(code)
-    assert code == PRIMITIVES["char_to_int"].function(letter)
-
-
-@pytest.mark.parametrize("code", [-1, 256])
-def test_no_letter_has_other_codes(code: int) -> None:
-    """A number that no byte has is no letter [TYP-03, MSG-11]."""
-    with pytest.raises(Fault) as caught:
-        PRIMITIVES["int_to_char"].function(code)
-    assert 1446 == caught.value.number
 
 
 # ---------------------------------------------------------------------------------- laws
@@ -518,83 +329,3 @@ def test_angles_have_a_range(a: float, b: float, c: float) -> None:
     if abs(b) == 90:
         assert 0.0 == found[0]
         assert b == found[1]
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "expected"),
-    [
-        ((10, 20, 30, 0, 0, 0), (1, 2, 3, 0, 0, 0), (11, 22, 33, 0, 0, 0)),
-        ((0, 0, 0, 90, 0, 0), (1, 0, 0, 0, 0, 0), (0, 1, 0, 90, 0, 0)),
-        ((0, 0, 0, 0, 90, 0), (1, 0, 0, 0, 0, 0), (0, 0, -1, 0, 90, 0)),
-        ((0, 0, 0, 0, 0, 90), (0, 1, 0, 0, 0, 0), (0, 0, 1, 0, 0, 90)),
-        ((0, 0, 0, 90, 0, 0), (0, 0, 0, 90, 0, 0), (0, 0, 0, 180, 0, 0)),
-        ((0, 0, 0, -90, 0, 0), (0, 0, 0, -90, 0, 0), (0, 0, 0, 180, 0, 0)),
-        ((0, 0, 0, 30, 0, 0), (0, 0, 0, 0, 90, 0), (0, 0, 0, 0, 90, -30)),
-        ((0, 0, 0, 30, 0, 0), (0, 0, 0, 0, -90, 0), (0, 0, 0, 0, -90, 30)),
-        ((0, 0, 0, 0, 90, 0), (0, 0, 0, 30, 0, 0), (0, 0, 0, 90, 60, 90)),
-        ((0, 0, 0, 20, 90, 50), (0, 0, 0, 0, 0, 0), (0, 0, 0, 0, 90, 30)),
-        ((0, 0, 0, 0, 120, 0), (0, 0, 0, 0, 0, 0), (0, 0, 0, 180, 60, 180)),
-        ((0, 0, 0, 10, 20, 30), (0, 0, 0, 0, 0, 0), (0, 0, 0, 10, 20, 30)),
-        ((5, 0, 0, 370, 0, 0), (0, 0, 0, 0, 0, 0), (5, 0, 0, 10, 0, 0)),
-    ],
-)
-def test_composition_by_hand(
-    left: tuple[float, ...], right: tuple[float, ...], expected: tuple[float, ...]
-) -> None:
-    """Turns about one axis come out as worked out by hand, 180 and not -180 [ARI-08, ARI-09]."""
-    found = _composed(_pose("FRAME", *left), _pose("FRAME", *right))
-    assert pytest.approx(expected, abs=1e-5) == found.members
-    assert all(number == single(number) for number in found.members)
-
-
-def test_result_has_the_type_of_the_right_operand() -> None:
-    """FRAME:E6POS is an E6POS, which keeps Status, Turn and external axes of the right [ARI-08]."""
-    frame = _pose("FRAME", 10, 0, 0, 0, 0, 0)
-    point = _pose("E6POS", 1, 2, 3, 0, 0, 0, S=2, T=35, E1=7.5)
-    found = _composed(frame, point)
-    assert "E6POS" == found.type.name
-    others = {**dict.fromkeys(["E2", "E3", "E4", "E5", "E6"]), "S": 2, "T": 35, "E1": 7.5}
-    assert others.items() <= to_json(found).items()
-    assert 11.0 == found.get("X")
-    assert "FRAME" == _composed(point, frame).type.name
-    assert 1.0 == point.get("X")
-
-
-def test_inverse_has_no_status() -> None:
-    """The inverse of a pose has its type, and no Status, Turn or external axes [FCT-03]."""
-    found = inverted(_pose("E6POS", 1, 2, 3, 0, 0, 90, S=2, T=35, E1=7.5))
-    assert "E6POS" == found.type.name
-    assert pytest.approx((-1, -3, 2, 0, 0, -90), abs=1e-6) == found.members[:6]
-    assert [None] * 8 == found.members[6:]
-
-
-@pytest.mark.parametrize("side", [0, 1])
-def test_composition_needs_all_components(side: int) -> None:
-    """A pose without one of X to C cannot be composed; without S and T it can [TYP-13]."""
-    whole = _pose("POS", 1, 2, 3, 4, 5, 6)
-    assert isinstance(_composed(whole, whole), StructureValue)
-    for name in "XYZABC":
-        lacking = _pose("POS", 1, 2, 3, 4, 5, 6)
-        lacking.set(name, None)
-        operands = [whole, whole]
-        operands[side] = lacking
-        with pytest.raises(Fault) as caught:
-            _composed(*operands)
-        assert "uninitialised" == caught.value.slug
-
-
-def test_composition_may_overflow() -> None:
-    """A place that no REAL can hold is a fault [TYP-02]."""
-    far = _pose("FRAME", 3e38, 0, 0, 0, 0, 0)
-    with pytest.raises(Fault) as caught:
-        _composed(far, far)
-    assert "overflow" == caught.value.slug
-
-
-def test_axis_positions_are_not_composed() -> None:
-    """The geometric operator joins poses only [ARI-08]."""
-    axis = empty(_type("AXIS"))
-    assert isinstance(axis, StructureValue)
-    with pytest.raises(Fault) as caught:
-        inverted(axis)
-    assert "operand" == caught.value.slug

@@ -1,9 +1,7 @@
 """Values: numbers, compound values, conversion, texts, and how they are written."""
 
 import json
-import math
 import struct
-from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -34,18 +32,11 @@ from interp.values.values import (
     StructureValue,
     Value,
     constant,
-    converted,
     copied,
     empty,
     fill,
     has_value,
-    index,
-    integer,
-    known,
-    letters,
     member_place,
-    position_type,
-    rounded,
     set_text,
     single,
     text_of,
@@ -98,35 +89,6 @@ def _slug(caught: pytest.ExceptionInfo[Fault]) -> str:
 # ---------------------------------------------------------------------------------- numbers
 
 
-@pytest.mark.parametrize(
-    ("number", "expected"),
-    [
-        (0.1, 0.10000000149011612),
-        (16777217.0, 16777216.0),  # a tie, to even
-        (16777219.0, 16777220.0),  # a tie, to even
-        (1.0 + 2.0**-24, 1.0),
-        (1.0 + 3 * 2.0**-24, 1.0 + 2.0**-22),
-        (2147483647, 2147483648.0),
-        (3.4028235677973362e38, REAL_MAX),  # one below halfway to what is no single
-        (-3.4e38, -3.3999999521443642e38),
-        (1e-45, 2.0**-149),
-        (7e-46, 0.0),
-        (1e-300, 0.0),
-    ],
-)
-def test_reals_are_singles(number: float, expected: float) -> None:
-    """A REAL is rounded to the nearest IEEE single, ties to even [TYP-02]."""
-    assert expected == single(number)
-
-
-@pytest.mark.parametrize("number", [3.4028235677973366e38, 1e39, -1e39, math.inf, math.nan])
-def test_reals_are_finite(number: float) -> None:
-    """What is larger than the largest REAL, infinite or no number is a fault [TYP-02]."""
-    with pytest.raises(Fault) as caught:
-        single(number)
-    assert "overflow" == _slug(caught)
-
-
 @given(st.floats(-3.4e38, 3.4e38))
 def test_rounding_to_single_is_that_of_ieee(number: float) -> None:
     """Rounding agrees with the standard library's, and rounding again changes nothing [TYP-02]."""
@@ -135,67 +97,7 @@ def test_rounding_to_single_is_that_of_ieee(number: float) -> None:
     assert expected == single(single(number))
 
 
-@pytest.mark.parametrize(
-    ("number", "expected"),
-    [
-        *((7.9, 8), (7.4, 7), (7.5, 8), (0.5, 1), (1.5, 2), (2.5, 3), (0.0, 0), (-0.0, 0)),
-        *((-7.9, -8), (-7.4, -7), (-7.5, -8), (-0.5, -1), (-1.5, -2), (-2.5, -3)),
-        (0.49999997, 0),
-        (-0.49999997, 0),
-        (8388607.5, 8388608),
-        (2147483520.0, 2147483520),
-        (-2147483648.0, INT_MIN),
-    ],
-)
-def test_real_to_int_rounds_halves_away_from_zero(number: float, expected: int) -> None:
-    """REAL becomes the nearest INT, halves go away from zero on both sides [ARI-03]."""
-    found = rounded(number)
-    assert expected == found
-    assert int is type(found)
-
-
-@pytest.mark.parametrize("number", [2147483648.0, -2147483904.0, 3e38])
-def test_real_to_int_has_a_range(number: float) -> None:
-    """A REAL that no INT is near is a fault [ARI-03]."""
-    with pytest.raises(Fault) as caught:
-        rounded(number)
-    assert "overflow" == _slug(caught)
-
-
-@given(SINGLES.filter(lambda number: abs(number) < 2**31 - 128))
-def test_real_to_int_is_within_a_half(number: float) -> None:
-    """Rounding moves a number by a half at most, and an odd function it is [ARI-03]."""
-    assert abs(Fraction(number) - rounded(number)) <= Fraction(1, 2)
-    assert -rounded(number) == rounded(-number)
-
-
-@pytest.mark.parametrize("number", [INT_MIN, -1, 0, INT_MAX])
-def test_int_has_32_bits(number: int) -> None:
-    """All numbers of 32 bits with sign are INT [TYP-01]."""
-    assert number == integer(number)
-
-
-@pytest.mark.parametrize("number", [INT_MIN - 1, INT_MAX + 1])
-def test_int_does_not_wrap(number: int) -> None:
-    """One more or less than the limits is a fault [TYP-01, ARI-12]."""
-    with pytest.raises(Fault) as caught:
-        integer(number)
-    assert "overflow" == _slug(caught)
-
-
 # ---------------------------------------------------------------------------------- compound values
-
-
-def test_variables_begin_without_a_value() -> None:
-    """What was declared and not set has no value in any part [TYP-13]."""
-    assert None is empty(INT)
-    assert None is empty(COLOUR)
-    box = empty(BOX)
-    assert isinstance(box, StructureValue)
-    assert [StructureValue, type(None), type(None)] == [type(part) for part in box.members]
-    assert not has_value(box)
-    assert 6 == len(_array(REAL, 2, 3))
-    assert [None] * 6 == list(_array(REAL, 2, 3))
 
 
 def test_zero_has_a_value_in_every_part() -> None:
@@ -216,29 +118,6 @@ def test_what_is_not_known_cannot_be_made(type_: Type) -> None:
         empty(type_)
     with pytest.raises(LinkError):
         zero(type_)
-
-
-def test_reading_no_value_faults() -> None:
-    """A value that was never set cannot be used; zero and FALSE are values [TYP-13]."""
-    assert 0 == known(0)
-    assert known(False) is False
-    with pytest.raises(Fault) as caught:
-        known(None)
-    assert "uninitialised" == _slug(caught)
-
-
-def test_has_value_looks_into_all_parts() -> None:
-    """A structure or array has a value as soon as one part of it has one [TYP-18]."""
-    boxes = _array(BOX, 2)
-    assert not has_value(boxes)
-    box = boxes.get(2)
-    assert isinstance(box, StructureValue)
-    first = box.get("FIRST")
-    assert isinstance(first, StructureValue)
-    first.set("COUNT", 0)
-    assert has_value(boxes)
-    assert has_value(False)
-    assert not has_value(None)
 
 
 def test_members_are_found_in_any_letter_case() -> None:
@@ -262,56 +141,7 @@ def test_constants_are_found_in_any_letter_case() -> None:
         constant(COLOUR, "PINK")
 
 
-@pytest.mark.parametrize(
-    ("names", "expected"),
-    [
-        ({"X", "Y"}, "FRAME"),
-        ({"x", "c"}, "FRAME"),
-        ({"X", "S"}, "POS"),
-        ({"X", "E3"}, "E3POS"),
-        ({"S", "E4"}, "E6POS"),
-        ({"A1", "A6"}, "AXIS"),
-        ({"A1", "E1"}, "E3AXIS"),
-        ({"A1", "E6"}, "E6AXIS"),
-        ({"X", "A1"}, None),
-    ],
-)
-def test_aggregates_are_the_smallest_position(names: set[str], expected: str | None) -> None:
-    """Components alone tell the type of an aggregate where nothing else does [TYP-15]."""
-    found = position_type(frozenset(names))
-    assert expected == (None if found is None else found.name)
-
-
 # ---------------------------------------------------------------------------------- arrays
-
-
-@pytest.mark.parametrize("place", [0, 4, -1, INT_MAX])
-def test_indices_are_checked(place: int) -> None:
-    """An index below 1 or above the size faults, for reading and writing [TYP-09, MSG-15]."""
-    array = _array(INT, 3)
-    with pytest.raises(Fault) as caught:
-        array.get(place)
-    assert 1444 == caught.value.number
-    with pytest.raises(Fault):
-        array.set(1, place)
-
-
-@pytest.mark.parametrize("indices", [(0, 1, 1), (3, 1, 1), (1, 4, 1), (1, 1, 5), (1, 0, 1)])
-def test_every_dimension_is_checked(indices: tuple[int, ...]) -> None:
-    """Each index must lie in its own dimension, wherever the element would be [TYP-09]."""
-    with pytest.raises(Fault) as caught:
-        _array(INT, 2, 3, 4).get(*indices)
-    assert "index" == _slug(caught)
-
-
-def test_elements_lie_in_rows() -> None:
-    """The last index runs fastest, and all of 1 to the size are elements [TYP-08, TYP-09]."""
-    array = _array(INT, 2, 3)
-    for row in (1, 2):
-        for column in (1, 2, 3):
-            array.set(10 * row + column, row, column)
-    assert [11, 12, 13, 21, 22, 23] == array.elements
-    assert 21 == array.get(2, 1)
 
 
 def test_part_of_an_array_is_no_copy() -> None:
@@ -383,89 +213,6 @@ def test_fill_copies_what_has_no_value() -> None:
 # ---------------------------------------------------------------------------------- conversion
 
 
-@pytest.mark.parametrize(
-    ("value", "to", "expected"),
-    [
-        (3, INT, 3),
-        (3, REAL, 3.0),
-        (16777217, REAL, 16777216.0),
-        (3.0, INT, 3),
-        (7.5, INT, 8),
-        (-7.5, INT, -8),
-        (0.5, REAL, 0.5),
-        (True, BOOL, True),
-        ("A", CHAR, "A"),
-        ("A", INT, 65),
-        (66, CHAR, "B"),
-        (0, CHAR, "\0"),
-        (255, CHAR, "\xff"),
-        (constant(COLOUR, "BLUE"), COLOUR, constant(COLOUR, "BLUE")),
-    ],
-)
-def test_values_are_converted(value: Value, to: Type, expected: Value) -> None:
-    """Numbers become each other's type; letters and codes do too [ARI-03, TYP-12]."""
-    found = converted(value, to)
-    assert expected == found
-    assert type(expected) is type(found)
-
-
-@pytest.mark.parametrize(
-    ("value", "to"),
-    [
-        *((True, INT), (True, REAL), (True, CHAR), (1, BOOL), (1.0, BOOL), ("A", BOOL)),
-        *((1.0, CHAR), ("A", REAL), (256, CHAR), (-1, CHAR), ("", CHAR), ("AB", CHAR)),
-        *(("AB", INT), (1, COLOUR), (constant(COLOUR, "RED"), INT), (1, UNKNOWN)),
-        (constant(COLOUR, "RED"), Enumeration("OTHER", ("RED",))),
-        (1, FRAME),
-        (1, Array(INT, (2,))),
-        ("ab", Array(INT, (2,))),
-        ("ab", Array(CHAR, (2, 2))),
-        (zero(FRAME), AXIS),
-        (zero(AXIS), POS),
-        (zero(LOAD), FRAME),
-        (zero(PART), BOX),
-    ],
-)
-def test_other_values_are_not_converted(value: Value, to: Type) -> None:
-    """All other assignments are inadmissible [ARI-11, MSG-11]."""
-    with pytest.raises(Fault) as caught:
-        converted(value, to)
-    assert 1446 == caught.value.number
-
-
-def test_real_too_large_for_int_is_an_overflow() -> None:
-    """Assigning a large REAL to an INT faults as rounding does [ARI-03]."""
-    with pytest.raises(Fault) as caught:
-        converted(3e9, INT)
-    assert "overflow" == _slug(caught)
-
-
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [(2, 2), (1.5, 2), (2.4, 2), ("\2", 2)],
-    ids=["INT", "up", "down", "CHAR"],
-)
-def test_indices_are_converted(value: Value, expected: int) -> None:
-    """A REAL is rounded to be an index, a CHAR has its code [ARI-03]."""
-    assert expected == index(value)
-
-
-def test_positions_take_what_they_have() -> None:
-    """A pose takes from another what both have; the rest then has no value [TYP-12, TYP-15]."""
-    pose = _read(E6POS, {**dict.fromkeys("XYZABC", 1), "S": 2, "T": 3, "E1": 4})
-    assert dict.fromkeys("XYZABC", 1.0) == to_json(converted(pose, FRAME))
-    assert {**dict.fromkeys("XYZABC", 1.0), "S": 2, "T": 3} == to_json(converted(pose, POS))
-    target = zero(E6POS)
-    assert isinstance(target, StructureValue)
-    fill(target, _read(FRAME, {"X": 9}))
-    assert 9.0 == target.get("X")
-    assert [None] * 13 == target.members[1:]
-    axes = _read(AXIS, {f"A{axis}": axis for axis in range(1, 7)})
-    assert {f"A{axis}": axis for axis in range(1, 7)}.items() <= to_json(
-        converted(axes, E6AXIS)
-    ).items()
-
-
 def test_arrays_take_what_fits() -> None:
     """An array of one dimension takes the first elements of another; the rest has no value."""
     target = _numbers(9, 9, 9)
@@ -510,41 +257,12 @@ def test_array_may_be_filled_with_itself() -> None:
 # ---------------------------------------------------------------------------------- texts
 
 
-@pytest.mark.parametrize(
-    ("size", "text", "expected"),
-    [(5, "", ""), (5, "abc", "abc"), (5, "abcde", "abcde"), (5, "abcdef", "abcde"), (1, "x", "x")],
-)
-def test_texts_are_cut_to_size(size: int, text: str, expected: str) -> None:
-    """A CHAR array takes what fits of a text, and nothing stands behind it [TYP-11]."""
-    array = _text(size, "zzzzz")
-    set_text(array, text)
-    assert expected == text_of(array)
-    assert [None] * (size - len(expected)) == list(array)[len(expected) :]
-
-
-def test_text_ends_at_no_value_or_code_0() -> None:
-    """The used part of a text ends before an element that has no value, or the code 0."""
-    array = _text(5, "abcde")
-    array.set(None, 4)
-    assert "abc" == text_of(array)
-    array.set("\0", 2)
-    assert "a" == text_of(array)
-    assert "ab" == text_of("ab\0c")
-
-
 @pytest.mark.parametrize("value", [1, True, _numbers(1, 2), zero(FRAME)])
 def test_only_letters_are_a_text(value: Value) -> None:
     """What is no CHAR array and no text has no text."""
     with pytest.raises(Fault) as caught:
         text_of(value)
     assert "argument" == _slug(caught)
-
-
-def test_letters_of_a_program_are_bytes() -> None:
-    """Letters of a source file become bytes of cp1252, each a character up to 255 [TYP-03]."""
-    assert "a\xe4\xdf" == letters("aäß")
-    assert "\x80" == letters("€")
-    assert "?" == letters("中")
 
 
 @given(st.text(st.characters(min_codepoint=1, max_codepoint=255), max_size=8))
