@@ -143,14 +143,22 @@ _NOTE = "made by python -m krl.highlighting --write from grammar/KRL.g4; do not 
 def _vim() -> str:
     known = words()
     groups = {
-        "krlStatement": ("Statement", known.keywords + known.contextual),
+        "krlStatement": ("Statement", known.keywords),
         "krlMotion": ("Function", known.motions),
         "krlType": ("Type", known.types),
         "krlBoolean": ("Boolean", known.constants),
         "krlOperator": ("Operator", known.operators),
-        "krlFunction": ("Function", known.functions),
     }
+
+    def one_of(listed: tuple[str, ...], after: str, before: str = "") -> str:
+        return rf"\v{before}[.$]@1<!<%({'|'.join(listed)})>%(\s*{after}"
+
+    # as `Words.behind_statement`
+    statement = rf"%([[:alnum:]_)\]]\s)@<=%(<%({'|'.join((*known.types, 'DO', 'FOR'))})\s)@<!"
     matches = {
+        "krlFunction": ("Function", one_of(known.functions, r"\()@=")),
+        "krlWord": ("Statement", one_of(known.contextual, r"%([\[.(]|\=[^=]))@!")),
+        "krlArgument": ("Statement", one_of(known.contextual, r"\=[^=])@=", statement)),
         "krlSystem": ("Identifier", r"\$\h[[:alnum:]_$]*"),
         "krlEnum": ("Constant", r"#\h[[:alnum:]_$]*"),
         "krlNumber": ("Number", r"\<\d\+\(\.\d\+\)\=\([eE][+-]\=\d\+\)\=\>"),

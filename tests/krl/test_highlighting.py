@@ -2,6 +2,8 @@
 
 import json
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -55,25 +57,51 @@ def test_no_text_stops_the_colours(text: str) -> None:
     assert text == "".join(part for _, part in found)
 
 
-@pytest.mark.parametrize(
-    ("line", "word", "kind"),
-    [
-        ("PART=1", "PART", token.Name),
-        ("  DELAY = 1", "DELAY", token.Name),
-        ("DECL INT DELAY=1", "DELAY", token.Name),
-        ("FOR STEP=1 TO 3", "STEP", token.Name),
-        ("TRIGGER WHEN DISTANCE=0 DELAY=1 DO PART=TRUE", "PART", token.Name),
-        ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO=-1", "PATH", token.Keyword),
-        ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO=-1", "DELAY", token.Keyword),
-        ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO = -1", "PRIO", token.Keyword),
-        ("TIME_BLOCK PART=30", "PART", token.Keyword),
-        ("WAIT SEC 0.5", "SEC", token.Keyword),
-    ],
+#: Lines with a word that can be a name, and whether it is a keyword there.
+LINES = (
+    ("PART=1", "PART", False),
+    ("  DELAY = 1", "DELAY", False),
+    ("DECL INT DELAY=1", "DELAY", False),
+    ("FOR STEP=1 TO 3", "STEP", False),
+    ("IF PATH[1] == 2 THEN", "PATH", False),
+    ("Job.START = 1", "START", False),
+    ("TRIGGER WHEN DISTANCE=0 DELAY=1 DO PART=TRUE", "PART", False),
+    ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO=-1", "PATH", True),
+    ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO=-1", "DELAY", True),
+    ("TRIGGER WHEN PATH=0 DELAY=-8 DO WORK( ) PRIO = -1", "PRIO", True),
+    ("TIME_BLOCK PART=30", "PART", True),
+    ("WAIT SEC 0.5", "SEC", True),
 )
-def test_a_word_that_can_be_a_name_is_one_where_it_is(line: str, word: str, kind: object) -> None:
+
+
+@pytest.mark.parametrize(("line", "word", "is_keyword"), LINES)
+def test_a_word_that_can_be_a_name_is_one_where_it_is(
+    line: str, word: str, is_keyword: bool
+) -> None:
     """It is one where a value is assigned to it, and a keyword as an argument of a statement."""
     found = {part: kind for kind, part in KrlLexer().get_tokens(f"END\n{line}\n")}
-    assert kind == found[word]
+    assert (token.Keyword if is_keyword else token.Name) == found[word]
+
+
+@pytest.mark.skipif(shutil.which("vim") is None, reason="no Vim here")
+def test_vim_tells_keywords_from_names_too(tmp_path: Path) -> None:
+    """Vim itself colours the lines; a predefined function has a colour only where it is called."""
+    lines = (*LINES, ("Abs = SIN(x)", "SIN", True), ("Abs = SIN(x)", "Abs", False))
+    program, script, said = (tmp_path / name for name in ("a.src", "look.vim", "said"))
+    program.write_text("\n".join(line for line, *_ in lines) + "\n", encoding="utf-8")
+    places = [(n, line.index(word) + 1) for n, (line, word, _) in enumerate(lines, start=1)]
+    asked = ", ".join(f"synIDattr(synID({n}, {column}, 1), 'name')" for n, column in places)
+    commands = [
+        "syntax on",
+        "runtime syntax/krl.vim",
+        f"call writefile([{asked}], '{said}')",
+        "qa!",
+    ]
+    script.write_text("\n".join(commands), encoding="utf-8")
+    vim = ["vim", "-Nu", "NONE", "--cmd", f"set runtimepath^={ROOT / 'editors/vim'}", "-es"]
+    subprocess.run([*vim, "-S", str(script), str(program)], check=True, timeout=60)
+    found = said.read_text(encoding="utf-8").splitlines()
+    assert [keyword for *_, keyword in lines] == [bool(name) for name in found]
 
 
 @pytest.mark.parametrize("name", SNIPPETS)
