@@ -232,6 +232,8 @@ class Scheduler:
                     task.blocked = None
                     if blocked.wake is None or isinstance(blocked.request, Wait | Poll):
                         task.busy_at = self.state.clock.now  # it waited, and polled nothing
+                        if not blocked.is_postponed:
+                            task.unbroken = 0
                     self.state.trace.origin = task.name, blocked.request.at
                     changes = self._changes
                     answer = blocked.finish()

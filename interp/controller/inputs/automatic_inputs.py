@@ -11,19 +11,23 @@ Flags change too, but only after five times the delay, and after the inputs: a f
 itself does not set by then is probably set by an option package, for example when a message comes.
 
 A line that reads inputs again and again for a second counts as a WAIT FOR from then on, if the
-program has changed no output, no system variable and not the place of the arm meanwhile.
+program has changed no output, no system variable and not the place of the arm meanwhile. Many main
+programs switch a heartbeat output or restart a timer in such a loop. So after five seconds it is
+enough that the program has not moved the arm.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import field
 from typing import Final
 
 from interp.controller.inputs.input_script import Assign, Script
 from interp.controller.state.state import ControllerState
 from interp.controller.state.trace import path_text
 from interp.port.requests import At, Path
+from support.lazy_dataclass import dataclass
 
 #: The actions of the operator and of the cell, as lines of a script.
 OPERATOR: Final = """\
@@ -35,13 +39,43 @@ fulfil waits after 1
 
 #: The largest number of inputs that are tried: more would have too many combinations.
 _MOST_INPUTS: Final = 10
-#: The time in µs after which a line that reads inputs counts as a wait.
+#: The time in µs after which a line that reads inputs counts as a wait: if nothing has changed, and
+#: if the arm has not moved.
 _POLLED: Final = 1_000_000
+_STOOD: Final = 5_000_000
 #: The delay of flags as a multiple of that of inputs: usually the program sets its flags itself.
 _FLAG_DELAY: Final = 5
 
 #: ``$IN`` or ``$FLAG``, and the number.
 _Place = tuple[str, int]
+#: A wait: the place of a WAIT FOR, or the `_Polls` of a loop.
+_Key = At | tuple[int, int]
+
+
+@dataclass(slots=True)
+class _Polls:
+    """Inputs that lines have read, and when each line first did, in µs.
+
+    After ``delay`` µs a line counts as a wait.
+    """
+
+    delay: int
+    read: dict[_Place, None] = field(default_factory=dict)
+    since: dict[At, int] = field(default_factory=dict)
+
+    def note(self, places: dict[_Place, None], at: At, now: int) -> bool:
+        """Note that a line has read inputs at a time in µs; return whether it counts as a wait."""
+        self.read |= places
+        return now - self.since.setdefault(at, now) >= self.delay
+
+    @property
+    def key(self) -> _Key:
+        """The wait that these polls are; another one as soon as another input is read."""
+        return self.delay, len(self.read)
+
+    def clear(self) -> None:
+        self.read.clear()
+        self.since.clear()
 
 
 class AutomaticInputs:
@@ -53,11 +87,11 @@ class AutomaticInputs:
         actions = (action for step in script.steps for action in step.actions)
         paths = [action.path for action in actions if isinstance(action, Assign)]
         self._scripted = frozenset(place for path in paths for place in _places(path))
-        self._read: dict[_Place, None] = {}
-        self._since: tuple[At, int] | None = None
-        self._is_loop = False
-        #: For each line: when it first read an input since the program changed anything or waited.
-        self._polls: dict[At, int] = {}
+        #: The wait that the program is in, and since when.
+        self._since: tuple[_Key, int] | None = None
+        #: Since a WAIT FOR or a change of anything, and since a WAIT FOR or a motion.
+        self._polls = _Polls(_POLLED)
+        self._standing = _Polls(_STOOD)
         self._changes: deque[tuple[_Place, bool]] = deque()
         #: The number of changes that were made.
         self.count = 0
@@ -78,7 +112,9 @@ class AutomaticInputs:
             then = self._since[1] + self._delay
             return then if then > self._before else None
         now = self._state.clock.now
-        return next((due for one in self._polls.values() if (due := one + _POLLED) > now), None)
+        every = (self._polls, self._standing)
+        dues = (since + polls.delay for polls in every for since in polls.since.values())
+        return min((due for due in dues if due > now), default=None)
 
     @property
     def _delay(self) -> int:
@@ -88,37 +124,42 @@ class AutomaticInputs:
 
     def was_read(self, path: Path, at: At) -> None:
         """Note that a line has read a variable; change an input if it has waited long enough."""
-        places = dict.fromkeys(_places(path))
-        self._read |= places
         self._names[path_text(path)] = None
+        places = dict.fromkeys(_places(path))
         if places:
             now = self._state.clock.now
-            is_over = now - self._polls.setdefault(at, now) >= _POLLED
-            if is_over and (self._since is None or not self._is_loop or self._since[0] == at):
-                self._is_loop = True
-                self._go_on(at, now)
+            due = [polls for polls in (self._polls, self._standing) if polls.note(places, at, now)]
+            if due:
+                self._go_on(at, due[0].key, due[0].read)
 
-    def begin(self) -> None:
+    def begin(self, *, has_moved: bool = False) -> None:
         """Note that the program has come to a WAIT FOR, or has changed something."""
-        self._read.clear()
-        self._names.clear()
         self._polls.clear()
-        self._since = None
+        self._names.clear()
+        if has_moved:
+            self._standing.clear()
+        is_standing = self._since is not None and self._since[0] == self._standing.key
+        if has_moved or not is_standing:
+            self._since = None
 
     def was_false(self, at: At) -> None:
         """Note that the condition of a WAIT FOR was FALSE; change an input if due."""
-        self._polls.clear()
-        self._is_loop = False
-        self._go_on(at, self._state.clock.now)
+        self._polls.since.clear()
+        self._standing.since.clear()
+        self._go_on(at, at, self._polls.read)
 
-    def _go_on(self, at: At, now: int) -> None:
-        """Note that the program waits at a line at a time in µs; change an input if due."""
+    def _go_on(self, at: At, key: _Key, read: Iterable[_Place]) -> None:
+        """Note that the program waits at a line, which has read inputs; change one if due.
+
+        If ``key`` is another one than before, a new wait begins.
+        """
         if self._after is None:
             return
-        if self._since is None or self._since[0] != at:
-            self._since, self._before = (at, now), now
+        now = self._state.clock.now
+        if self._since is None or self._since[0] != key:
+            self._since, self._before = (key, now), now
             self._changes.clear()
-            found = [place for place in self._read if place not in self._scripted]
+            found = [place for place in read if place not in self._scripted]
             if len(found) <= _MOST_INPUTS:
                 inputs = [place for place in found if place[0] == "$IN"]
                 self._changes += _combinations({place: self._has(place) for place in inputs})

@@ -50,6 +50,8 @@ class ScriptPlayer:
         self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
         self._held: dict[Becomes, bool] = {}
         self._pending: list[ScriptStep] = []
+        #: Whether the script may do anything.
+        self.has_steps = bool(script.steps)
         for step in script.steps:
             self._check(step)
             if isinstance(step.cause, AtTime):

@@ -24,18 +24,25 @@ from interp.port.requests import (
     Request,
     Resume,
     Slice,
+    StopAdvance,
     Wait,
     Write,
 )
+from interp.values.faults import BudgetExhausted
 from interp.values.json_form import to_json
 
 #: A program that has changed nothing for this time, in µs, may make only so many requests in a
-#: slice.
+#: slice. So may that of the robot after `_ENDLESS` requests without a wait: it is in an endless
+#: loop. After `_MOST` it ends, if there is no script that may change something for it.
 IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
-#: Requests that change nothing, and those that always do something.
+_ENDLESS: Final = 100_000
+_MOST: Final = 120_000
+#: Requests that change nothing, those that always do something, and those that an executor makes
+#: for several at once.
 _LOOKS: Final = (Read, Slice, Continue)
 _ACTS: Final = (Invoke, Halt, Confirm, BrakeArm, Resume)
+_UNCOUNTED: Final = (Slice, StopAdvance)
 
 
 class Waits:
@@ -56,6 +63,8 @@ class Waits:
         self._panel = panel
         self._player = player
         self._automatic = automatic
+        #: The number of motions that have been planned.
+        self._points = 0
 
     # ------------------------------------------------------------------------------- time
 
@@ -103,11 +112,13 @@ class Waits:
     def requests_left(self, task: Task, most: int) -> int:
         """Return how many requests a program may make in this slice.
 
-        These are few if it has changed nothing for a second: it is in a loop that waits until
-        something changes.
+        These are few if it is in a loop that waits until something changes, or in an endless loop.
         """
-        is_idle = self._state.clock.now - task.busy_at >= IDLE_AFTER and task.level is None
-        return min(most, _IDLE_REQUESTS) if is_idle else most
+        is_limited = self._is_idle(task) or task.unbroken >= _ENDLESS
+        return min(most, _IDLE_REQUESTS) if is_limited and task.level is None else most
+
+    def _is_idle(self, task: Task) -> bool:
+        return self._state.clock.now - task.busy_at >= IDLE_AFTER
 
     def is_spent(self, task: Task) -> bool:
         """Return whether the robot's program has no request left in this slice."""
@@ -115,11 +126,21 @@ class Waits:
         return task.slice_end == self.next_slice(task) and task.spent >= left
 
     def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
-        """Note that a request was answered, which may have changed something."""
+        """Note that a request was answered, which may have changed something.
+
+        Raises `BudgetExhausted` if the robot's program is in an endless loop.
+        """
         if has_changed or not isinstance(request, (*_LOOKS, Write)):
             task.busy_at = self._state.clock.now
-        if task.name == "robot" and (has_changed or isinstance(request, _ACTS)):
-            self._automatic.begin()
+        if task.name != "robot":
+            return
+        if has_changed or isinstance(request, _ACTS):
+            known, self._points = self._points, len(self._queue.points)
+            self._automatic.begin(has_moved=known != self._points)
+        if not isinstance(request, _UNCOUNTED) and not self._is_idle(task):
+            task.unbroken += 1
+            if task.unbroken >= _MOST and not self._player.has_steps:
+                raise BudgetExhausted(f"it has not ended or waited after {_MOST:,} requests")
 
     def slice(self, task: Task, request: Slice) -> Answer:
         """Let a program that has used up its statements continue in the next slice."""

@@ -79,11 +79,12 @@ class Task:
     """One program with its interrupts; each program has its own [INT-17].
 
     ``exempt_line`` is the line after a CONTINUE, whose requests do not stop the advance run.
-    ``spent`` is the number of requests in the slice that ends at ``slice_end``. ``triggers`` wait
-    for the next motion. ``busy_at`` is the time in µs at which the program last did more than read
-    variables and write the values that they had. ``polling`` is the place of a waiting WAIT FOR,
-    ``last_at`` the place of the last request. ``counting`` and ``recurrent`` are the executor if it
-    has that protocol; checking each time would take longer than a slice.
+    ``spent`` is the number of requests in the slice that ends at ``slice_end``. ``unbroken`` is the
+    number of requests since the program last waited for time, a condition or the arm. ``triggers``
+    wait for the next motion. ``busy_at`` is the time in µs at which the program last did more than
+    read variables and write the values that they had. ``polling`` is the place of a waiting WAIT
+    FOR, ``last_at`` the place of the last request. ``counting`` and ``recurrent`` are the executor
+    if it has that protocol; checking each time would take longer than a slice.
     """
 
     name: TaskName
@@ -95,6 +96,7 @@ class Task:
     reply: Value | Fault | None = None
     exempt_line: tuple[str, int] | None = None
     spent: int = 0
+    unbroken: int = 0
     slice_end: int = -1
     polling: At | None = None
     last_at: At = field(default_factory=lambda: At("", 0, 0))

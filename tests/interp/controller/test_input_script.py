@@ -1,6 +1,7 @@
 """Scripts of inputs: their language, their errors, and what they do."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -201,10 +202,45 @@ def test_loops_that_change_nothing_are_given_few_requests(body: str) -> None:
     assert 75 <= rounds <= 5 * 76
 
 
-def test_loop_that_does_something_is_no_wait(go: Go) -> None:
-    """Inputs stay as they are where a program switches outputs meanwhile."""
-    body = "WHILE NOT $IN[5]\n$OUT[2]=NOT $OUT[2]\nWAIT SEC 0.5\nENDWHILE\n"
-    ran = go(f"DEF main()\n{body}END\n", "fulfil waits after 1", until=9.0)
+@pytest.mark.parametrize(
+    ("body", "seconds"),
+    [
+        ("WHILE NOT $IN[5]\n$OUT[2]=NOT $OUT[2]\nWAIT SEC 0.5\nENDWHILE\n", 6.048),
+        ("WHILE NOT $IN[5]\n$TIMER[1]=0\nENDWHILE\n", 6.0),
+        ("WHILE NOT ($IN[5] AND NOT $IN[6])\n$OUT[2]=NOT $OUT[2]\nENDWHILE\n", 6.0),
+    ],
+)
+def test_loops_with_a_heartbeat_wait_too(body: str, seconds: float) -> None:
+    """Where a program only switches outputs, its inputs change after five more seconds."""
+    program = load([Source(f"DEF main ( )\n{body}END\n", "main.src")], "main.src")
+    script = Script.read("fulfil waits after 1")
+    setups = [RunSetup(executor=one, script=script, until=9_000_000) for one in EXECUTORS]
+    first, *others = [run_program(program, setup) for setup in setups]
+    assert ("end", 1) == (first.outcome.ending, first.controller.automatic_inputs.count)
+    assert seconds == pytest.approx(first.outcome.time / 1e6, abs=0.1)
+    assert all(first.events == other.events for other in others)
+
+
+@pytest.mark.parametrize(
+    "body", ["$OUT[1]=NOT $OUT[1]\n", "IF $TIMER[1]>=0 THEN\n$TIMER[1]=-500\nENDIF\n"]
+)
+def test_endless_loops_end(body: str) -> None:
+    """After 120,000 requests without a wait, the last of them slower; a script lets them go on."""
+    text = f"DEF main ( )\n$TIMER_STOP[1]=FALSE\nLOOP\n{body}ENDLOOP\nEND\n"
+    program = load([Source(text, "main.src")], "main.src")
+    executors = (EXECUTORS[0], EXECUTORS[-1])
+    setups = [RunSetup(executor=one, until=60_000_000) for one in executors]
+    first, *others = [run_program(program, setup) for setup in setups]
+    assert "budget" == first.outcome.ending
+    assert all(first.events == other.events for other in others)
+    script = Script.read("t=59 IN[1]=TRUE")
+    assert "time" == run_program(program, replace(setups[-1], script=script)).outcome.ending
+
+
+def test_loop_that_moves_is_no_wait(go: Go) -> None:
+    """Inputs stay as they are where a program moves the arm meanwhile."""
+    body = "WHILE NOT $IN[5]\nPTP_REL {A1 1}\nPTP_REL {A1 -1}\nENDWHILE\n"
+    ran = go(PROGRAM.format(f"{HOME}{body}"), "fulfil waits after 1", until=20.0)
     assert ("time", 0) == (ran.outcome.ending, ran.controller.automatic_inputs.count)
 
 
