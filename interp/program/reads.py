@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grammar.semantics.symbols import Kind, SignalSymbol
+from grammar.semantics.symbols import Kind, ParameterSymbol, SignalSymbol
 from grammar.semantics.types import UNKNOWN, Aggregate, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
@@ -48,6 +48,16 @@ def is_variable(unit: Unit, node: ast.Expression) -> bool:
         return False
     found = unit.found(root.name)
     return found is None or found.symbol.kind is not Kind.CONSTANT
+
+
+def is_input(unit: Unit, node: ast.Expression) -> bool:
+    """Return whether an expression is a parameter :IN, which the caller may have left out."""
+    found = unit.found(node.name) if isinstance(node, ast.Variable) else None
+    return (
+        found is not None
+        and isinstance(found.symbol, ParameterSymbol)
+        and found.symbol.mode == "IN"
+    )
 
 
 #: The message if `structure_of` returns ``None``.

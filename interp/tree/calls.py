@@ -11,11 +11,11 @@ from typing import Any
 from grammar.semantics.assignability import assignable
 from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.scopes import Found
-from grammar.semantics.types import UNKNOWN, Text, Type, is_same
+from grammar.semantics.types import UNKNOWN, Enumeration, Scalar, Text, Type, is_same
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from interp.port.requests import Invoke, StopAdvance
-from interp.program.reads import is_variable
+from interp.program.reads import is_input, is_variable
 from interp.program.variables import (
     is_complete,
     is_complete_parameter,
@@ -85,6 +85,11 @@ class Calls(Expressions):
             if not is_referable(type_, place.type):
                 raise mismatched(type_)
             return LocalPlace(place.parts, place.type, (name,), place.at)
+        if is_input(self.frame.unit, argument):  # left out, it stays so [SCO-13]
+            place = yield from self.place(argument)
+            is_empty = isinstance(place, LocalPlace) and place.get() is None
+            if is_empty and place.type == type_ and isinstance(type_, Scalar | Enumeration):
+                return fresh(type_, name)
         value = yield from self.value(argument, type_)
         made = fresh(sized(type_, value), name)
         made.set(value)

@@ -117,3 +117,4 @@ class Op(IntEnum):
     TELL_REF = 103
     TELL = 104
     TELL_BRANCH = 105
+    PASS_LOCAL = 106

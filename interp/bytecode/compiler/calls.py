@@ -38,7 +38,7 @@ from interp.bytecode.compiler.locations import (
 )
 from interp.bytecode.compiler.predefined_calls import PredefinedCalls
 from interp.program.load import Routine
-from interp.program.reads import is_variable
+from interp.program.reads import is_input, is_variable
 from interp.program.variables import (
     MOST_CELLS,
     cells_of_routine,
@@ -154,13 +154,22 @@ class Calls(CodeMaker):
             return None, self._referred(place, type_, is_view)
         if is_view:
             return None, self._copied_view(type_, argument)
-        if is_in and isinstance(self._emitter.closed(type_), Plain):
-            self._memory.convert(
-                self._expressions.value(argument, type_), self._emitter.closed(type_)
-            )
-        else:
-            self._copied(self._emitter.closed(type_), argument, is_in and not _calls(later))
+        closed = self._emitter.closed(type_)
+        if not is_in or not isinstance(closed, Plain):
+            self._copied(closed, argument, is_in and not _calls(later))
+        elif not self._is_handed_on(closed, argument):
+            self._memory.convert(self._expressions.value(argument, type_), closed)
         return None, None
+
+    def _is_handed_on(self, type_: Plain, argument: ast.Expression) -> bool:
+        """Push a parameter :IN of the same type, which may have been left out [SCO-13]."""
+        if not is_input(self._context.unit, argument):
+            return False
+        place = self._designators.place(argument)
+        if not isinstance(place, FrameCells) or place.type != type_:
+            return False
+        self._emit(Op.PASS_LOCAL, place.offset)
+        return True
 
     def _bound(self, place: SystemVariable) -> Binding:
         """Push the indices of a system variable; return its path, to compile the routine for."""

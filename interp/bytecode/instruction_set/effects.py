@@ -17,6 +17,7 @@ An effect is ``TAKES -- LEAVES``, the top of the stack at the right. ``x`` is an
 ``[x/y]``           a view of what is left of ``x`` when ``y`` leading dimensions have an index
 ``letters``         a view of CHARs in one dimension
 ``[…]?``            a view that may be missing
+``x?``              a value that may be missing, such as the cell ``x`` holds
 ``INT*x``           indices: all those of the array type or parameter ``x``, or the number ``x``
 ``rule(x,…)``       what depends on more than types: the arguments of a code object, and the like
 =================== ================================================================================
@@ -38,11 +39,12 @@ SCALARS = ("INT", "REAL", "BOOL", "CHAR")
 
 _CALL = re.compile(r"(?P<rule>\w+)\((?P<given>[\w,]*)\)")
 _FORM = re.compile(
-    r"(?P<open>[@\[]?)(?P<of>\w+)(?:(?P<mark>[,/])(?P<count>\w+))?(?P<close>\[\]|\]\??|)"
+    r"(?P<open>[@\[]?)(?P<of>\w+)(?:(?P<mark>[,/])(?P<count>\w+))?(?P<close>\[\]|\]\??|\??)"
 )
 #: What stands for one thing, by what is around the operand and its kind.
 _ITEMS: Mapping[tuple[str, str, str], str] = {
     ("", "local", ""): "local",
+    ("", "local", "?"): "missing_local",
     ("", "data", ""): "data",
     ("", "type", ""): "value",
     ("", "type", "[]"): "element_value",

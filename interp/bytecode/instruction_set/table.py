@@ -31,7 +31,7 @@ from support.lazy_dataclass import dataclass
 #: How an image begins, and the version of the format and the instruction set: a change of either
 #: makes it another one.
 MAGIC: Final = b"KRLI"
-FORMAT: Final = 3
+FORMAT: Final = 4
 #: The data lists and all frames together have at most so many cells.
 MAX_CELLS: Final = MOST_CELLS
 

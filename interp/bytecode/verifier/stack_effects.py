@@ -114,6 +114,10 @@ class StackEffects:
         """Return a value of the type of a cell in the frame."""
         return self._cells.local(cell)
 
+    def missing_local(self, cell: int) -> StackItem:
+        """The same where it may be missing."""
+        return replace(self.local(cell), is_missing=True)
+
     def data(self, cell: int) -> StackItem:
         """Return a value of the type of a cell in the data lists."""
         return self._cells.data(cell)

@@ -26,6 +26,7 @@ class MovementRules(Rules):
             Op.PUSH_NOTHING: lambda site: self._push(site, None),
             Op.DROP: self._drop,
             Op.LOAD_LOCAL: self._load_local,
+            Op.PASS_LOCAL: self._pass_local,
             Op.LOAD_DATA: self._load_data,
             Op.STORE_LOCAL: self._store_local,
             Op.STORE_DATA: self._store_data,
@@ -66,6 +67,15 @@ class MovementRules(Rules):
             if raw is None:
                 raise fault("uninitialised")
             push(raw)
+            return after
+
+        return operation
+
+    def _pass_local(self, site: Site, place: int) -> Operation:
+        state, cells, push, after = self._state, self._cells, self._stack.append, site.after
+
+        def operation() -> Operation:
+            push(cells[state.fp + place])
             return after
 
         return operation

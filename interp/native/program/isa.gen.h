@@ -3,7 +3,7 @@
 #define KRL_ISA_GEN_H
 
 #define KRL_IMAGE_MAGIC "KRLI"
-#define KRL_IMAGE_FORMAT 3
+#define KRL_IMAGE_FORMAT 4
 #define KRL_MAX_CELLS 1048576
 
 /* Kinds of operands, as bits of a byte each: the first operand lowest. */
@@ -133,6 +133,7 @@ enum krl_operand {
     X(TELL_REF, 3, 0x00050a08) \
     X(TELL, 2, 0x0000050a) \
     X(TELL_BRANCH, 1, 0x00000001) \
+    X(PASS_LOCAL, 1, 0x00000008) \
 
 enum krl_opcode {
     KRL_LINE = 0, /* -- */
@@ -241,7 +242,8 @@ enum krl_opcode {
     KRL_TELL_REF = 103, /* -- */
     KRL_TELL = 104, /* -- */
     KRL_TELL_BRANCH = 105, /* -- */
-    KRL_OPCODE_COUNT = 106
+    KRL_PASS_LOCAL = 106, /* -- cell? */
+    KRL_OPCODE_COUNT = 107
 };
 
 /* Whether an instruction of this kind never goes on to the next one. */

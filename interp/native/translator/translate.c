@@ -63,6 +63,10 @@ static void instruction(struct translator *at, int32_t place)
     case KRL_LOAD_LOCAL: case KRL_LOAD_REF:
         krl_push(at, (struct virtual_value){VARIABLE, operands[0], 0, 0, 0, 0});
         break;
+    case KRL_PASS_LOCAL:
+        krl_emit(at, KRL_STEP_PASS)->b = operands[0];
+        krl_push_result(at);
+        break;
     case KRL_LOAD_VIEW:
         for (int32_t i = 0; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
             krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});

@@ -62,6 +62,13 @@ static struct item local(struct flow *flow, int32_t cell)
     return value(flow, krl_local_kind(flow, cell));
 }
 
+static struct item missing_local(struct flow *flow, int32_t cell)
+{
+    struct item item = local(flow, cell);
+    item.is_missing = 1;
+    return item;
+}
+
 static struct item data(struct flow *flow, int32_t cell)
 {
     return value(flow, krl_data_kind(flow, cell));

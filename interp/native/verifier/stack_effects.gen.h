@@ -326,3 +326,6 @@ case KRL_FOR_LOCAL:
 case KRL_FOR_DATA:
     krl_check_for_data(flow, operands[0], operands[1], operands[2]);
     break;
+case KRL_PASS_LOCAL:
+    push(flow, missing_local(flow, operands[0]));
+    break;

@@ -17,7 +17,7 @@ from interp.program.load import Limits
 
 #: A program with something of everything, valid and not meant to make sense.
 EVERYTHING = """\
-bytecode 3
+bytecode 4
 enum COLOUR RED GREEN BLUE
 enum VAR_STATE DECLARED INITIALIZED UNKNOWN
 struct POINT X:REAL Y:REAL C:COLOUR N:CHAR[8]

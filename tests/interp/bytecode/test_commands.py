@@ -27,8 +27,8 @@ def test_text_and_image_round_trip(
     ("command", "content", "message"),
     [
         ("asm", b"\xff\xfe", "not a text in UTF-8"),
-        ("asm", b"bytecode 3\nnothing\n", "line 2: nothing begins no section"),
-        ("asm", b"bytecode 3\n", "there is no code object"),
+        ("asm", b"bytecode 4\nnothing\n", "line 2: nothing begins no section"),
+        ("asm", b"bytecode 4\n", "there is no code object"),
         ("disasm", b"", "not an image"),
         ("disasm", b"KRLI" + bytes(40), "has format 0"),
     ],
@@ -70,7 +70,7 @@ def test_what_was_compiled_is_not_compiled_again(
 def test_folders_are_no_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A folder is neither read nor written."""
     source = tmp_path / "a.kasm"
-    source.write_text('bytecode 3\ncode M routine "m" 1\nbegin\n  RETURN\nend\n', encoding="utf-8")
+    source.write_text('bytecode 4\ncode M routine "m" 1\nbegin\n  RETURN\nend\n', encoding="utf-8")
     assert 2 == main(["asm", str(tmp_path)])
     assert 2 == main(["disasm", str(tmp_path)])
     assert 2 == main(["asm", str(source), "-o", str(tmp_path)])

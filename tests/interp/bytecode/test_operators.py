@@ -43,7 +43,7 @@ def _pushed(kind: str, value: Any) -> str:
 def _program(kinds: Any, result: str, values: Any, operation: str, head: str = "") -> Program:
     pushed = "\n".join(_pushed(kind, value) for kind, value in zip(kinds, values, strict=True))
     return assemble(
-        f'bytecode 3\n{head}\nask SHOW Write ("$SHOWN") in:{result}\n'
+        f'bytecode 4\n{head}\nask SHOW Write ("$SHOWN") in:{result}\n'
         f'code MAIN routine "m" 1\nbegin\nLINE 1 E\n{pushed}\n{operation}\n'
         "ASK SHOW\nE:\nRETURN\nend\n"
     )

@@ -9,7 +9,7 @@ from interp.bytecode.assembly.disassembler import disassemble
 from interp.bytecode.program import Import
 from interp.bytecode.verifier.verify import verify
 
-HEAD = "bytecode 3\n"
+HEAD = "bytecode 4\n"
 BODY = 'code MAIN routine "main.src" 1\n  local X INT\nbegin\n{}\n  RETURN\nend\n'
 
 
@@ -104,17 +104,17 @@ def test_requests_are_written_as_they_are_nested() -> None:
     [
         ("", 1, "ends early"),
         ("bytecode 1\n", 1, "format 1"),
-        ("bytecode 3\n\nwhat X\n", 3, "begins no section"),
-        ("bytecode 3\ndata M.X NOTHING\n", 2, "no type NOTHING"),
-        ("bytecode 3\ndata M.X INT\ndata m.x INT\n", 3, "already"),
-        ("bytecode 3\ndata M.X INT[2] = 1 2 3\n", 2, "more values"),
-        ("bytecode 3\ndata M.X INT[1048577]\n", 2, "more than 1,048,576"),
-        ("bytecode 3\nstruct S A:INT\nstruct s B:INT\n", 3, "already"),
-        ("bytecode 3\ntext T 'a'\n", 2, "means nothing"),
-        ('bytecode 3\ntext T "\\x"\n', 2, "not a text"),
-        ('bytecode 3\ntext T "\\ud800"\n', 2, "not a text"),
-        ("bytecode 3\nask A Read %\n", 2, "no part"),
-        ('bytecode 3\ncode P routine "p.src" 1\n  in X #9999\n', 3, "no type #9999"),
+        ("bytecode 4\n\nwhat X\n", 3, "begins no section"),
+        ("bytecode 4\ndata M.X NOTHING\n", 2, "no type NOTHING"),
+        ("bytecode 4\ndata M.X INT\ndata m.x INT\n", 3, "already"),
+        ("bytecode 4\ndata M.X INT[2] = 1 2 3\n", 2, "more values"),
+        ("bytecode 4\ndata M.X INT[1048577]\n", 2, "more than 1,048,576"),
+        ("bytecode 4\nstruct S A:INT\nstruct s B:INT\n", 3, "already"),
+        ("bytecode 4\ntext T 'a'\n", 2, "means nothing"),
+        ('bytecode 4\ntext T "\\x"\n', 2, "not a text"),
+        ('bytecode 4\ntext T "\\ud800"\n', 2, "not a text"),
+        ("bytecode 4\nask A Read %\n", 2, "no part"),
+        ('bytecode 4\ncode P routine "p.src" 1\n  in X #9999\n', 3, "no type #9999"),
         (HEAD + BODY.format("  NOTHING"), 5, "no instruction NOTHING"),
         (HEAD + BODY.format("  JUMP L"), 5, "no label L"),
         (HEAD + BODY.format("L:\nL:"), 6, "label L already"),
@@ -126,9 +126,9 @@ def test_requests_are_written_as_they_are_nested() -> None:
         (HEAD + BODY.format("  PUSH_INT 1 2"), 5, "too much"),
         (HEAD + BODY.format("  PUSH_INT"), 5, "missing"),
         (HEAD + BODY.format("  FAIL nothing"), 5, "no fault"),
-        ('bytecode 3\ncode M routine "m" 1\nbegin\n', 3, "ends early"),
-        ('bytecode 3\ncode M nothing "m" 1\n', 2, "a code object is"),
-        ("bytecode 3\nask A Read " + "(" * 20 + "\n", 2, "too deep"),
+        ('bytecode 4\ncode M routine "m" 1\nbegin\n', 3, "ends early"),
+        ('bytecode 4\ncode M nothing "m" 1\n', 2, "a code object is"),
+        ("bytecode 4\nask A Read " + "(" * 20 + "\n", 2, "too deep"),
     ],
 )
 def test_what_is_no_program_is_refused(text: str, line: int, message: str) -> None:

@@ -19,7 +19,7 @@ from interp.bytecode.instruction_set.table import instructions
 Compare = Callable[[str], list[Any]]
 
 _HEAD = """\
-bytecode 3
+bytecode 4
 enum CASE_SENSE_T CASE_SENS NOT_CASE_SENS
 struct POINT X:REAL N:INT
 struct FRAME X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL
@@ -245,7 +245,8 @@ _WHOLE = [
 ]
 #: In drawn programs of KRL only (`krl fuzz`), as they need another routine or a line to go on at.
 _NOT_DRAWN = set(
-    "AT UNLINKED PUSH_NOTHING PUSH_NO_VIEW INDEX LOAD_VIEW PASS_VIEW ROW_VIEW COPY_VIEW".split()
+    "AT UNLINKED PUSH_NOTHING PUSH_NO_VIEW INDEX LOAD_VIEW PASS_LOCAL PASS_VIEW ROW_VIEW "
+    "COPY_VIEW".split()
 )
 #: What variables begin with.
 _FIRST = (

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from interp.native._core import Core
 
 _SMALL = """\
-bytecode 3
+bytecode 4
 struct POINT X:REAL Y:INT
 builtin LENGTH STRLEN view:CHAR[] -> INT
 ask SHOW Write ("$SHOWN") in:INT
@@ -170,7 +170,7 @@ def test_refusals_say_why(core: type[Core], change: object, reason: str) -> None
 
 
 _LOOSE = """\
-bytecode 3
+bytecode 4
 ask SHOW Write ("$SHOWN") in:INT
 data M.L INT[3]
 data M.R REAL

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _PROGRAMS = Path(__file__).resolve().parents[3] / "corpus" / "programs"
 
 _SHARED = """\
-bytecode 3
+bytecode 4
 ask SHOW Write ("$SHOWN") in:INT
 data M.I INT = 1
 code MAIN routine "m.src" 1

@@ -16,7 +16,7 @@ from interp.bytecode.image.reader import ImageError, read_image
 from interp.bytecode.image.writer import write_image
 from interp.bytecode.instruction_set.table import FORMAT
 
-SMALL = 'bytecode 3\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
+SMALL = 'bytecode 4\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
 
 
 def sealed(data: bytes) -> bytes:
@@ -84,7 +84,7 @@ def test_bytes_are_refused_quietly(data: bytes) -> None:
 
 def test_targets_lead_to_instructions() -> None:
     """A target between two words of an instruction is no target."""
-    text = 'bytecode 3\ncode M routine "m" 1\nbegin\n  JUMP L\n  PUSH_INT 5\nL:\n  RETURN\nend\n'
+    text = 'bytecode 4\ncode M routine "m" 1\nbegin\n  JUMP L\n  PUSH_INT 5\nL:\n  RETURN\nend\n'
     words = _words(write_image(assemble(text)))
     place = words.index(4, len(words) - 9)  # the word of RETURN
     words[place] = 3

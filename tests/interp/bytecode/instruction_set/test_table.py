@@ -17,7 +17,7 @@ from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.values.operators import PRIMITIVES
 
 SMALLEST = """
-bytecode 3
+bytecode 4
 code MAIN routine "main.src" 1
 begin
   RETURN

@@ -17,7 +17,7 @@ from interp.bytecode.verifier.verify import VerificationError, verify
 from interp.program.load import load
 
 HEAD = """\
-bytecode 3
+bytecode 4
 enum E ONE TWO
 enum F ONE TWO
 struct S A:INT B:REAL[3]
@@ -111,6 +111,7 @@ def test_everything_is_verified(everything: str) -> None:
         ("DROP", "stack is empty"),
         ("PUSH_NOTHING\nDROP", "a value is needed"),
         ("PUSH_NOTHING\nSTORE_LOCAL I", "stack does not hold"),
+        ("PASS_LOCAL I\nSTORE_LOCAL I", "stack does not hold"),
         ("PUSH_BOOL TRUE\nJUMP_IF L\nPUSH_INT 1\nL:\nDROP", "differs from that of another way"),
         ("LINE 2 L\nPUSH_INT 1\nL:\nDROP", "differs from that of another way"),
         ("PUSH_INT 1\nLINE 2 END\nDROP", "begins with an empty stack"),

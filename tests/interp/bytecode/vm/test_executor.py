@@ -30,7 +30,7 @@ Runner = Callable[..., list[Any]]
 Starter = Callable[..., Machine]
 
 HEAD = """\
-bytecode 3
+bytecode 4
 struct POINT X:REAL Y:REAL
 struct FRAME X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL
 struct POS X:REAL Y:REAL Z:REAL A:REAL B:REAL C:REAL S:INT T:INT
