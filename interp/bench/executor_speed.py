@@ -311,6 +311,10 @@ def _version(name: str) -> str | None:
 
 # ------------------------------------------------------------------------------- controller
 
+#: The least time in s for the comparison of one executor with and without a controller.
+_CONTROLLED = 5.0
+#: The amounts of computing in its short and in its long run.
+_COUNTS = (20, 220)
 #: A program with a request every 400,000 statements.
 _COMPUTING = f"""
 DEF RUN()
@@ -327,21 +331,28 @@ END
 
 
 def _controlled(executor: str, rounds: int) -> float:
-    """Return the ratio of computing time in a run with a controller to that without one."""
-    programs = [_program(_COMPUTING.format(count)) for count in (20, 120)]
+    """Return the ratio of computing time in a run with a controller to that without one.
+
+    Both are differences between a long and a short run, so that the start does not count. The
+    fastest run counts, of at least ``rounds`` and in `_CONTROLLED` seconds.
+    """
+    programs = [_program(_COMPUTING.format(count)) for count in _COUNTS]
     limits = Limits(statements=_LIMITS.statements)
     setup = RunSetup(executor=executor, is_traced=False, limits=limits)
     best = dict.fromkeys(product((0, 1), (False, True)), math.inf)
-    for _ in range(rounds):
+    begin, number = time.process_time(), 0
+    while number < rounds or time.process_time() - begin < _CONTROLLED:
+        number += 1
         for one, is_run in best:
+            gc.collect()
             began = time.process_time()
             if is_run:
                 ending = run_program(programs[one], setup).outcome.ending
                 if ending != "end":
                     raise MeasurementError(f"{executor}: a run ends by {ending}")
+                seconds = time.process_time() - began
             else:
-                _run(programs[one], executor, 1)
-            seconds = time.process_time() - began
+                seconds = _run(programs[one], executor, 1)[1].seconds
             best[one, is_run] = min(seconds, best[one, is_run])
     return (best[1, True] - best[0, True]) / (best[1, False] - best[0, False])
 
