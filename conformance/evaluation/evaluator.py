@@ -15,13 +15,14 @@ from itertools import chain
 from typing import Literal
 
 from conformance.evaluation.duration_laws import duration_violations
-from conformance.evaluation.motion_laws import motion_violations
+from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
 from conformance.evaluation.motions import ended
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_laws import path_violations
 from conformance.evaluation.place_laws import blend_violations, trigger_violations
 from conformance.evaluation.run_laws import run_violations
+from conformance.evaluation.spline_laws import spline_violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation
@@ -82,6 +83,8 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
         run_violations(seen),
         motion_violations(seen, motions),
         blend_violations(free),
+        blend_speed_violations(free),
+        spline_violations(free),
     ]
     if not slow:
         broken += [duration_violations(free), trigger_violations(seen, free)]

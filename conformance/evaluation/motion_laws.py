@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -18,6 +19,7 @@ from conformance.evaluation.motions import (
     ROUNDING,
     EndedMotion,
     flanges_of,
+    follows,
 )
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import (
@@ -37,6 +39,8 @@ from interp.values.poses import Pose
 
 _POINT: Final = ("X", "Y", "Z")
 _ANGLES: Final = ("A", "B", "C")
+#: The smallest number of samples in a blend that is checked.
+_FEWEST: Final = 4
 
 
 def motion_violations(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
@@ -229,3 +233,50 @@ def _too_fast(one: EndedMotion) -> Iterator[Violation]:
     most_gain = min(max(each.acceleration for each in every), one.machine.acceleration.path)
     if gains.max() > most_gain * RATE_MARGIN:
         yield one.broken("the tool keeps $ACC.CP", f"{gains.max():.4f} m/s²", "MOT-04")
+
+
+def blend_speed_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Yield blends that are faster than both motions beside them.
+
+    Between two paths of the tool that is said of the tool, which also keeps the acceleration of the
+    machine data, and between two PTP of each axis.
+    """
+    for one, other in pairwise(motions):
+        if one.stops or other.begins or not follows(one, other) or one.motion.kind == "PTP_SPLINE":
+            continue
+        first, last = np.searchsorted(one.path.times, [one.end, other.start])
+        times, axes = one.path.times[first:last], one.path.axes[first:last]
+        are_ptp = [each.motion.kind in ("PTP", "SPTP") for each in (one, other)]
+        if len(times) < _FEWEST or are_ptp[0] is not are_ptp[1]:
+            continue
+        if are_ptp[0]:
+            limits = [each.axis_rates for each in (one, other)]
+            rates = np.abs(change_rates(times, axes)).max(axis=0)
+            if limits[0] is not None and limits[1] is not None:
+                share = float((rates / np.maximum(limits[0][0], limits[1][0])).max())
+                if share > RATE_MARGIN:
+                    law = "in a blend of PTP no axis is faster than beside it"
+                    yield one.broken(law, f"{share:.1%} of it")
+            continue
+        placement = one.motion.settings.placement
+        if placement != other.motion.settings.placement or placement.mode is not IpoMode.BASE:
+            continue
+        moves = change_rates(times, one.poses(axes)[:, :3, 3]) / 1000.0
+        speed = float(np.linalg.norm(moves, axis=1).max())
+        most = max(each.motion.settings.velocity for each in (one, other))
+        most = max(
+            most,
+            *(
+                part.settings.velocity
+                for each in (one, other)
+                for part in each.motion.parts
+                if part.settings is not None
+            ),
+            0.0,
+        )
+        if speed > most * RATE_MARGIN:
+            law = "in a blend the tool is no faster than beside it"
+            yield one.broken(law, f"{speed:.4f} m/s", "BLD-15")
+        gain = float(np.linalg.norm(change_rates(times[1:], moves), axis=1).max())
+        if gain > one.machine.acceleration.path * RATE_MARGIN:
+            yield one.broken("in a blend the tool keeps $ACC_MA.CP", f"{gain:.4f} m/s²")

@@ -132,6 +132,7 @@ def _fates(trials: Sequence[Trial[Mutant]]) -> dict[str, Any]:
     return {
         "mutants": len(trials),
         **{fate: counts[fate] for fate in get_args(Fate)},
+        "by_profile": sum(one.by_profile for one in trials if one.fate == "red"),
         "unreached": sum(not one.reached for one in survived),
         "unsure": sum(
             bool(one.reached) and not one.sure for one in trials if one.fate in ("soft", "survived")

@@ -109,13 +109,34 @@ def _reach(case: Case, setup: Setup, marks: Mapping[str, _Marks]) -> Reach | Non
 
 
 def seen_digest(seen: Observation) -> str:
-    """SHA-256 of all that is evaluated; the path to a ten-millionth of a degree or mm."""
+    """Return the SHA-256 of all that is evaluated; the path to a ten-millionth of a degree or mm.
+
+    Runs with the same digest are the same; those with another may differ by rounding (`is_alike`).
+    """
     found = hashlib.sha256(repr((seen.events, seen.ending, seen.note)).encode())
     if (path := seen.path) is not None:
         found.update(repr((path.placements, path.motions)).encode())
         for rows in (path.times, path.axes, path.points):
             found.update((np.round(rows, 7) + 0.0).tobytes())
     return found.hexdigest()
+
+
+def is_alike(one: Observation, other: Observation) -> bool:
+    """Return whether two runs are the same but for a millionth of a degree or mm in the path."""
+    if (one.events, one.ending, one.note) != (other.events, other.ending, other.note):
+        return False
+    first, second = one.path, other.path
+    if first is None or second is None:
+        return first is second
+    if first.placements != second.placements or first.motions != second.motions:
+        return False
+    rows = (
+        (getattr(path, name) for name in ("times", "axes", "points")) for path in (first, second)
+    )
+    return all(
+        a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=1e-6)
+        for a, b in zip(*rows, strict=True)
+    )
 
 
 # ------------------------------------------------------------------------------- marked lines

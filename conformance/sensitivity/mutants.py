@@ -114,7 +114,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
                 for name in (
                     *("link", "run_out", "apply", "_act", "_end_path", "_first_deadlocked"),
                     *("_check", "_check_link", "_settle", "_cancel_deadlocked", "_drop_behind"),
-                    "_drop_start_link",
+                    *("_drop_start_link", "_act_when_due"),
                 )
             ),
             "interp.robot.kinematics.*._check_*",

@@ -27,7 +27,7 @@ from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import Result, observed_within, run_case
-from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, reach_of, seen_digest
+from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, is_alike, reach_of, seen_digest
 from conformance.sensitivity.mutants import (
     InvalidMutant,
     Mutant,
@@ -53,7 +53,7 @@ _IN_C: Final = Setup("native", _ROBOT)
 _APART: Final = ("interp.values.", "interp.tree.")
 _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 #: The fields of a trial but for its fault.
-OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed")
+OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed", "by_profile")
 #: The largest number of cases that may fail which are run with a fault.
 MOST: Final = 1000
 #: The limit of processor time for a case in s; all of them need less than a tenth of it.
@@ -80,6 +80,7 @@ class Trial(Generic[_Fault]):
     sure: int = 0
     runs: int = 0
     changed: str = ""
+    by_profile: bool = False
 
 
 def is_possible() -> bool:
@@ -332,37 +333,48 @@ def _outcomes(fault: SeededFault, cases: _Candidates, executor: str) -> Iterator
 
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
     runs, changed = 0, ""
+    differing: list[tuple[Case, Observation]] = []
     setups = [Setup(executor, _ROBOT)]
     if executor == "tree" and fault.module.startswith(_APART) and not missing(_IN_C):
         setups.append(_IN_C)
     try:
         with fault.plant():
             for runs, one in enumerate(cases.tried, 1):
-                name = one.case.name
-                fate: Fate | None = "red" if one.case.may_fail else "soft"
-                yield {"fate": fate, "case": name, "why": "the process ended", "runs": runs}
-                fate, why, seen = _noticed(one, setups)
-                changed = changed or (name if seen != one.seen else "")
-                outcome = {"fate": fate or "survived", "why": why, "runs": runs, "changed": changed}
+                case = one.case
+                fate: Fate | None = "red" if case.may_fail else "soft"
+                yield {"fate": fate, "case": case.name, "why": "the process ended", "runs": runs}
+                seen = observed_within(case, setups[0], _SECONDS)
+                if seen_digest(seen) == one.seen:
+                    continue
+                differing.append((case, seen))
+                fate, why, by_profile = _noticed(case, seen, setups)
                 if fate:
-                    yield {**outcome, "case": name}
+                    changed = differing[0][0].name
+                    yield {
+                        "fate": fate,
+                        "case": case.name,
+                        "why": why,
+                        "runs": runs,
+                        "changed": changed,
+                        "by_profile": by_profile,
+                    }
                     return
-            yield outcome
+        for case, seen in differing:
+            if not is_alike(seen, observe(case, setups[0])):
+                changed = case.name
+                break
+        yield {"fate": "survived", "runs": runs, "changed": changed}
     except InvalidMutant as error:
         yield {"fate": "invalid", "why": str(error)}
 
 
-def _noticed(reach: Reach, setups: Sequence[Setup]) -> tuple[Fate | None, str, str]:
-    """Return how a case notices the fault that is planted, why, and the digest of its run.
+def _noticed(
+    case: Case, first: Observation, setups: Sequence[Setup]
+) -> tuple[Fate | None, str, bool]:
+    """Return how a case notices the fault that is planted, why, and `Trial.by_profile`.
 
-    If the run is the same as without the fault, nothing is evaluated, and the other executor is not
-    run.
+    ``first`` is what was observed with the first setup.
     """
-    case = reach.case
-    first = observed_within(case, setups[0], _SECONDS)
-    digest = seen_digest(first)
-    if digest == reach.seen:
-        return None, "", digest
 
     def see(case: Case, setup: Setup) -> Observation:
         return first if setup is setups[0] else observe(case, setup)
@@ -370,10 +382,19 @@ def _noticed(reach: Reach, setups: Sequence[Setup]) -> tuple[Fate | None, str, s
     results = run_case(case, setups, KnownFailures(), see, most=_SECONDS).results
     bad = sorted((one for one in results if one.verdict not in ("pass", "skipped")), key=_grave)
     if bad:
-        return ("red" if bad[0].verdict == "fail" else "soft"), bad[0].reason, digest
+        fate: Fate = "red" if bad[0].verdict == "fail" else "soft"
+        return fate, bad[0].reason, _is_by_profile(bad[0])
     if any(one.verdict == "pass" for one in results):
-        return None, "", digest
-    return ("red" if case.may_fail else "soft"), "it was skipped", digest
+        return None, "", False
+    return ("red" if case.may_fail else "soft"), "it was skipped", False
+
+
+def _is_by_profile(result: Result) -> bool:
+    """Return whether all that failed a case are laws that rest on no rule."""
+    sure = [one for one in result.checks if one.state == "unmet" and one.is_sure]
+    seen = result.observation
+    is_other = result.divergence is not None or seen is None or seen.ending == "crash"
+    return bool(sure) and not is_other and not any(one.basis for one in sure)
 
 
 def _grave(result: Result) -> bool:

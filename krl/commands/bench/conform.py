@@ -181,6 +181,10 @@ def _print_mutants(drawn: Mapping[str, Any]) -> None:
         table.add_row(name, *(f"{one:,}" for one in counts), f"{row['share']:.1%}")
     console.print(table)
     console.print(
+        f"of {drawn['red']:,} red ones {drawn['by_profile']:,} only break laws of our simulator "
+        "(docs/motion.md), which rest on no rule of KRL"
+    )
+    console.print(
         f"of {drawn['survived']:,} that survived, {drawn['unreached']:,} are on lines that no case "
         f"runs; {drawn['unchanged']:,} change nothing that can be seen of the cases tried"
     )

@@ -10,10 +10,11 @@ import pytest
 
 from conformance.evaluation.duration_laws import duration_violations, seconds_of
 from conformance.evaluation.execution import Setup, observe
-from conformance.evaluation.motion_laws import motion_violations
+from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
 from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.place_laws import blend_violations, trigger_violations
+from conformance.evaluation.spline_laws import spline_violations
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
 from interp.robot.arm import Approximation, Place, SplinePart
@@ -108,6 +109,8 @@ def broken(run: Observation) -> list[tuple[str, int]]:
     found = (
         *motion_violations(run, motions),
         *blend_violations(motions),
+        *blend_speed_violations(motions),
+        *spline_violations(motions),
         *duration_violations(motions),
         *trigger_violations(run, motions),
     )
@@ -175,6 +178,7 @@ def test_a_path_keeps_speed_and_acceleration() -> None:
     assert ("MOT-04", 8) in broken(settings_of(8, velocity=0.02))
     assert ("MOT-04", 8) in broken(settings_of(8, acceleration=0.1))
     assert [("", 8)] == broken(settings_of(8, velocity=0.055))
+    assert [("", 9)] == broken(settings_of(9, velocity=0.055))
 
 
 def test_a_ptp_is_as_quick_as_its_axes() -> None:
@@ -275,7 +279,7 @@ def test_a_spline_passes_its_points() -> None:
     parts = SplinePart("SPL", {"X": 501.0, "Y": 50.0, "Z": 890.0}), *block.parts[1:]
     motions = *others, (time, replace(block, parts=parts))
     changed = replace(run, path=replace(run.path, motions=motions))
-    assert [("SPL-03", block.at.line)] == broken(changed)
+    assert [("SPL-03", block.at.line), ("", block.at.line)] == broken(changed)
 
 
 def test_a_motion_that_ends_the_run_is_judged_too() -> None:
@@ -334,3 +338,74 @@ def test_the_flange_of_the_cases_arm() -> None:
     """Stretched forward at zero: its lengths in a row."""
     (pose,) = flanges_of(default_machine().chain, np.zeros((1, 6)))
     assert [980.0, 0.0, 435.0] == pytest.approx(pose[:3, 3].tolist())
+
+
+#: Blocks of all kinds of segments, one that meets itself and has a corner, and one of axes.
+_BLOCKS: Final = """DEF a()
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  SPLINE
+    SPL {X 465, Y 40, Z 880, A 10, B 180, C 0}
+    SPL {X 485, Y 60, Z 900, A 25, B 170, C 0}
+    SLIN {X 525, Y 60, Z 900}
+    SPL {X 545, Y 20, Z 880}
+    SCIRC {X 525, Y 0, Z 890}, {X 505, Y 20, Z 900}
+    SPL {X 485, Y 60, Z 900, A 0, B 180, C 0}
+    SLIN {X 485, Y 90, Z 900}
+    SLIN {X 445, Y 0, Z 890}
+  ENDSPLINE
+  PTP_SPLINE
+    SPTP {A1 10, A2 -80}
+    SPTP {A1 5, A3 100, A6 30}
+    SPTP {A1 0, A2 -90, A3 90, A6 0}
+  ENDSPLINE
+END
+"""
+
+
+@pytest.mark.parametrize(
+    ("share", "line", "axis", "size"),
+    [(0.2, 0, 0, 0.0), (0.3, 5, 0, 0.02), (0.3, 5, 5, 0.6), (0.8, 5, 2, 0.02), (0.5, 15, 1, 0.05)],
+)
+def test_a_spline_block_has_its_shape(share: float, line: int, axis: int, size: float) -> None:
+    """A bump in one axis within a block is off the points, the orientation or the axes."""
+    run = seen(_BLOCKS)
+    assert run.path is not None
+    bumped = run
+    for one in ended(run):
+        if one.motion.at.line == line:
+            middle, width = one.start + share * (one.end - one.start), 0.1 * (one.end - one.start)
+            axes = run.path.axes.copy()
+            axes[:, axis] += size * np.exp(-(((run.path.times - middle) / width) ** 2))
+            bumped = replace(run, path=replace(run.path, axes=axes))
+    found = [one.event.line for one in spline_violations(tuple(ended(bumped))) if one.event]
+    assert [line] * (size > 0.0) == found
+
+
+@pytest.mark.parametrize(("line", "law"), [(10, "no axis is faster"), (13, "tool is no faster")])
+def test_a_blend_is_no_faster_than_what_is_beside_it(line: int, law: str) -> None:
+    """With lower speeds on both sides it is."""
+    path = seen().path
+    assert path is not None
+    slow = tuple(
+        (
+            time,
+            replace(
+                motion,
+                settings=replace(
+                    motion.settings,
+                    velocity=0.01,
+                    axis_velocity=(5.0,) * len(motion.settings.axis_velocity),
+                ),
+            ),
+        )
+        for time, motion in path.motions
+    )
+    run = with_path(lambda path: replace(path, motions=slow))
+    right = blend_speed_violations(tuple(ended(seen())))
+    wrong = {
+        one.event.line: one.law for one in blend_speed_violations(tuple(ended(run))) if one.event
+    }
+    assert [] == list(right)
+    assert law in wrong[line]
