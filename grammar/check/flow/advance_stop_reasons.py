@@ -18,7 +18,7 @@ from support.lazy_dataclass import dataclass
 _IN_STEP = "it is read or set in step with the robot"
 _WAITS = "the program continues when the robot has reached it"
 #: Delivered with every controller, and written so that it does not stop without need [ADV-06].
-_HARMLESS = frozenset({"BAS"})
+HARMLESS = frozenset({"BAS"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def _waiting(context: Context, node: ast.Node) -> AdvanceStop | None:
 def is_known_call(context: Context, node: ast.Node, is_test: bool = False) -> bool:
     """Return whether the calls in a statement are known neither to move nor to stop."""
     return all(
-        inner.name.key in _HARMLESS or _is_system(context, inner.name)
+        inner.name.key in HARMLESS or _is_system(context, inner.name)
         for expression in evaluated(node, is_test)
         for inner in walk(expression)
         if isinstance(inner, ast.Call)

@@ -10,18 +10,23 @@ All of this is valid, so it is reported as notes, and only on request.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+from grammar.check.analysis.accesses import address_of
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.check.analysis.statement_heads import head, line_of
-from grammar.check.flow.advance_stop_reasons import AdvanceStop, is_known_call, stop_of
-from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.check.flow.advance_stop_reasons import HARMLESS, AdvanceStop, is_known_call, stop_of
+from grammar.check.flow.routine_summaries import ITSELF, STOPS, Clause, Fact, Summaries, Suspect
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.syntax import ast
+from grammar.syntax.walk import walk
 from support.lazy_dataclass import dataclass
 
 #: So many statements behind an approximated motion are looked at.
 _FARTHEST_LOOK = 200
+_EXACT_STOP = "{}, and the robot stops exactly at this point (message 1442 or 1123)"
 _MOTIONS = ast.Motion | ast.SplineBlock | ast.EmilyMotion
 
 
@@ -33,11 +38,31 @@ def check(context: Context) -> Iterator[Diagnostic]:
         yield from _Routine(context, routine).notes()
 
 
+def with_stops(context: Context, known: Summaries | None) -> Summaries | None:
+    """Return the summaries of a file, with the routines that stop the advance run before they move.
+
+    A blend is lost before a call of such a routine.
+    """
+    if context.module.suffix == ".sub":
+        return known
+    clauses: list[Clause] = []
+    suspects: list[Suspect] = []
+    for routine in context.routines:
+        notes = _Routine(context, routine)
+        clauses += notes.clauses()
+        suspects += notes.suspects()
+    if not clauses and not suspects:
+        return known
+    known = known or Summaries(context.source.path)
+    return replace(known, clauses=(*known.clauses, *clauses), suspects=(*known.suspects, *suspects))
+
+
 @dataclass(frozen=True, slots=True)
 class _Ahead:
     """What may come between a motion and the next one: stops, and whether the end is possible."""
 
     stops: tuple[FlowNode, ...]
+    calls: tuple[Fact, ...]
     is_open: bool
 
 
@@ -46,6 +71,7 @@ class _Routine:
 
     def __init__(self, context: Context, routine: RoutineBody) -> None:
         self._context = context
+        self._routine = routine
         self._statements = [placed.statement for placed in routine.statements]
         self._continues = [node for node in self._statements if isinstance(node, ast.Continue)]
         self._spent = {line_of(context.source, node) + 1 for node in self._continues}
@@ -91,6 +117,33 @@ class _Routine:
             fix=fix if stop.can_go_ahead else None,
         )
 
+    # ------------------------------------------------------------------------------ calls
+
+    def clauses(self) -> Iterator[Clause]:
+        """Yield what has to be true for the routine to stop the advance run before it moves."""
+        ahead = self._ahead(self._ways.start)
+        if not ahead.is_open and (ahead.stops or ahead.calls):
+            name = self._routine.node.name.key
+            yield (STOPS, self._context.module.path, name, ITSELF), ahead.calls
+
+    def suspects(self) -> Iterator[Suspect]:
+        """Yield the approximated motions behind which only routines are called that may stop."""
+        source = self._context.source
+        for step, _, _ in self._ways.steps:
+            criteria = _criteria(step.statement)
+            ahead = self._ahead(step) if criteria else None
+            if step.statement is None or ahead is None or ahead.is_open or ahead.stops:
+                continue
+            names = list(dict.fromkeys(name for _, _, name, _ in ahead.calls))
+            said = f"{' and '.join(names)} stop{'s' * (len(names) == 1)} the advance run"
+            yield Suspect(
+                "no-blend",
+                Region.of(source, head(source, step.statement)),
+                f"{criteria} is lost: {said}",
+                _EXACT_STOP.format("before the next motion"),
+                ahead.calls,
+            )
+
     # ------------------------------------------------------------------------------ blends
 
     def _blend(self, motion: FlowNode) -> Iterator[Diagnostic]:
@@ -105,16 +158,18 @@ class _Routine:
         shown = ", ".join(map(str, lines[:3])) + (" …" if len(lines) > 3 else "")
         where = f"line{'s' * (len(lines) > 1)} {shown}"
         criteria = _criteria(motion.statement)
-        how = "where the way leads there" if ahead.is_open else "before the next motion"
+        is_open = ahead.is_open or bool(ahead.calls)
+        how = "where the way leads there" if is_open else "before the next motion"
         yield self._context.finding(
             "no-blend",
             head(source, motion.statement),
             f"{criteria} is lost: {where} stop{'s' * (len(lines) == 1)} the advance run",
-            reason=f"{how}, and the robot stops exactly at this point (message 1442 or 1123)",
+            reason=_EXACT_STOP.format(how),
         )
 
     def _ahead(self, motion: FlowNode) -> _Ahead:
         found: list[FlowNode] = []
+        calls: dict[Fact, None] = {}
         is_open = False
         seen = {motion}
         todo = [motion]
@@ -127,11 +182,22 @@ class _Routine:
                 stop = self._stop(step.statement, step.is_test)
                 if stop is not None and not self._is_taken_back(stop):
                     found.append(step)
+                elif (called := self._called(step)) is not None:
+                    calls[STOPS, *called, ITSELF] = None
                 elif self._is_boundary(step) or len(seen) > _FARTHEST_LOOK:
                     is_open = True
                 else:
                     todo.append(step)
-        return _Ahead(tuple(found), is_open)
+        return _Ahead(tuple(found), tuple(calls), is_open)
+
+    def _called(self, step: FlowNode) -> tuple[str, str] | None:
+        """Return the routine that a statement calls, if it is the only one and at hand."""
+        node = step.statement
+        if not isinstance(node, ast.CallStatement) or node.call.name.key in HARMLESS:
+            return None
+        if any(isinstance(inner, ast.Call) and inner is not node.call for inner in walk(node)):
+            return None
+        return address_of(self._context.found(node.call.name))
 
     def _is_boundary(self, step: FlowNode) -> bool:
         """Return whether the next motion begins here, or may begin in a called routine."""

@@ -25,6 +25,8 @@ from support.lazy_dataclass import dataclass
 
 #: Something about a parameter, or about the routine itself if the index is -1.
 Fact = tuple[str, str, str, int]
+#: A fact and those that it follows from.
+Clause = tuple[Fact, tuple[Fact, ...]]
 
 #: Every way through the routine reads the parameter before it gets a value.
 READS = "reads"
@@ -32,8 +34,10 @@ READS = "reads"
 WRITES = "writes"
 #: The routine never returns.
 ENDLESS = "endless"
+#: The routine stops the advance run before it moves; looked for on demand.
+STOPS = "stops"
 
-_ITSELF = -1
+ITSELF = -1
 #: Behind these statements the next one may not come, and all ways to the end may lead nowhere.
 _TURNING = frozenset({ast.Loop, ast.While, ast.Repeat, ast.Goto})
 #: These leave a routine, or pass by statements of it.
@@ -63,7 +67,7 @@ class Summaries:
     """
 
     path: str
-    clauses: tuple[tuple[Fact, tuple[Fact, ...]], ...] = ()
+    clauses: tuple[Clause, ...] = ()
     bounds: tuple[tuple[Parameter, Bound], ...] = ()
     handed_on: tuple[tuple[Parameter, Parameter], ...] = ()
     constants: tuple[tuple[Parameter, float, Region], ...] = ()
@@ -77,7 +81,7 @@ class SummaryCollector:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._path = context.module.path
-        self._clauses: dict[tuple[Fact, tuple[Fact, ...]], None] = {}
+        self._clauses: dict[Clause, None] = {}
         self._bounds: list[tuple[Parameter, Bound]] = []
         self._handed_on: list[tuple[Parameter, Parameter]] = []
         self._constants: dict[tuple[Parameter, float], Region] = {}
@@ -189,7 +193,7 @@ class SummaryCollector:
         if context.module.words or context.is_cut(routine):
             return
         kinds = {type(one.statement) for one in routine.statements}
-        this = ENDLESS, self._path, routine.node.name.key, _ITSELF
+        this = ENDLESS, self._path, routine.node.name.key, ITSELF
         if kinds & _TURNING and not _returns(routine):
             self._clauses[this, ()] = None
             return
@@ -210,7 +214,7 @@ class SummaryCollector:
                 called = address_of(context.found(statement.call.name))
                 if called is None or called in seen:
                     continue
-                fact = ENDLESS, *called, _ITSELF
+                fact = ENDLESS, *called, ITSELF
                 if number == 0 and not kinds & _LEAVING:
                     self._clauses[this, (fact,)] = None
                 if following is not None and type(following) is not ast.Label:
@@ -248,7 +252,7 @@ def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
                     yield diagnose(bound.slug, one.path, region, message, severity="warning")
 
 
-def _facts(clauses: Iterable[tuple[Fact, tuple[Fact, ...]]]) -> set[Fact]:
+def _facts(clauses: Iterable[Clause]) -> set[Fact]:
     """Return the least fixed point of some clauses."""
     found: set[Fact] = set()
     waiting: dict[Fact, list[tuple[Fact, set[Fact]]]] = {}

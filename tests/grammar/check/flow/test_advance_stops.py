@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 
 from grammar.check.analysis.context import Context
 from grammar.check.flow import advance_stops
+from grammar.check.project.batch import CheckOptions, check_paths
 from grammar.check.project.framework import check_module
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link
@@ -214,3 +216,32 @@ def test_no_blends_without_advance_run() -> None:
         "LIN P C_DIS",
         data="DECL E6POS P\nDECL INT N",
     )
+
+
+@pytest.mark.parametrize(
+    ("body", "is_lost"),
+    [
+        ("$OUT[1] = TRUE", True),
+        ("IF $IN[1] THEN\nHALT\nENDIF\nPTP XP1", True),
+        ("N = 1\nINNER()", True),
+        ("CONTINUE\n$OUT[1] = TRUE", False),
+        ("PTP XP1\n$OUT[1] = TRUE", False),
+        ("IF N > 1 THEN\n$OUT[1] = TRUE\nENDIF", False),
+        ("N = 1", False),
+        ("LOOP\nN = 1\nENDLOOP", False),
+        ("WORK()", False),
+    ],
+)
+def test_blends_before_routines_that_stop(tmp_path: Path, body: str, *, is_lost: bool) -> None:
+    """A called routine that stops before it moves, by itself or by another, takes the blend."""
+    data = "DEFDAT DATA PUBLIC\nDECL GLOBAL INT N=0\nDECL GLOBAL POS XP1={X 1}\nENDDAT\n"
+    (tmp_path / "DATA.dat").write_text(data, encoding="utf-8")
+    for name, text in {
+        "MAIN": "PTP XP1 C_PTP\nBAS(#VEL_PTP, 50)\nWORK()\nPTP XP1",
+        "WORK": body,
+        "INNER": "WAIT SEC 0",
+    }.items():
+        (tmp_path / f"{name}.src").write_text(f"DEF {name}()\n{text}\nEND\n", encoding="utf-8")
+    found = check_paths([tmp_path], CheckOptions(stops=True), jobs=1).diagnostics
+    lost = [(one.path.rpartition("/")[2], one.region.line) for one in found if one.code == "KRL602"]
+    assert lost == [("MAIN.src", 2)] * is_lost
