@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
+from grammar.diagnostics.diagnostic import Diagnostic
+
 Agrees = Callable[..., None]
 
 
@@ -143,3 +145,20 @@ def test_variables_that_nothing_gives_a_value(
     other = "DEFDAT OTHER\nIMPORT INT M IS /R1/NEG..N\nENDDAT"
     given |= {"NEG.dat": data.format(""), "OTHER.dat": other}
     agrees(given, with_data=True, is_complete=is_complete, ignored=ignored)
+
+
+def test_the_routine_is_named(finds: Callable[..., list[Diagnostic]]) -> None:
+    """The reason says which routine reads a variable, or which ones give it no value."""
+    given = files(
+        "DEF NEG()\nINT I, J, K\nREADS(I)\nLEAVES(J)\n$ANOUT[1] = J\nLEAVES(K)\nSKIPS(K)\n"
+        "$ANOUT[1] = K\nEND",
+        "DEF READS(N)\nINT N\nIF N > 1 THEN\nN = 1\nENDIF\nEND",
+        "DEF LEAVES(N)\nINT N\nHALT\nEND",
+        "DEF SKIPS(N)\nINT N\nHALT\nEND",
+    )
+    found = [(one.region.line, one.reason) for one in finds(given) if one.code == "KRL409"]
+    assert found == [
+        (3, "READS reads it before it assigns to it"),
+        (5, "LEAVES gives it none"),
+        (8, "LEAVES and SKIPS give it none"),
+    ]
