@@ -29,6 +29,7 @@ from recovery.induction.folds_of_declarations import (
     words_as_types,
 )
 from recovery.induction.folds_of_operands import (
+    any_operands,
     headers,
     leading,
     named_arguments,
@@ -57,6 +58,7 @@ FOLDS: tuple[Callable[[GrammarView], Iterator[Inferred]], ...] = (
     modifiers,
     undeclared,
     variables,
+    any_operands,
     derived_words,
     analogous_words,
     named_arguments,

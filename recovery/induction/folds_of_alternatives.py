@@ -8,7 +8,6 @@ from itertools import combinations, takewhile
 from grammar.notation.edits import (
     AddAlternative,
     AddRule,
-    AddToken,
     Edit,
     Insert,
     RemoveAlternative,
@@ -99,8 +98,8 @@ def derived_words(view: GrammarView) -> Iterator[Inferred]:
 def analogous_words(view: GrammarView) -> Iterator[Inferred]:
     """Yield words by analogy: ``PTP_REL`` belongs to ``PTP`` as ``LIN_REL`` belongs to ``LIN``.
 
-    The new word has the form of the derived one; it is also a name if names have a rule. Both base
-    words must have a form of an operand and endings, and share some of the endings.
+    The new word has the form of the derived one. Both base words must have a form of an operand and
+    endings, and share some of the endings.
     """
     leading = _leading_words(view)
     for (rule, derived, number), (other, base, place) in _derived(leading):
@@ -109,14 +108,10 @@ def analogous_words(view: GrammarView) -> Iterator[Inferred]:
             new = derived.replace(base, word, 1)
             alike = endings & _endings_behind_operand(view, third, where)
             is_new = new not in view.lexer.kind_of and affix not in word
-            if alike and is_new and view.rules.names:
+            if alike and is_new:
                 known = view.grammar.by_name[rule]
                 text = known.source_of(view.alternative(rule, number)).replace(derived, new, 1)
-                edits = (
-                    AddToken(new),
-                    AddAlternative(view.rules.names, new),
-                    AddAlternative(rule, text),
-                )
+                edits = (*view.profile.vocabulary.reserve([new]), AddAlternative(rule, text))
                 title = f"{new} is to {word} as {derived} is to {base}"
                 breadth = FOLDING_SYMBOLS + len([*walk(view.alternative(rule, number))])
                 yield Inferred(title, edits, (), breadth=breadth)

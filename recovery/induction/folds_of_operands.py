@@ -8,15 +8,15 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, takewhile
 
 from grammar.notation.addresses import Address, element_at, sequences
-from grammar.notation.edits import AddAlternative, Insert, Replace, Widen
-from grammar.notation.model import (
-    Element,
-    Group,
-    Reference,
-    Repeat,
-    Rule,
-    walk,
+from grammar.notation.edits import (
+    AddAlternative,
+    Edit,
+    Insert,
+    RemoveAlternative,
+    Replace,
+    Widen,
 )
+from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule, walk
 from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.steps import Inferred
 from recovery.tuning import FOLDING_SYMBOLS
@@ -162,6 +162,45 @@ def variables(view: GrammarView) -> Iterator[Inferred]:
             if edits and called & reading:
                 title = f"variables beside values in {rule.name} {number}"
                 yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+
+
+def any_operands(view: GrammarView) -> Iterator[Inferred]:
+    """Yield any operand in place of a choice of variables and values."""
+    widest = view.rules.widest or ""
+    for rule in view.grammar.rules:
+        if rule.is_lexer or rule.name in view.rules.recursive:
+            continue
+        edits: list[Edit] = []
+        if _are_variables_and_values(view, rule.alternatives):
+            edits.append(Replace(rule.name, (1, 1), widest))
+            count = len(rule.alternatives)
+            edits += (RemoveAlternative(rule.name, n) for n in range(count, 1, -1))
+        else:
+            for address, sequence in sequences(rule):
+                for place, element in enumerate(sequence.elements, 1):
+                    often = element.operator if isinstance(element, Repeat) else ""
+                    group = element.item if isinstance(element, Repeat) else element
+                    if isinstance(group, Group) and _are_variables_and_values(
+                        view, group.alternatives
+                    ):
+                        edits.append(Replace(rule.name, (*address, place), f"{widest}{often}"))
+        title = f"any operand in {rule.name} in place of variables and values"
+        yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
+
+
+def _are_variables_and_values(view: GrammarView, alternatives: Sequence[Alternative]) -> bool:
+    """Return whether alternatives are rules of operands, some of variables and some of values."""
+    named = view.rules.matcher.rules_for((view.lexer.name_kind,)) - {view.rules.names}
+    widest, found = view.rules.widest, set[bool]()
+    for alternative in alternatives:
+        match alternative.elements:
+            case (Reference(name=name, is_token=False),) if (
+                widest and name != widest and view.rules.includes(widest, name)
+            ):
+                found.add(name in named)
+            case _:
+                return False
+    return len(found) == 2
 
 
 def named_arguments(view: GrammarView) -> Iterator[Inferred]:

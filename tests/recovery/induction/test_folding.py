@@ -12,6 +12,7 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.induction.folding import FOLDS, folds_of
+from recovery.induction.folds_of_operands import any_operands
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import Inferred
 
@@ -332,7 +333,7 @@ def test_what_holds_beside_alike_in_blocks(title: str, accepted: str, rejected: 
 def test_a_fold_reads_all_that_was_read(kind: Callable[[GrammarView], Iterator[Inferred]]) -> None:
     """Each kind of fold is offered, well formed, and reads the sentences of the grammar."""
     offered = 0
-    for text in (_GRAMMAR, _LIKE, _declared(), _blocks()):
+    for text in (_GRAMMAR, _LIKE, _declared(), _blocks(), _values()):
         grammar = read(text)
         sentences, speller, random = Sentences(grammar), Speller(grammar), Random(3)
         texts = [speller.text(sentences.random(random)) for _ in range(100)]
@@ -343,6 +344,31 @@ def test_a_fold_reads_all_that_was_read(kind: Callable[[GrammarView], Iterator[I
             assert (None, []) == (problem(folded), [t for t in texts if not recognizer.accepts(t)])
             offered += 1
     assert offered
+
+
+def test_any_operand_in_place_of_variables_and_values() -> None:
+    """A choice of a variable and a value reads any operand, be it a group or a rule."""
+    grammar = read(_values())
+    folds = {fold.title: fold.edits for fold in any_operands(GrammarView(Recognizer(grammar), ()))}
+    title = "any operand in {} in place of variables and values"
+    for rule, text in (("line", "WAIT 1 + 1\n"), ("target", "MOVE A + 1\n")):
+        after = apply(grammar, folds[title.format(rule)])
+        assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, after))
+        assert not Recognizer(after).accepts("TURN 1\n")
+
+
+def _values() -> str:
+    rules = """
+line : SET NAME '=' sum | WAIT (number | variable)? | MOVE target | TURN (NAME | variable) ;
+target : variable | number ;
+sum : one ('+' one)* ;
+one : number | variable | '(' sum ')' ;
+number : NUMBER ;
+variable : NAME ('.' NAME)* ;
+"""
+    words = "".join(f"{word} : '{word}' ;\n" for word in ("WAIT", "MOVE", "TURN", "SET"))
+    tokens = f"DOT : '.' ;\n{words}{_BLOCK_TOKENS}"
+    return f"grammar Toy;\nprogram : (line NEWLINE)* EOF ;\n{rules}{tokens}"
 
 
 _BLOCK_WORDS = "IF WHILE CASE SUB FUN DIM FIX IN OUT MOVE DONE"
