@@ -319,7 +319,7 @@ def test_a_rule_that_a_form_calls_is_kept() -> None:
     rules = _grown(start, files).grammar.by_name
     written = " ".join(rules["aggregate"].text.split())
     assert "aggregate : '{' (NAME ':')? component (',' component)* '}' ;" == written
-    circ = "CIRC target ',' target (',' CA (literal | variable))? (C_DIS | C_PTP)?"
+    circ = "CIRC target ',' target (',' CA expression)? (C_DIS | C_PTP)?"
     assert circ in rules["motion"].text
 
 
