@@ -202,7 +202,7 @@ def _captioned(
             return
         image = Image.fromarray(frame)
         ImageDraw.Draw(image).multiline_text(
-            (12, 8), caption, fill="white", font=font, stroke_width=2, stroke_fill="black"
+            (12, 8), caption, fill="white", font=font, stroke_width=1, stroke_fill="black"
         )
         on_frame()
         yield image
