@@ -156,7 +156,7 @@ class Adapter:
         """Return the statement on a line as a target for `goto`."""
         file = self._program.files.named(arguments.inner("source").text("path") or "")
         line = self._program.line_of(arguments.get("line", int, 0))
-        if line not in self._program.debugger.lines(file):
+        if line not in self._program.debugger.breakpoints.lines(file):
             return {"targets": []}
         shown = self._program.line_for(line)
         self._targets.append((line, file))

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
+from interp.debugging.breakpoints import is_hit
 from interp.debugging.client import Breakpoint, Watch
 from interp.debugging.conditions import parsed
 from interp.debugging.debugger import Debugger
-from interp.debugging.hits import is_hit
 from interp.values.faults import RuntimeFailure
 from krl.debug_adapter.arguments import Arguments, Handler
 from krl.debug_adapter.connection import Json
@@ -33,7 +33,7 @@ class Breakpoints:
     def install(self, debugger: Debugger) -> None:
         """Set the breakpoints in the debugger of a new run; data breakpoints do not persist."""
         self._watches.clear()
-        debugger.set_breakpoints(self._every())
+        debugger.breakpoints.set(self._every())
         debugger.stops_at_faults = self._is_stopping_at_faults
 
     def _every(self) -> list[Breakpoint]:
@@ -43,7 +43,7 @@ class Breakpoints:
         """Replace the breakpoints of one file; each moves to the next line with a statement."""
         source = arguments.inner("source")
         file = self._program.files.named(source.text("path") or source.text("name") or "")
-        lines = self._program.debugger.lines(file)
+        lines = self._program.debugger.breakpoints.lines(file)
         found: list[Json] = []
         made: list[Breakpoint] = []
         for one in arguments.all("breakpoints"):
@@ -64,7 +64,7 @@ class Breakpoints:
             )
             found.append({"verified": True, "line": self._program.line_for(line)})
         self._of_files[file] = made
-        self._program.debugger.set_breakpoints(self._every())
+        self._program.debugger.breakpoints.set(self._every())
         return {"breakpoints": found}
 
     @staticmethod
@@ -84,7 +84,7 @@ class Breakpoints:
         file = self._program.files.named(arguments.inner("source").text("path") or "")
         first = self._program.line_of(arguments.get("line", int, 0))
         last = self._program.line_of(arguments.get("endLine", int, arguments.get("line", int, 0)))
-        lines = self._program.debugger.lines(file)
+        lines = self._program.debugger.breakpoints.lines(file)
         there = [self._program.line_for(line) for line in lines if first <= line <= last]
         return {"breakpoints": [{"line": line} for line in there]}
 
@@ -127,7 +127,7 @@ class Breakpoints:
         if wanted or self._watches:  # VS Code says at the start that there are none
             self._program.wait_for_stop()
         for name in [one for one in self._watches if one not in wanted]:
-            self._program.debugger.forget(self._watches.pop(name))
+            self._program.debugger.watches.remove(self._watches.pop(name))
         found: list[Json] = []
         for name in wanted:
             found.append({"verified": True})
@@ -137,5 +137,5 @@ class Breakpoints:
             if task not in TASKS or not frame.isdigit():
                 found[-1] = {"verified": False, "message": "there is no such variable"}
                 continue
-            self._watches[name] = self._program.debugger.watch(text, task, int(frame))
+            self._watches[name] = self._program.debugger.watches.add(text, task, int(frame))
         return {"breakpoints": found}

@@ -224,7 +224,7 @@ class Prompt(cmd.Cmd):
         if match is None:
             raise _WrongCommand("break [FILE:]LINE [if CONDITION] [hits N] [log TEXT]")
         file, line = match["file"] or self._at().file, int(match["line"])
-        lines = self._debugger.lines(file)
+        lines = self._debugger.breakpoints.lines(file)
         if line not in lines:
             later = next((one for one in lines if one > line), None)
             there = f"; the next is line {later}" if later else ""
@@ -232,7 +232,7 @@ class Prompt(cmd.Cmd):
         if match["condition"]:
             parsed(match["condition"])
         made = Breakpoint(file, line, match["condition"], match["hits"], match["log"])
-        self._debugger.set_breakpoints([*self._debugger.breakpoints, made])
+        self._debugger.breakpoints.set([*self._debugger.breakpoints.all, made])
         self._list_stops()
 
     def do_watch(self, rest: str) -> None:
@@ -240,7 +240,7 @@ class Prompt(cmd.Cmd):
         if not rest:
             self._list_stops()
             return
-        self._debugger.watch(rest, self._task, self._frame)
+        self._debugger.watches.add(rest, self._task, self._frame)
         self._list_stops()
 
     def do_delete(self, rest: str) -> None:
@@ -253,9 +253,9 @@ class Prompt(cmd.Cmd):
             stops = stops[number - 1 : number]
         for one in stops:
             if isinstance(one, Watch):
-                self._debugger.forget(one)
-        left = [one for one in self._debugger.breakpoints if one not in stops]
-        self._debugger.set_breakpoints(left)
+                self._debugger.watches.remove(one)
+        left = [one for one in self._debugger.breakpoints.all if one not in stops]
+        self._debugger.breakpoints.set(left)
 
     def do_faults(self, rest: str) -> None:
         """`faults on|off`: whether to stop at faults that the program does not handle."""
@@ -264,7 +264,7 @@ class Prompt(cmd.Cmd):
         self._debugger.stops_at_faults = rest.lower() == "on"
 
     def _stops(self) -> list[Breakpoint | Watch]:
-        return [*self._debugger.breakpoints, *self._debugger.watches]
+        return [*self._debugger.breakpoints.all, *self._debugger.watches.all]
 
     def _list_stops(self) -> None:
         for number, one in enumerate(self._stops(), 1):
@@ -343,7 +343,7 @@ class Prompt(cmd.Cmd):
         at = self._at()
         middle = _number(rest, "list") if rest else at.line
         lines = self._lines(at.file)
-        stops = {one.line for one in self._debugger.breakpoints}
+        stops = {one.line for one in self._debugger.breakpoints.all}
         for line in range(max(1, middle - _AROUND), min(len(lines), middle + _AROUND) + 1):
             mark = ">" if line == at.line else "*" if line in stops else " "
             typer.echo(shown(f"{line:5}{mark} {lines[line - 1].expandtabs()}".rstrip()))

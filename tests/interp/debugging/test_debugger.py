@@ -196,32 +196,34 @@ def test_it_stops_before_the_first_statement(debug: Any) -> None:
 
 def test_breakpoint_stops_at_each_pass(debug: Any) -> None:
     """A breakpoint in a loop is met at each pass."""
-    script, _ = debug(lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 16)]))
+    script, _ = debug(lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 16)]))
     assert [4, 16, 16, 16] == script.lines
 
 
 def test_condition_of_a_breakpoint(debug: Any) -> None:
     """A breakpoint with a condition stops only where it is TRUE."""
     set_one = Breakpoint("MAIN.SRC", 16, "(I==4) AND (F.X>5.0) AND NOT (A[1]==A[2])")
-    script, _ = debug(lambda debugger: debugger.set_breakpoints([set_one]))
+    script, _ = debug(lambda debugger: debugger.breakpoints.set([set_one]))
     assert [4, 16] == script.lines
 
 
 def test_condition_that_means_nothing_stops_and_says_so(debug: Any) -> None:
     """A condition that cannot be evaluated counts as TRUE, and the reason is told."""
     set_one = Breakpoint("main.src", 22, "NOWHERE==1")
-    script, _ = debug(lambda debugger: debugger.set_breakpoints([set_one]))
+    script, _ = debug(lambda debugger: debugger.breakpoints.set([set_one]))
     assert [4, 22] == script.lines
     assert "NOWHERE is not known here" == script.stops[1].text
 
 
 def test_lines_at_which_a_program_can_stop(debug: Any) -> None:
     """Statements, not declarations and ends of blocks; a REPEAT at its UNTIL too."""
-    script, _ = debug(lambda debugger: debugger.lines("main.src"))
+    script, _ = debug(lambda debugger: debugger.breakpoints.lines("main.src"))
     expected = (4, 5, 6, 7, 8, 9, 10, 12, 14, 15, 16, 18, 19, 21, 22, 26, 27, 31, 32, 34)
     assert [expected] == script.seen
     text = "DEF MAIN()\nINT I\nI=0\nREPEAT\nI=I+1\nUNTIL I>1\nEND\n"
-    script, _ = debug(lambda debugger: debugger.lines("main.src"), *[StepCommand()] * 9, text=text)
+    script, _ = debug(
+        lambda debugger: debugger.breakpoints.lines("main.src"), *[StepCommand()] * 9, text=text
+    )
     assert [(3, 4, 5, 6)] == script.seen
     assert [3, 4, 5, 6, 5, 6] == script.lines
 
@@ -258,7 +260,7 @@ def test_step_out_goes_back_to_the_caller(debug: Any) -> None:
 def test_frames_tell_who_called_from_where(debug: Any) -> None:
     """The routines that are open are told from the innermost outwards, each with its place."""
     script, _ = debug(
-        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 27)]),
+        lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 27)]),
         Go(),
         lambda debugger: [(one.name, one.at.line) for one in debugger.frames()],
     )
@@ -272,7 +274,7 @@ def test_values_where_a_program_has_stopped(debug: Any) -> None:
     """Variables, members, elements, data lists, system variables and expressions can be seen."""
     texts = ("I", "A[2]", "A[I+1]", "F.Z", "TOTAL", "$OUT[1]", "(I+1)*2", "A[1]>A[2]")
     script, _ = debug(
-        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 8)]),
+        lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 8)]),
         Go(),
         lambda debugger: [debugger.value(text) for text in texts],
     )
@@ -295,7 +297,7 @@ def test_watch_stops_where_a_value_has_changed(debug: Any) -> None:
     """A watch on a member stops before the statement behind the change, with both values."""
 
     def watching(debugger: Debugger) -> None:
-        debugger.watch("F.X")
+        debugger.watches.add("F.X")
 
     script, _ = debug(watching)
     found = [(one.at.line, one.watch, one.before, one.now) for one in script.stops[1:]]
@@ -304,7 +306,7 @@ def test_watch_stops_where_a_value_has_changed(debug: Any) -> None:
 
 def test_watch_on_data_of_a_data_list(debug: Any) -> None:
     """Data of a data list is watched in every routine of the module."""
-    script, _ = debug(lambda debugger: debugger.watch("TOTAL"))
+    script, _ = debug(lambda debugger: debugger.watches.add("TOTAL"))
     assert [3, 7, 12] == [one.now for one in script.stops[1:]]
 
 
@@ -312,8 +314,8 @@ def test_watch_on_local_data_is_of_its_activation(debug: Any) -> None:
     """A change by reference is seen back in the routine; a name of a callee is another variable."""
     script, _ = debug(
         StepCommand(),
-        lambda debugger: debugger.watch("I"),
-        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 27)]),
+        lambda debugger: debugger.watches.add("I"),
+        lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 27)]),
     )
     assert [("breakpoint", 27), ("watch", 9)] == [
         (one.reason, one.at.line) for one in script.stops[2:4]
@@ -358,7 +360,7 @@ def test_loop_entered_by_selection_goes_on_as_a_loop(debug: Any) -> None:
     script, _ = debug(
         StepCommand(),
         Select(16),
-        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 16)]),
+        lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 16)]),
     )
     assert [16, 16, 16, 16, 16] == script.lines[2:]
 
@@ -366,7 +368,7 @@ def test_loop_entered_by_selection_goes_on_as_a_loop(debug: Any) -> None:
 def test_selection_out_of_a_loop(debug: Any) -> None:
     """The loop around the present statement is left."""
     script, _ = debug(
-        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 19)]),
+        lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 19)]),
         Go(),
         Select(5),
         StepCommand(),
@@ -377,7 +379,7 @@ def test_selection_out_of_a_loop(debug: Any) -> None:
 def test_selection_within_a_for(debug: Any) -> None:
     """Inside a FOR that has begun, its statements can be selected."""
     script, _ = debug(
-        lambda debugger: debugger.set_breakpoints([Breakpoint("main.src", 19)]),
+        lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 19)]),
         Go(),
         Select(19),
         lambda debugger: debugger.value("I"),

@@ -137,7 +137,7 @@ def test_only_lines_with_breakpoints_are_looked_at(
     def client(debugger: Debugger, stop: Stop) -> Command:
         stops.append((stop.reason, stop.at.line))
         places = [Breakpoint("main.src", 5, condition="I==50"), Breakpoint("main.src", 8)]
-        debugger.set_breakpoints(places)
+        debugger.breakpoints.set(places)
         if len(stops) == 3:
             return Back("go")
         return Go() if len(stops) < 6 else Quit()
@@ -200,7 +200,7 @@ def test_conditions_hold_in_the_same_passes() -> None:
     program = load([Source(text, "main.src"), Source(_LISTED, "main.dat")], "main.src")
 
     def client(debugger: Debugger, _stop: Stop) -> Command:
-        debugger.set_breakpoints(breakpoints)
+        debugger.breakpoints.set(breakpoints)
         return Go()
 
     logs: dict[str, list[str]] = {executor: [] for executor in available()}
@@ -240,7 +240,7 @@ def test_going_back_out_of_calls_and_motions(executor: str) -> None:
     """Over goes back past a call, out to the call, by motion to before the end of the last one."""
 
     def commands(debugger: Debugger, stops: list[Stop]) -> Commands:
-        debugger.set_breakpoints([Breakpoint("main.src", 26, "N==3")])
+        debugger.breakpoints.set([Breakpoint("main.src", 26, "N==3")])
         yield Go()
         assert ["FAC", "MAIN"] == [one.name for one in debugger.frames()]
         yield Back("out")
@@ -263,8 +263,8 @@ def test_going_back_to_breakpoints_and_changes() -> None:
     """Breakpoints and watches are met backwards in the other order, then the first statement."""
 
     def commands(debugger: Debugger, stops: list[Stop]) -> Commands:
-        debugger.set_breakpoints([Breakpoint("main.src", 11), Breakpoint("main.src", 15, hits="2")])
-        debugger.watch("TOTAL")
+        debugger.breakpoints.set([Breakpoint("main.src", 11), Breakpoint("main.src", 15, hits="2")])
+        debugger.watches.add("TOTAL")
         for _ in range(6):
             yield Go()
         there = [(one.reason, one.at.line) for one in stops[1:]]
@@ -284,7 +284,7 @@ def test_changes_are_made_again_at_their_moments(plain: list[str]) -> None:
     """What was assigned is undone by going back behind it, and comes again forwards."""
 
     def commands(debugger: Debugger, _stops: list[Stop]) -> Commands:
-        debugger.set_breakpoints([Breakpoint("main.src", 14)])
+        debugger.breakpoints.set([Breakpoint("main.src", 14)])
         yield StepCommand()
         debugger.assign("TOTAL", "40+2")
         debugger.assign("DOOR", "TRUE")
@@ -342,7 +342,7 @@ def test_a_fault_stops_and_can_be_left_backwards() -> None:
         debugger.assign("$ADVANCE", "3")
         with pytest.raises(LinkError):
             debugger.assign("NOWHERE", "3")
-        debugger.set_breakpoints([Breakpoint("main.src", 14)])
+        debugger.breakpoints.set([Breakpoint("main.src", 14)])
         yield Go()
         debugger.assign("A[4]", "2147483647")
         debugger.assign("TOTAL", "1")
@@ -367,7 +367,7 @@ def test_frames_name_what_interrupts() -> None:
     """The stack goes through the action of an interrupt to what it interrupted."""
 
     def commands(debugger: Debugger, _stops: list[Stop]) -> Commands:
-        debugger.set_breakpoints([Breakpoint("main.src", 18)])
+        debugger.breakpoints.set([Breakpoint("main.src", 18)])
         yield Go()
         names = [one.name for one in debugger.frames()]
         assert ["ACTION", "interrupt 5 in MAIN", "MAIN"] == names
@@ -387,7 +387,7 @@ def test_texts_of_breakpoints_that_only_report() -> None:
         return Back("go") if stop.reason == "ended" and len(told) == 4 else Go()
 
     debugger = Debugger(PROGRAM, client, told.append)
-    debugger.set_breakpoints([Breakpoint("main.src", 12, log="A[{I}]={A[I]} {NO}")])
+    debugger.breakpoints.set([Breakpoint("main.src", 12, log="A[{I}]={A[I]} {NO}")])
     setup = RunSetup(executor=available()[-1], submit="SPS", script=SCRIPT)
     debugger.run(lambda: run_program(PREPARED, setup, debugger=debugger))
     once = [f"A[{i}]={fac} (NO is not known here)" for i, fac in enumerate((1, 2, 6, 24), 1)]

@@ -1,0 +1,138 @@
+"""What a stopped run shows and lets change: call stacks, variables, signals and the arm."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import Any, Protocol
+
+from grammar.semantics.types import UNKNOWN, Type
+from interp.controller.controller import ArmState
+from interp.controller.state.tasks import LevelKind
+from interp.controller.state.trace import TaskName
+from interp.debugging.conditions import evaluated, parsed, place_of
+from interp.debugging.executor import DebuggedExecutor
+from interp.debugging.history import Assigned
+from interp.debugging.names import Names, names_in, signal_in
+from interp.port.inspection import Seen, StackFrame
+from interp.port.requests import Path, Value
+from interp.program.load import CheckedProgram
+from interp.values.faults import LinkError
+from interp.values.values import converted
+
+
+class World(Protocol):
+    """What a debugger needs of the controller (`interp.controller.controller.Controller`)."""
+
+    @property
+    def arm(self) -> ArmState:
+        """The state of the arm."""
+
+    def look(self, path: Path) -> Value:
+        """Return the value of a system variable."""
+
+    def assign(self, path: Path, value: Value) -> None:
+        """Assign a value to a system variable."""
+
+    def type_of(self, path: Path) -> Type:
+        """Return the type of a system variable or of a part of it."""
+
+    def levels(self, task: TaskName) -> list[tuple[LevelKind, int]]:
+        """Return the actions that run on top of a program, each as (kind, priority)."""
+
+
+class Inspection:
+    """The state of all programs of a run, of its controller and of its arm.
+
+    A frame is counted from the innermost of a program. The methods that take an expression raise
+    `LinkError` if it is not one or uses an unknown name, and `Fault` as the program would.
+    """
+
+    def __init__(self, program: CheckedProgram) -> None:
+        self._program = program
+        self._world: World | None = None
+        self._tasks: dict[TaskName, DebuggedExecutor] = {}
+
+    def attach(self, world: World) -> None:
+        """Set the controller of the run that begins."""
+        self._world = world
+
+    @property
+    def tasks(self) -> tuple[TaskName, ...]:
+        """The programs of the run: the robot's, and the submit interpreter's if there is one."""
+        return tuple(self._tasks)
+
+    @property
+    def arm(self) -> ArmState:
+        """The state of the arm."""
+        return ArmState(0, None, 0, 0) if self._world is None else self._world.arm
+
+    def frames(self, task: TaskName = "robot") -> tuple[StackFrame, ...]:
+        """Return the call stack of a program, innermost frame first."""
+        frames = self._tasks[task].inside.frames()
+        levels = [] if self._world is None else self._world.levels(task)
+        return tuple(_named(one, levels) for one in frames)
+
+    def height(self, task: TaskName) -> int:
+        """Return how many frames a program has."""
+        return self._tasks[task].height
+
+    def names(self, task: TaskName = "robot", frame: int = 0) -> Names:
+        """Return the names of the variables that are visible in a frame."""
+        return names_in(self._program, self._tasks[task].inside.frames()[frame])
+
+    def seen(self, text: str, task: TaskName, frame: int = 0) -> Seen | None:
+        """Return a variable of a frame by its name; ``None`` if the program has none there."""
+        return self._tasks[task].inside.look(text, frame)
+
+    def look(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value | None:
+        """Return the value of a variable by its name; ``None`` if it has no value."""
+        seen = self.seen(text, task, frame)
+        return self.value(text, task, frame) if seen is None else seen.value
+
+    def value(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value:
+        """Return the value of an expression in a frame."""
+        return evaluated(parsed(text), *self._names_of(task, frame))
+
+    def assignment(self, text: str, value: str, task: TaskName, frame: int) -> Assigned:
+        """Return the assignment of the value of an expression to a variable, also an input."""
+        names = self._names_of(task, frame)
+        target = place_of(parsed(text), *names)
+        if isinstance(target, str):
+            seen = self.seen(target, task, frame)
+            type_ = UNKNOWN if seen is None else seen.type
+        else:
+            type_ = UNKNOWN if self._world is None else self._world.type_of(target)
+        found = evaluated(parsed(value), *names, type_)
+        if type_ != UNKNOWN and not isinstance(target, str):
+            found = converted(found, type_)
+        return Assigned(task, frame, target, found)
+
+    def apply(self, change: Assigned) -> None:
+        """Assign; raises `LinkError` and, for a value that the variable cannot have, `Fault`."""
+        if isinstance(change.target, str):
+            self._tasks[change.task].inside.put(change.target, change.value, change.frame)
+        elif self._world is None:
+            raise LinkError(
+                f"{change.target[0]} belongs to the controller, which is not available here"
+            )
+        else:
+            self._world.assign(change.target, change.value)
+
+    def _names_of(self, task: TaskName, frame: int) -> tuple[Any, Any, Any]:
+        """Return the functions with which `evaluated` looks up names in a frame."""
+        read = None if self._world is None else self._world.look
+        place = self._tasks[task].inside.frames()[frame]
+
+        def look(text: str) -> Seen | None:
+            return self.seen(text, task, frame)
+
+        return look, read, partial(signal_in, self._program, place)
+
+
+def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame:
+    """Return a frame with its name; an action is named after its cause, the last of ``levels``."""
+    if not frame.is_action or not levels:
+        return frame
+    kind, priority = levels.pop()
+    return replace(frame, name=f"{kind} {priority or ''}".rstrip() + f" in {frame.name}")
