@@ -35,10 +35,10 @@ from grammar.syntax.references import Space
 from grammar.syntax.walk import left_chain, walk
 from support.lazy_dataclass import dataclass
 
-#: The folder that stand-ins seem to lie in; no file of a backup lies there.
+#: The folder of stand-ins in paths. No file of a backup has such a path.
 FOLDER = "<stand-in>"
 
-#: Members of members are looked at so far.
+#: The largest depth of nested members that is examined.
 _DEEPEST = 4
 
 _LOGICAL = frozenset({"AND", "OR", "EXOR"})
@@ -48,16 +48,18 @@ _RELATIONS = frozenset({"==", "<>", "<", ">", "<=", ">="})
 
 @dataclass(slots=True, eq=False)
 class DataUse:
-    """How a variable, a member or a result is used.
+    """The uses of a variable, a member of a structure, or the result of a function.
 
-    ``types`` are those that it was met with, in the order of the text; ``indices`` is the most
-    indices at once, 0 where there is none, and ``largest`` the largest number in each place, also
-    that of a loop's counter.
-    ``constants`` are names behind ``#`` that it was compared with or given. ``motions`` are the
-    kinds of motions that go to it. ``is_pulsed``: PULSE sets it; ``is_index``: an array has it as
-    an index; ``is_part``: it is a member; ``is_compared``: it is asked whether it is another value.
-    ``asked_for`` is the first number that a SWITCH or a comparison asks for, ``cases`` are all that
-    a SWITCH asks for, ``left_by`` is the truth value that ends a loop.
+    ``types`` are the types that it is assigned, compared or combined with, in the order of the
+    text. ``constants`` are the enumeration constants among them. ``members`` are the uses of its
+    members by name in upper case. ``motions`` are the kinds of the motions that go to it.
+    ``indices`` is the largest number of indices in one use, 0 for a scalar, and ``largest`` the
+    largest known index in each dimension. ``is_text``: it is used as a CHAR array.
+    ``is_assigned``: an assignment sets it. ``is_waited_for``: a WAIT FOR reads it. ``is_pulsed``:
+    PULSE sets it. ``left_by`` is its value that ends a loop. ``is_index``: it is an index of an
+    array. ``is_part``: it is a member of a structure. ``is_compared``: it is compared with ``==``
+    or ``<>``. ``asked_for`` is the first number that it is compared with, also by a SWITCH, and
+    ``cases`` are all numbers that a SWITCH compares it with.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -84,26 +86,35 @@ class DataUse:
 
 @dataclass(slots=True, eq=False)
 class RoutineUse:
-    """How a routine is called: the arguments at each position."""
+    """The result of a routine, and the arguments of its calls.
+
+    ``arguments`` has an entry for each parameter: the type of each argument passed to it, and
+    whether the argument is a variable that the routine may change.
+    """
 
     result: DataUse = field(default_factory=DataUse)
     is_function: bool = False
     arguments: list[list[tuple[Type, bool]]] = field(default_factory=list)
 
 
-class _Classes:
-    """Classes of uses of the same type (union-find), whose members of equal name are united."""
+class _TypeClasses:
+    """Equivalence classes of uses that have the same type; a union-find structure.
+
+    If two uses have the same type, so have their members of the same name.
+    """
 
     def __init__(self) -> None:
         self._class: dict[int, list[DataUse]] = {}
 
-    def of(self, use: DataUse) -> list[DataUse]:
+    def members(self, use: DataUse) -> list[DataUse]:
+        """Return the uses in the class of a use."""
         return self._class.setdefault(id(use), [use])
 
     def unite(self, one: DataUse, other: DataUse) -> None:
+        """Merge the classes of two uses, and those of their members."""
         todo = [(one, other)]
         while todo:
-            larger, smaller = sorted(map(self.of, todo.pop()), key=len, reverse=True)
+            larger, smaller = sorted(map(self.members, todo.pop()), key=len, reverse=True)
             if larger is smaller:
                 continue
             members = {name: use for each in larger for name, use in each.members.items()}
@@ -114,9 +125,9 @@ class _Classes:
                 members = {**each.members, **members}
             larger += smaller
 
-    def tell(self, use: DataUse, depth: int = 0) -> None:
-        """Add to a use everything that is known about its class."""
-        for other in self.of(use):
+    def collect(self, use: DataUse, depth: int = 0) -> None:
+        """Add what is known of all uses in the class of a use to that use."""
+        for other in self.members(use):
             use.constants.update(other.constants)
             use.types += [one for one in other.types if one not in use.types]
             use.is_compared |= other.is_compared
@@ -124,14 +135,14 @@ class _Classes:
             for name, member in other.members.items() if depth < _DEEPEST else ():
                 self.unite(use.members.setdefault(name, DataUse(is_part=True)), member)
         for member in use.members.values() if depth < _DEEPEST else ():
-            self.tell(member, depth + 1)
+            self.collect(member, depth + 1)
 
 
 class Uses:
-    """Gathers the uses of names that are wanted: ``data``, ``routines`` and ``types`` by name.
+    """Collects the uses of some undeclared names: ``data``, ``routines`` and ``types`` by name.
 
-    ``apart`` are uses by the file and the name where ``is_apart`` says that a file has the variable
-    for itself.
+    ``is_apart`` says whether a file has a variable of its own by a name; ``apart`` are the uses of
+    such variables by path and name.
     """
 
     def __init__(
@@ -153,37 +164,37 @@ class Uses:
         self._written_result: TypeReference | None = None
         self._statements: set[ast.Call] = set()
         self._numbers: set[tuple[ast.Binary, Type]] = set()
-        #: What is of one type because it is assigned or compared.
-        self._alike: list[tuple[DataUse, DataUse]] = []
-        #: The largest number that loops of a routine count to, by the counter.
+        #: Pairs of uses of the same type, because one is assigned to or compared with the other.
+        self._same_type: list[tuple[DataUse, DataUse]] = []
+        #: The largest value of each loop counter of the current routine, by name in upper case.
         self._counted: dict[str, int] = {}
 
     def read(self, checked: Checked) -> None:
-        """Look at one file."""
+        """Collect the uses in one file."""
         syntax = checked.module.syntax
-        assert syntax is not None, "only what can be read is looked at"
+        assert syntax is not None, "only files that can be parsed are read"
         self._checked = checked
         if isinstance(syntax.content, ast.DataList):
-            self._look(syntax)
+            self._visit(syntax)
             return
         for routine in syntax.content.routines:
             found = checked.resolution.found(routine.name)
             self._result = UNKNOWN if found is None else self._project.types.of(found)
             self._written_result = None if found is None else found.symbol.type
             self._counted.clear()
-            self._look(routine)
+            self._visit(routine)
 
     def settle(self) -> None:
-        """Types have what is known of all that is of them, once all files have been read."""
-        classes = _Classes()
-        for one, other in self._alike:
+        """Add the uses of all variables of a type to that type, once all files have been read."""
+        classes = _TypeClasses()
+        for one, other in self._same_type:
             classes.unite(one, other)
         for use in self.types.values():
-            classes.tell(use)
+            classes.collect(use)
 
     # ------------------------------------------------------------------------- statements
 
-    def _look(self, root: ast.Node) -> None:
+    def _visit(self, root: ast.Node) -> None:
         for node in walk(root):
             rule = _RULES.get(type(node))
             if rule is not None:
@@ -213,20 +224,20 @@ class Uses:
 
     def _loop(self, node: ast.While | ast.Repeat) -> None:
         self._expect(node.condition, BOOL)
-        self._leaves(node.condition, is_true=isinstance(node, ast.Repeat))
+        self._exit(node.condition, is_true=isinstance(node, ast.Repeat))
 
-    def _leaves(self, node: ast.Expression, *, is_true: bool) -> None:
+    def _exit(self, node: ast.Expression, *, is_true: bool) -> None:
         """Record the value with which a condition ends a loop, for each variable in it."""
         match node:
             case ast.Parenthesised(inner=inner):
-                self._leaves(inner, is_true=is_true)
+                self._exit(inner, is_true=is_true)
             case ast.Unary(operator="NOT", operand=operand):
-                self._leaves(operand, is_true=not is_true)
+                self._exit(operand, is_true=not is_true)
             case ast.Binary(operator="==" | "<>", left=left, right=ast.BoolLiteral(value=value)):
-                self._leaves(left, is_true=is_true == ((node.operator == "==") == value))
+                self._exit(left, is_true=is_true == ((node.operator == "==") == value))
             case ast.Binary(operator="AND" | "OR"):
                 for part in (*(one.right for one in left_chain(node)), left_chain(node)[0].left):
-                    self._leaves(part, is_true=is_true)
+                    self._exit(part, is_true=is_true)
             case _:
                 use = self._use(node)
                 if use is not None:
@@ -263,7 +274,7 @@ class Uses:
 
     def _return(self, node: ast.Return) -> None:
         if node.value is not None:
-            self._is_alike(node.value, self._written_result)
+            self._has_type(node.value, self._written_result)
             self._expect(node.value, self._result)
 
     def _trigger(self, node: ast.Trigger) -> None:
@@ -287,7 +298,7 @@ class Uses:
         for branch in node.branches:
             for value in branch.values:
                 self._unify(node.selector, value)
-                self._meets(node.selector, value)
+                self._compared(node.selector, value)
                 use = self._use(node.selector)
                 if use is not None:
                     use.cases.add(_number(value))
@@ -319,8 +330,8 @@ class Uses:
         elif node.operator in _RELATIONS:
             self._unify(node.left, node.right)
             if node.operator in ("==", "<>"):
-                self._meets(node.left, node.right)
-                self._meets(node.right, node.left)
+                self._compared(node.left, node.right)
+                self._compared(node.right, node.left)
         elif node.operator == ":":
             frame = self._project.types.of(_system_type(self._project, "FRAME"))
             self._expect(node.left, frame)
@@ -328,7 +339,7 @@ class Uses:
         else:
             self._unify(node.left, node.right)
 
-    def _meets(self, node: ast.Expression, value: ast.Expression) -> None:
+    def _compared(self, node: ast.Expression, value: ast.Expression) -> None:
         """Record that a value is compared with a number, which is therefore a possible value."""
         use = self._use(node)
         if use is not None:
@@ -337,7 +348,7 @@ class Uses:
 
     def _call(self, node: ast.Call) -> None:
         is_value = node not in self._statements
-        assert self._checked is not None, "a file is looked at"
+        assert self._checked is not None, "a file is being read"
         use = self.routines.get(node.name.key)
         found = self._checked.resolution.found(node.name)
         if use is not None and self._is_undeclared(node.name):
@@ -358,12 +369,12 @@ class Uses:
                     pulsed.is_pulsed = True
             for parameter, argument in zip(found.symbol.parameters, node.arguments, strict=False):
                 if argument is not None:
-                    self._is_alike(argument, parameter.type)
+                    self._has_type(argument, parameter.type)
                     self._expect(argument, self._project.types.of(Found(parameter, found.scope)))
 
     def _is_undeclared(self, name: ast.Name) -> bool:
         """Return whether no file declares a name at this place."""
-        assert self._checked is not None, "a file is looked at"
+        assert self._checked is not None, "a file is being read"
         found = self._checked.resolution.found(name)
         if found is None or found.module is None or found.symbol.kind is Kind.EXTERNAL:
             return True
@@ -378,7 +389,7 @@ class Uses:
             node = node.base
         if not isinstance(node, ast.Variable) or node.name.text.startswith("$"):
             return False
-        assert self._checked is not None, "a file is looked at"
+        assert self._checked is not None, "a file is being read"
         found = self._checked.resolution.found(node.name)
         return found is not None and found.module is not None and found.symbol.kind in _PLAIN
 
@@ -386,7 +397,7 @@ class Uses:
 
     def _use_of(self, name: ast.Name) -> DataUse | None:
         """Return the use of an undeclared variable, or of the undeclared type of a declared one."""
-        assert self._checked is not None, "a file is looked at"
+        assert self._checked is not None, "a file is being read"
         if self._is_undeclared(name):
             module = self._checked.module
             if name.key in self.data and self._is_apart(module, name.key):
@@ -435,7 +446,7 @@ class Uses:
                 return Constant(name.text)
             case ast.Binary(operator=operator) if operator in _RELATIONS | _LOGICAL:
                 return BOOL
-        assert self._checked is not None, "a file is looked at"
+        assert self._checked is not None, "a file is being read"
         found = self._checked.types.get(node, UNKNOWN)
         if found == UNKNOWN and isinstance(node, ast.Variable):
             symbol = self._checked.resolution.found(node.name)
@@ -445,20 +456,20 @@ class Uses:
             found = array.element if isinstance(array, Array) else UNKNOWN
         return found
 
-    def _is_alike(self, node: ast.Expression, written: TypeReference | None) -> None:
+    def _has_type(self, node: ast.Expression, written: TypeReference | None) -> None:
         """Record that an expression has a type by name, which may be undeclared."""
         use = self._use(node)
         type_ = self.types.get(written.key) if written is not None else None
         if type_ is not None:
             if use is not None:
-                self._alike.append((use, type_))
-            _meet(type_, self._type(node))
+                self._same_type.append((use, type_))
+            _record_type(type_, self._type(node))
 
     def _unify(self, left: ast.Expression, right: ast.Expression) -> None:
         """Record that both sides have the same type; whole arrays do not occur here."""
         uses = self._use(left), self._use(right)
         if uses[0] is not None and uses[1] is not None:
-            self._alike.append((uses[0], uses[1]))
+            self._same_type.append((uses[0], uses[1]))
         for node, other in ((left, right), (right, left)):
             type_ = self._type(other)
             if not isinstance(type_, Array) or type_.element == CHAR:
@@ -475,7 +486,7 @@ class Uses:
             if type_ in (INT, REAL):
                 self._expect_number(node, type_)
             return
-        _meet(use, type_)
+        _record_type(use, type_)
 
     def _expect_number(self, node: ast.Expression, type_: Type) -> None:
         """Record that the operands of a number are numbers; each long sum is visited only once."""
@@ -490,7 +501,7 @@ class Uses:
             self._expect(operand, type_)
 
 
-def _meet(use: DataUse, type_: Type) -> None:
+def _record_type(use: DataUse, type_: Type) -> None:
     """Add a type to a use."""
     match type_:
         case Constant(name=name):
@@ -544,5 +555,5 @@ _RULES: Mapping[type[ast.Node], Callable[[Uses, Any], object]] = {
 
 def _system_type(project: Project, name: str) -> Found:
     found = project.scope(project.modules[0]).find(Space.TYPE, name)
-    assert isinstance(found, Found), "the controller has it"
+    assert isinstance(found, Found), "the type is predefined"
     return found
