@@ -16,23 +16,27 @@ function steps(u, x, list, level) {
   u.ctx.stroke();
 }
 
-/** Draws the lines that moved the arm and those that were executed as steps over time. */
+/** Draws the lines that moved the arm and those that were executed as steps over time: a row for each, file by file. */
 function lineChart() {
   const motions = motionStarts.filter((event) => event.at);
   if (!motions.length && !advanceRun.length) return;
-  const lineOfEvent = (event) => Number(event.at.split(":").at(-1));
-  const numbers = [...motions, ...advanceRun].map(lineOfEvent);
-  const [low, high] = numbers.reduce(([a, b], line) => [Math.min(a, line), Math.max(b, line)], [Infinity, -Infinity]);
+  const fileOf = (place) => place.slice(0, place.lastIndexOf(":"));
+  const numberOf = (place) => Number(place.split(":").at(-1));
+  const seen = [...new Set([...motions, ...advanceRun].map((event) => event.at))];
+  const files = [...new Set(seen.map(fileOf))];
+  const places = seen.sort((a, b) => files.indexOf(fileOf(a)) - files.indexOf(fileOf(b)) || numberOf(a) - numberOf(b));
+  const rows = new Map(places.map((place, row) => [place, row]));
+  const last = places.length - 1;
   chart("Program lines", {
     height: 140,
-    y: [low - (high - low) * 0.05 - 0.5, high + (high - low) * 0.05 + 0.5],
+    y: [-0.5 - last * 0.05, last * 1.05 + 0.5],
     isDown: true,
-    ticks: [...new Set([low, Math.round((low + high) / 2), high])].map((line) => [line, `line ${line}`]),
+    ticks: [...new Set([0, Math.round(last / 2), last])].map((row) => [row, places[row].split("/").at(-1)]),
     keys: [{ name: "main run", hue: "blue" }, { name: "advance run", hue: "mark" }],
     paint: (u, x) => {
       for (const [list, hue] of [[advanceRun, "mark"], [motions, "blue"]]) {
         u.ctx.strokeStyle = colourOf(hue);
-        steps(u, x, list, (event) => u.valToPos(lineOfEvent(event), "y", true));
+        steps(u, x, list, (event) => u.valToPos(rows.get(event.at), "y", true));
       }
     },
   });
