@@ -106,7 +106,10 @@ class SummaryCollector:
     def routine(self, routine: RoutineBody) -> None:
         """Summarise a routine, and find the suspects in it."""
         flow = data_flow(self._context, routine)
-        can_try = any(type(one.statement) is ast.OnErrorProceed for one in routine.statements)
+        # what cannot be read may be a guard
+        can_try = bool(self._context.module.words) or any(
+            type(one.statement) is ast.OnErrorProceed for one in routine.statements
+        )
         for index, parameter in enumerate(routine.node.parameters):
             at = self._path, routine.node.name.key, index
             if parameter.name.key in flow.parameters:
@@ -148,7 +151,7 @@ class SummaryCollector:
         written = [one.to for one in uses if one.use is not Use.READ]
         for to in (None,) if None in written else written:
             self._clauses[(WRITES, *at), ((WRITES, *to),) if to else ()] = None
-        for use in () if written else uses:
+        for use in () if written or can_try else uses:
             bound = self._context.bounds.get(use.name)
             is_whole = use.to and type(use.place) is ast.Variable
             if (bound or is_whole) and flow.is_on_every_way(use):
@@ -248,7 +251,7 @@ def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
         for to, value, region in one.constants:
             for bound in bounds.get(to, ()):
                 if not bound.accepts(value):
-                    message = f"{to[1]} {bound.use}: {value:g} is none of these"
+                    message = f"{value:g} is passed to {to[1]}, which {bound.use}"
                     yield diagnose(bound.slug, one.path, region, message, severity="warning")
 
 

@@ -109,7 +109,7 @@ def _check_range(checker: TypeChecker, node: ast.Subscript, array: Array) -> Non
         if given is not None and place is None:
             most = math.inf if size is None else size
             reach = "" if size is None else f" to {size}"
-            bound = Bound("index-out-of-range", f"uses it as an index, from 1{reach}", 1, most)
+            bound = Bound("index-out-of-range", f"uses it as an index from 1{reach}", 1, most)
             checker.context.note_bound(given, bound)
         if given is None or place is None or (place >= 1 and (size is None or place <= size)):
             continue

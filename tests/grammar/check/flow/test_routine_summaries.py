@@ -1,9 +1,11 @@
 """What calls can rely on, however far the routine that decides is away."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from grammar.check.project.batch import CheckOptions, check_paths
 from grammar.diagnostics.diagnostic import Diagnostic
 
 Agrees = Callable[..., None]
@@ -84,6 +86,16 @@ def test_constants_that_a_routine_cannot_use(
     pick += "ALL[N] = 1\nEND"
     found = files(main, speed, share, pick)
     agrees({**found, "$machine.dat": MACHINE})
+
+
+def test_nothing_is_known_of_a_routine_that_cannot_be_read_whole(tmp_path: Path) -> None:
+    """The line that cannot be read may be a guard."""
+    for line, expected in (("HALT", ["KRL302", "KRL416"]), ("IF N THEN(", [])):
+        text = f"DEF NEG()\nWORK(0)\nWORK(1)\nEND\nDEF WORK(N:IN, M:IN)\nINT N, M\n{line}\n"
+        text += "$ANOUT[1] = M / N\nEND\n"
+        (tmp_path / "NEG.src").write_text(text, encoding="utf-8")
+        found = check_paths([tmp_path], CheckOptions(), jobs=1).diagnostics
+        assert expected == sorted({one.code for one in found} & {"KRL302", "KRL416"})
 
 
 def test_a_division_by_a_constant_zero(agrees: Agrees) -> None:
