@@ -13,8 +13,8 @@ from grammar.parser.lexer import Lexer
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
 
-#: What can be damaged, by what one wants to know: mistakes of programmers, names alone, a token of
-#: any sort, or whole lines and the signs that hold them together.
+#: What can be damaged, by what one wants to know: mistakes of programmers, names alone, arguments
+#: alone, a token of any sort, or whole lines and the signs that hold them together.
 KINDS: Final[Mapping[str, tuple[str, ...]]] = {
     "mistakes": (
         "name misspelt",
@@ -28,6 +28,7 @@ KINDS: Final[Mapping[str, tuple[str, ...]]] = {
         "end of a block dropped",
     ),
     "names": ("name misspelt",),
+    "arguments": ("argument dropped",),
     "tokens": ("token dropped", "token doubled", "token exchanged"),
     "lines": (
         "line lost",
@@ -106,8 +107,8 @@ def slip(kind: str, tokens: Sequence[Token], chance: random.Random) -> Exchange 
         case "end of a line lost":
             start = chance.choice(tokens[1:]).start if len(tokens) > 1 else 0
             return (start, tokens[-1].end, "") if start else None
-        case "argument added":
-            return _more_arguments(tokens, chance)
+        case "argument added" | "argument dropped":
+            return _arguments(tokens, chance, is_more=kind == "argument added")
         case "words swapped":
             return _swapped(tokens, chance)
         case "number out of range":
@@ -151,21 +152,26 @@ def _misspelt(words: Sequence[Token], chance: random.Random) -> Exchange | None:
     return token.start, token.end, wrong
 
 
-def _more_arguments(tokens: Sequence[Token], chance: random.Random) -> Exchange | None:
-    """Return a call with one more argument at its end."""
-    ends = []
+def _arguments(tokens: Sequence[Token], chance: random.Random, *, is_more: bool) -> Exchange | None:
+    """Return a call with one more argument at its end, or without its last one."""
+    calls = []
     for index, token in enumerate(tokens[:-1]):
         if token.kind == "NAME" and tokens[index + 1].text == "(":
             depth = 0
+            start = tokens[index + 1].end
             for other in tokens[index + 1 :]:
-                depth += (other.text == "(") - (other.text == ")")
+                depth += (other.text in "([{") - (other.text in ")]}")
+                if depth == 1 and other.text == ",":
+                    start = other.start
                 if depth == 0:
-                    ends.append((other.start, tokens[index + 1].end == other.start))
+                    calls.append((start, other.start, tokens[index + 1].end == other.start))
                     break
-    if not ends:
+    if not is_more:
+        calls = [one for one in calls if not one[2]]
+    if not calls:
         return None
-    at, is_empty = chance.choice(ends)
-    return at, at, "0" if is_empty else ", 0"
+    start, end, is_empty = chance.choice(calls)
+    return (end, end, "0" if is_empty else ", 0") if is_more else (start, end, "")
 
 
 def _swapped(tokens: Sequence[Token], chance: random.Random) -> Exchange | None:

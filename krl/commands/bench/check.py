@@ -15,7 +15,7 @@ from krl.terminal.text_table import figures, plain
 from reports.rendering.number_format import counted
 from support.measure.speed import MB
 
-Damage = Literal["mistakes", "names", "tokens", "lines"]
+Damage = Literal["mistakes", "names", "arguments", "tokens", "lines"]
 _PLANTED_FIGURES = ("planted", "found", "in_place", "median", "p95", "most")
 
 
@@ -48,7 +48,9 @@ def check(
     ] = "0",
     damage: Annotated[
         Damage,
-        typer.Option(help="Damage: typical mistakes, only names, any token, or whole lines."),
+        typer.Option(
+            help="Damage: typical mistakes, only names, lost arguments, any token, or whole lines."
+        ),
     ] = "mistakes",
     speed: Annotated[bool, typer.Option(help="Measure the speed.")] = True,
 ) -> int:

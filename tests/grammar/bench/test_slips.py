@@ -46,6 +46,26 @@ def test_lines_without_a_place_get_no_mistake() -> None:
         assert slip(kind, [Token("ENDIF", 0, "ENDIF", True)], random.Random(1)) is None
 
 
+@pytest.mark.parametrize(
+    ("call", "left"),
+    [
+        ("WORK(1)", "WORK()"),
+        ("WORK(1, B[2, 3])", "WORK(1)"),
+        ("WORK({X 1, Y 2})", "WORK()"),
+        ("WORK(1, F(2, 3), )", "WORK(1, F(2, 3))"),
+        ("WORK()", None),
+        ("WORK = 1", None),
+    ],
+)
+def test_the_last_argument_is_dropped(call: str, left: str | None) -> None:
+    """A comma in an index, an aggregate or another call separates no arguments of the call."""
+    (line,) = lines_of_tokens(Source(call, "cell.src"))
+    drawn = [slip("argument dropped", line, random.Random(seed)) for seed in range(20)]
+    made = {one and call[: one[0]] + one[2] + call[one[1] :] for one in drawn}
+    assert left in made
+    assert "F(" in call or made == {left}
+
+
 WHOLE = """DEF CELL()
   ; moves home
   IF COUNTER > 3 THEN
