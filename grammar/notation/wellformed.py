@@ -24,6 +24,8 @@ _RESERVED = frozenset(
     "private protected public returns throws tokens".split()
 )
 
+#: Characters and sets of all lexer rules, those that a rule refers to counted each time.
+_MOST_CHARACTERS = 100_000
 #: ``re`` compiles patterns recursively and needs a few frames for each level of nesting.
 _MOST_NESTED = 100
 
@@ -52,6 +54,10 @@ def problem(grammar: Grammar) -> str | None:
     if deep:
         line = _line(grammar, names.index(deep))
         return f"{line}: tokens within {deep} are nested more than {_MOST_NESTED} deep"
+    large = _too_large(grammar)
+    if large:
+        line = _line(grammar, names.index(large))
+        return f"{line}: {large} and what it refers to: more than {_MOST_CHARACTERS:,} characters"
     lengths = _lengths(grammar.rules)
     endless = next((name for name in names if math.isinf(lengths[name])), None)
     if endless is None:
@@ -71,6 +77,36 @@ def _too_deep(grammar: Grammar) -> str | None:
             depths[name] = 1 + brackets + max(map(depths.__getitem__, refers[name]), default=0)
             if depths[name] > _MOST_NESTED:
                 return name
+    return None
+
+
+def _too_large(grammar: Grammar) -> str | None:
+    """Return the name of the first lexer rule with which the rules are too large, or ``None``.
+
+    Rules are not recursive.
+    """
+    sizes: dict[str, int] = {}
+
+    def size(name: str) -> int:
+        if name not in sizes:
+            sizes[name] = sum(
+                len(element.text)
+                if isinstance(element, Literal)
+                else len(element.ranges)
+                if isinstance(element, CharSet)
+                else size(element.name)
+                for alternative in grammar.by_name[name].alternatives
+                for element in walk(alternative)
+                if isinstance(element, Literal | CharSet | Reference)
+            )
+        return sizes[name]
+
+    total = 0
+    for rule in grammar.rules:
+        if rule.is_lexer and not rule.is_fragment:
+            total += size(rule.name)
+            if total > _MOST_CHARACTERS:
+                return rule.name
     return None
 
 

@@ -9,8 +9,9 @@ automaton the next character always decides which branch to take.
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
 
 from grammar.notation.model import (
     MAX_CODE_POINT,
@@ -31,6 +32,10 @@ from support.lazy_dataclass import dataclass
 
 #: Distance of the two cases of an ASCII letter; ANTLR's ``caseInsensitive`` adds the other case.
 _CASE_OFFSET = ord("a") - ord("A")
+
+
+#: Members of sets of states that are looked at to make rules deterministic; some seconds.
+_MOST_WORK = 2_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,38 +160,39 @@ def automaton_of(grammar: Grammar, rules: Sequence[Rule]) -> CharAutomaton:
         {0, MAX_CODE_POINT + 1}
         | {p for edges in nfa.edges for rs, _ in edges for lo, hi in rs or () for p in (lo, hi + 1)}
     )
-    letters = cuts[:-1]  # one representative for each class of characters
     index = {nfa.closure(0): 0}
-    table: list[list[int]] = []
+    table: list[dict[int, int]] = []  # targets by class of characters, the number of its first cut
     order = list(index)
+    work = 0
     for states in order:  # grows while it is walked
-        row = []
-        ways = [(rs, t) for s in states for rs, t in nfa.edges[s] if rs is not None]
-        for letter in letters:
-            targets = frozenset[int]().union(
-                *(nfa.closure(t) for rs, t in ways if any(lo <= letter <= hi for lo, hi in rs))
-            )
-            if targets and targets not in index:
+        reached: dict[int, set[int]] = defaultdict(set)
+        for ranges, target in (edge for state in states for edge in nfa.edges[state]):
+            for low, high in ranges or ():
+                letters = range(bisect_left(cuts, low), bisect_left(cuts, high + 1))
+                closure = nfa.closure(target)
+                work += len(letters) * len(closure)
+                if work > _MOST_WORK:
+                    what = f"lexer rule {rules[0].name}" if len(rules) == 1 else "the lexer rules"
+                    raise GrammarError(f"{what}: the automaton has too many states")
+                for letter in letters:
+                    reached[letter] |= closure
+        row = {}
+        for letter in sorted(reached):
+            targets = frozenset(reached[letter])
+            if targets not in index:
                 index[targets] = len(order)
                 order.append(targets)
-            row.append(index[targets] if targets else -1)
+            row[letter] = index[targets]
         table.append(row)
     accepting = [bool(states & ends) for states in order]
     return _minimal(table, accepting, cuts)
 
 
-def _minimal(table: list[list[int]], accepting: list[bool], cuts: list[int]) -> CharAutomaton:
-    block = [int(a) for a in accepting]
-    while True:
-        keys: dict[tuple[int, ...], int] = {}
-        refined = [
-            keys.setdefault((block[s], *(block[t] if t >= 0 else -1 for t in row)), len(keys))
-            for s, row in enumerate(table)
-        ]
-        if len(keys) == len(set(block)):
-            break
-        block = refined
-    number: dict[int, int] = {block[0]: 0}
+def _minimal(
+    table: Sequence[Mapping[int, int]], accepting: Sequence[bool], cuts: Sequence[int]
+) -> CharAutomaton:
+    block = _equivalent(table, accepting)
+    number: dict[int, int] = {}
     for b in block:
         number.setdefault(b, len(number))
     edges: list[dict[int, list[CharRange]]] = [{} for _ in number]
@@ -196,13 +202,48 @@ def _minimal(table: list[list[int]], accepting: list[bool], cuts: list[int]) -> 
         if here in done:
             continue
         done.add(here)
-        for (low, high), target in zip(pairwise(cuts), row, strict=True):
-            if target >= 0:
-                edges[here].setdefault(number[block[target]], []).append((low, high - 1))
+        for letter, target in row.items():
+            there = edges[here].setdefault(number[block[target]], [])
+            there.append((cuts[letter], cuts[letter + 1] - 1))
     return CharAutomaton(
         tuple({t: normalised(rs) for t, rs in e.items()} for e in edges),
         frozenset(number[block[s]] for s, a in enumerate(accepting) if a),
     )
+
+
+def _equivalent(table: Sequence[Mapping[int, int]], accepting: Sequence[bool]) -> list[int]:
+    """Return a block for each state, the same for states that accept the same texts.
+
+    This is Hopcroft's algorithm: its cost is that of the edges, times the logarithm of the states.
+    """
+    sources: list[dict[int, list[int]]] = [defaultdict(list) for _ in table]
+    for state, row in enumerate(table):
+        for letter, target in row.items():
+            sources[target][letter].append(state)
+    block = [int(one) for one in accepting]
+    blocks = [{s for s, b in enumerate(block) if b == number} for number in (0, 1)]
+    waiting = {0, 1}
+    while waiting:
+        before: dict[int, list[int]] = defaultdict(list)
+        for state in blocks[waiting.pop()]:
+            for letter, found in sources[state].items():
+                before[letter] += found
+        for states in before.values():
+            parts: dict[int, set[int]] = defaultdict(set)
+            for state in states:
+                parts[block[state]].add(state)
+            for old, part in parts.items():
+                blocks[old] -= part
+                if not blocks[old]:
+                    blocks[old] = part
+                    continue
+                new = len(blocks)
+                blocks.append(part)
+                for state in part:
+                    block[state] = new
+                is_smaller = len(part) <= len(blocks[old])
+                waiting.add(new if old in waiting or is_smaller else old)
+    return block
 
 
 def first_characters(automaton: CharAutomaton) -> tuple[CharRange, ...]:
@@ -218,18 +259,24 @@ def overlap(left: Sequence[CharRange], right: Sequence[CharRange]) -> bool:
 #: Longest path of states. Each state is a group inside the one before, and ``re`` compiles groups
 #: recursively.
 _LONGEST_WAY = 150
+#: States in a pattern, each as often as paths lead to it.
+_MOST_PARTS = 5_000
 
 
 def pattern_of(automaton: CharAutomaton) -> str | None:
     """Return a pattern for ``re`` that matches the longest accepted text, never the empty one.
 
     Returns ``None`` if the automaton has a cycle through several states, because no such pattern
-    exists for it, or if a path is longer than ``re`` can nest groups.
+    exists for it, or if a path is longer than ``re`` can nest groups, or the pattern would be too
+    long: it repeats what several paths share.
     """
     on_path: set[int] = set()
+    parts = 0
 
     def of(state: int, *, may_stop: bool) -> str | None:
-        if state in on_path or len(on_path) >= _LONGEST_WAY:
+        nonlocal parts
+        parts += 1
+        if state in on_path or len(on_path) >= _LONGEST_WAY or parts > _MOST_PARTS:
             return None
         on_path.add(state)
         loop, ways = "", []

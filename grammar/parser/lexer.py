@@ -53,21 +53,49 @@ _LONGEST_ROW = 50_000
 _Ranked = tuple[int, int]
 
 
+class _Others:
+    """The rules that are no literals: which of them a whole lexeme is.
+
+    Patterns made of automata never backtrack. A rule may have none; then its automaton is run.
+    """
+
+    def __init__(self, grammar: Grammar, ranked: Sequence[tuple[Rule, _Ranked]]) -> None:
+        automata = [automaton_of(grammar, [rule]) for rule, _ in ranked]
+        patterns = [pattern_of(automaton) for automaton in automata]
+        self._ranks = [rank for _, rank in ranked]
+        self._automata = automata if None in patterns else []
+        # the empty pattern is that of a rule that matches nothing but the empty text
+        self._pattern = re.compile("|".join(f"({one or '(?!)'})" for one in patterns) or "(?!)")
+
+    def kind(self, lexeme: str) -> _Ranked | None:
+        """Return the rank of the first rule that matches, or ``None``."""
+        if not self._automata:
+            found = self._pattern.fullmatch(lexeme)
+            return self._ranks[found.lastindex - 1] if found and found.lastindex else None
+        length = len(lexeme)
+        return next(
+            (
+                rank
+                for rank, automaton in zip(self._ranks, self._automata, strict=True)
+                if automaton.longest(lexeme, 0) == length
+            ),
+            None,
+        )
+
+
 class _Kinds(dict[str, int]):
     """Token kind by lexeme, filled on demand."""
 
-    __slots__ = ("fold", "literals", "others", "other_ranks")
+    __slots__ = ("fold", "literals", "others")
 
     def __init__(
         self,
         literals: Mapping[str, _Ranked],
-        others: re.Pattern[str],
-        other_ranks: Sequence[_Ranked],
+        others: _Others,
         fold: Callable[[str], str],
     ) -> None:
         self.literals = literals
         self.others = others
-        self.other_ranks = other_ranks
         self.fold = fold
 
     def __missing__(self, lexeme: str) -> int:
@@ -80,8 +108,8 @@ class _Kinds(dict[str, int]):
 
     def unreserved(self, lexeme: str) -> list[_Ranked]:
         """Return the kind of a lexeme if literals are left aside, as a list of at most one."""
-        found = self.others.fullmatch(lexeme)
-        return [self.other_ranks[found.lastindex - 1]] if found and found.lastindex else []
+        found = self.others.kind(lexeme)
+        return [found] if found else []
 
     def _classify(self, lexeme: str) -> int:
         if not lexeme:
@@ -117,16 +145,15 @@ class Lexer:
         }
         names_of_literals = set(grammar.literal_tokens.values())
         others = [r for r in rules if r.name not in names_of_literals]
-        classify = re.compile("|".join(f"({regex_of(grammar, r)})" for r in others) or "(?!)")
-        ranks = [self._ranked(rule) for rule in others]
+        classify = _Others(grammar, [(rule, self._ranked(rule)) for rule in others])
         fold: Callable[[str], str] = str.upper if grammar.case_insensitive else str
-        self.kinds = _Kinds(literals, classify, ranks, fold)
+        self.kinds = _Kinds(literals, classify, fold)
 
         # A keyword that also matches as a name does not change where tokens end; without it the
         # automaton stays small.
         def is_other(rule: Rule) -> bool:
-            found = classify.fullmatch(_only_literal(rule))
-            return found is not None and ranks[(found.lastindex or 0) - 1][1] != SKIPPED
+            found = classify.kind(_only_literal(rule))
+            return found is not None and found[1] != SKIPPED
 
         cutting = [
             r for r in rules if r.is_skipped or r.name not in names_of_literals or not is_other(r)
@@ -177,9 +204,7 @@ class Lexer:
         wider.kind_of = {**self.kind_of, word: kind}
         wider._keywords = self._keywords | {kind}
         old = self.kinds
-        wider.kinds = _Kinds(
-            {**old.literals, word: (0, kind)}, old.others, old.other_ranks, old.fold
-        )
+        wider.kinds = _Kinds({**old.literals, word: (0, kind)}, old.others, old.fold)
         return wider
 
     def is_keyword(self, kind: int) -> bool:

@@ -15,11 +15,6 @@ from typing import NamedTuple
 from grammar.parser.lexer import Lexer
 from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
 
-#: Uses that are counted in memory before they are added to those on disk.
-_MOST_IN_MEMORY = 50_000
-#: Stands for an origin: the word is bound somewhere.
-_BOUND = 0
-
 
 @dataclass(frozen=True, slots=True)
 class UnreservedKeyword:
@@ -56,6 +51,11 @@ def names_used(text: str, lexer: Lexer) -> NameUse:
 class UnreservedKeywords:
     """Counts how programs use names, and lists those that are read and never bound."""
 
+    #: Uses that are counted in memory before they are added to those on disk.
+    MOST_IN_MEMORY = 50_000
+    #: Stands for an origin: the word is bound somewhere.
+    BOUND = 0
+
     def __init__(self) -> None:
         self._origins: dict[str, int] = {}
         self._recent: Counter[tuple[str, int]] = Counter()
@@ -71,9 +71,9 @@ class UnreservedKeywords:
     def add(self, origin: str, used: NameUse) -> None:
         """Count the names of one program."""
         number = self._origins.setdefault(origin, len(self._origins) + 1)
-        self._recent.update([(word, _BOUND) for word in used.bound])
+        self._recent.update([(word, self.BOUND) for word in used.bound])
         self._recent.update([(word, number) for word in used.read if not word.startswith("$")])
-        if len(self._recent) > _MOST_IN_MEMORY:
+        if len(self._recent) > self.MOST_IN_MEMORY:
             self._move_to_disk()
 
     def _move_to_disk(self) -> None:
@@ -93,7 +93,7 @@ class UnreservedKeywords:
         needed = UNRESERVED_ORIGINS if len(self._origins) > 1 else 1
         rows = self._base.execute(
             "SELECT word, SUM(files), COUNT(*) FROM used GROUP BY word"
-            f" HAVING MIN(origin) > {_BOUND} AND SUM(files) >= ? AND COUNT(*) >= ?",
+            f" HAVING MIN(origin) > {self.BOUND} AND SUM(files) >= ? AND COUNT(*) >= ?",
             (UNRESERVED_FILES, needed),
         )
         found = [

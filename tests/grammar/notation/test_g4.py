@@ -300,6 +300,13 @@ def test_exchanging_a_rule() -> None:
             13,
             "tokens within A10 are nested more than 100 deep",
         ),
+        (
+            "s : A ;\nC : B0 ;\n"
+            + "\n".join(f"fragment B{n} : B{n + 1} B{n + 1} ;" for n in range(40))
+            + "\nfragment B40 : 'b' ;",
+            3,
+            "C and what it refers to: more than 100,000 characters",
+        ),
     ],
 )
 def test_what_is_not_of_our_style_is_refused(rules: str, line: int, message: str) -> None:

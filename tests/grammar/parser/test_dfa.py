@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from grammar.notation.g4 import read
 from grammar.notation.generate import GRAMMAR
-from grammar.notation.model import Grammar, normalised
+from grammar.notation.model import Grammar, GrammarError, normalised
 from grammar.parser.dfa import (
     CharAutomaton,
     automaton_of,
@@ -190,3 +190,28 @@ def test_own_grammars_are_cut_at_the_speed_of_re(name: str) -> None:
     rules = [r for r in grammar.rules if r.is_lexer and not r.is_fragment]
     others = [r for r in rules if r.name not in grammar.literal_tokens.values()]
     assert pattern_of(automaton_of(grammar, others)) is not None
+
+
+# -------------------------------------------------------------------- grammars of strangers
+
+
+@pytest.mark.parametrize(
+    "rule",
+    ["A : 'a' " + "'x'? " * 2_000 + ";", "A : [ab]* 'a' " + "[ab] " * 40 + ";"],
+    ids=["optional", "place from the end"],
+)
+def test_too_many_states_are_refused(rule: str) -> None:
+    """Rules whose automaton would take hours are an error after some seconds at most."""
+    with pytest.raises(GrammarError, match="lexer rule A: the automaton has too many states"):
+        automaton(rule)
+
+
+def test_a_long_literal_is_no_work() -> None:
+    """Ten thousand characters have as many states and one more."""
+    assert 10_001 == len(automaton(f"A : '{'x' * 10_000}' ;").edges)
+
+
+def test_a_pattern_that_repeats_itself_is_left_out() -> None:
+    """Where paths meet, the pattern would say what follows once for each of them."""
+    forks = [f"A : {fork * number} ;" for fork in ("('a' 'b' | 'c' 'd') ",) for number in (5, 60)]
+    assert [True, False] == [pattern_of(automaton(rule)) is not None for rule in forks]

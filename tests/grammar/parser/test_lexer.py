@@ -232,6 +232,16 @@ def test_of_equals_the_first_rule_wins() -> None:
     assert [("NAME", "if", 0)] == tokens_of(behind, "if")
 
 
+@pytest.mark.parametrize(
+    ("rule", "long"), [("([A-Z]+)+ '!'", "A" * 40), ("(('A' 'B')+)+ '!'", "AB" * 20)]
+)
+def test_no_lexeme_is_tried_in_every_way(rule: str, long: str) -> None:
+    """A rule that could read a word in a billion ways costs no more than its letters."""
+    grammar = read(f"grammar T;\ns : A ;\nA : {rule} ;\nB : [A-Z]+ ;\n")
+    lexer = Lexer(grammar)
+    assert ["B", "A"] == [lexer.names[lexer.kinds[word]] for word in (long, f"{long}!")]
+
+
 def test_skipped_text_may_begin_like_a_token() -> None:
     """A comment that begins with an operator is told from it by its length."""
     lexer = Lexer(lexer_grammar("SLASH : '/' ;\nNAME : [A-Z]+ ;\nCOMMENT : '//' ~[\\n]* -> skip ;"))

@@ -8,7 +8,6 @@ from grammar.notation import g4
 from grammar.notation.edits import Edit, RemoveAlternative, RemoveRule, apply
 from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
-from recovery.survey import unreserved_keywords
 from recovery.survey.unreserved_keywords import (
     UnreservedKeyword,
     UnreservedKeywords,
@@ -71,7 +70,7 @@ def test_one_origin_is_not_enough_where_there_are_two() -> None:
 @pytest.mark.parametrize("most", [0, 1, 3, 1_000])
 def test_counts_on_disk_are_those_in_memory(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """However often counts move to disk, the result is the same."""
-    monkeypatch.setattr(unreserved_keywords, "_MOST_IN_MEMORY", most)
+    monkeypatch.setattr(UnreservedKeywords, "MOST_IN_MEMORY", most)
     read = [("c", "DEF Q()\nWAIT FOR SEEN\nBOUND=SEEN AND BOUND\nEND\n")] * 3
     expected = [UnreservedKeyword("TRUE", 4, 2)]
     assert suspected([*programs(4), *read], without_true()) == expected
