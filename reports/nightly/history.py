@@ -26,7 +26,7 @@ _MOST_LISTED = 40
 #: Runs are kept for a year; single cases and clusters only of the last `_IN_FULL` runs.
 _MOST_RUNS = 366
 _IN_FULL = 7
-_LONG = {"recover": "clusters", "conform": "cases"}
+_LONG = {"recover": "clusters", "conform": "cases", "conform-arm": "cases"}
 #: Figures of benches that are no results, such as the amount of work and parameters.
 _SIZES = frozenset(
     "aim bytes cases cycle_us failures files held_out inverse_poses killed motions mutants parsed"
@@ -125,6 +125,7 @@ def nightly_record(date: str, made: Mapping[str, Record], steps: Mapping[str, Js
         ("recover", _surveyed),
         ("growth", _grown),
         ("conform", _conformed),
+        ("conform-arm", _conformed),
         ("fuzz", _fuzzed),
     ):
         if name in made:
@@ -221,6 +222,10 @@ def changes(
     if before.get("conform") and now.get("conform"):
         reported += _verdicts(nested(before, "conform"), nested(now, "conform"))
         reported += _shifts(nested(before, "conform"), nested(now, "conform"), old, new)
+    if before.get("conform-arm") and now.get("conform-arm"):
+        reported += _verdicts(
+            nested(before, "conform-arm"), nested(now, "conform-arm"), "on MuJoCo: "
+        )
     if before.get("fuzz") and now.get("fuzz"):
         reported += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
     return [*reported, *_speeds(nested(before, "bench"), nested(now, "bench"))]
@@ -249,17 +254,18 @@ def _survey(before: Record, now: Record) -> Iterator[str]:
     )
 
 
-def _verdicts(before: Record, now: Record) -> Iterator[str]:
+def _verdicts(before: Record, now: Record, where: str = "") -> Iterator[str]:
+    """Yield the cases whose verdict has changed; ``where`` is put before each sentence."""
     old, new = _by_case(before), _by_case(now)
     for name, (verdict, _) in new.items():
         if name not in old:
-            yield f"case appeared: {name} ({verdict})"
+            yield f"{where}case appeared: {name} ({verdict})"
         elif old[name][0] != verdict:
             what = (
                 "new failure" if verdict == "fail" else "fixed" if verdict == "pass" else "changed"
             )
-            yield f"{what}: {name}: {old[name][0]} → {verdict}"
-    yield from (f"case vanished: {name}" for name in old if name not in new)
+            yield f"{where}{what}: {name}: {old[name][0]} → {verdict}"
+    yield from (f"{where}case vanished: {name}" for name in old if name not in new)
 
 
 def _by_case(conform: Record) -> dict[str, tuple[str, str]]:

@@ -47,7 +47,7 @@ def failures(
     return [
         *_steps(steps),
         *(one for name in _CONFORM if name in made for one in _cases(name, made)),
-        *_no_longer_passing(made.get("conform", {}), before or {}),
+        *(one for name in _CONFORM for one in _no_longer_passing(name, made, before or {})),
         *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
         *_programs(made.get("fuzz", {})),
     ]
@@ -83,14 +83,14 @@ def _cases(step: str, made: Mapping[str, Record]) -> Iterator[Failure]:
             yield _of_case(step, case, f"{how}: {reason}", failed[0])
 
 
-def _no_longer_passing(record: Record, before: Record) -> Iterator[Failure]:
-    """Yield cases that do not fail a run by themselves, but passed in the previous run."""
-    was = nested(nested(before, "conform"), "cases")
-    for case in records(record, "cases"):
+def _no_longer_passing(step: str, made: Mapping[str, Record], before: Record) -> Iterator[Failure]:
+    """Yield cases that do not fail a step by themselves, but passed in its previous run."""
+    was = nested(nested(before, step), "cases")
+    for case in records(made.get(step, {}), "cases"):
         now = text(case, "verdict")
         if now == "unconfirmed" and str(was.get(text(case, "name"), "")).startswith("pass "):
             unmet = (one for one in records(case, "results") if text(one, "verdict") == now)
-            yield _of_case("conform", case, f"passed before, now {now}", next(unmet, {}))
+            yield _of_case(step, case, f"passed before, now {now}", next(unmet, {}))
 
 
 def _of_case(step: str, case: Record, what: str, result: Record) -> Failure:

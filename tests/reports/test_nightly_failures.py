@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from reports.nightly.history import changes, nightly_record
 from reports.nightly.nightly_failures import failures
 from reports.nightly.nightly_page import write_nightly_page
 
@@ -87,11 +88,16 @@ def test_what_is_expected_is_no_failure(verdict: str) -> None:
     assert [] == failures(made, {"recover": {"status": "findings"}}, before)
 
 
-def test_a_case_that_no_longer_passes_is_a_failure() -> None:
-    """Even where its rule is not sure enough to fail it by itself."""
-    before = {"conform": {"cases": {"io/pulse": "pass 12ab"}}}
-    (found,) = failures({"conform": _conform("unconfirmed")}, {}, before)
+@pytest.mark.parametrize("step", ["conform", "conform-arm"])
+def test_a_case_that_no_longer_passes_is_a_failure(step: str) -> None:
+    """Even if its rule is not sure enough to fail it by itself; the history has what passed."""
+    before = nightly_record("2026-01-01", {step: _conform("pass")}, {})
+    (found,) = failures({step: _conform("unconfirmed")}, {}, before)
     assert "case io/pulse passed before, now unconfirmed" == found["what"]
+    assert f"{step}/index.html#case=io%2Fpulse" == found["page"]
+    after = nightly_record("2026-01-02", {step: _conform("unconfirmed")}, {})
+    where = "on MuJoCo: " if step == "conform-arm" else ""
+    assert f"{where}changed: io/pulse: pass → unconfirmed" in changes(before, after)
 
 
 def test_a_step_that_did_not_end_is_a_failure() -> None:
