@@ -130,13 +130,8 @@ def is_alike(one: Observation, other: Observation) -> bool:
         return first is second
     if first.placements != second.placements or first.motions != second.motions:
         return False
-    rows = (
-        (getattr(path, name) for name in ("times", "axes", "points")) for path in (first, second)
-    )
-    return all(
-        a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=1e-6)
-        for a, b in zip(*rows, strict=True)
-    )
+    rows = ((first.times, second.times), (first.axes, second.axes), (first.points, second.points))
+    return all(a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=1e-6) for a, b in rows)
 
 
 # ------------------------------------------------------------------------------- marked lines

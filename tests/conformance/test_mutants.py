@@ -4,14 +4,15 @@ import ast
 import fnmatch
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-from conformance.evaluation.execution import Setup
+from conformance.evaluation.execution import Setup, observe
 from conformance.sensitivity import bench, trial
-from conformance.sensitivity.line_reach import Reach, reach_of
+from conformance.sensitivity.line_reach import Reach, is_alike, reach_of
 from conformance.sensitivity.mutants import (
     PACKAGES,
     Mutant,
@@ -271,6 +272,48 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
     (found,) = try_faults([mutant], reach_of([_case(case)], _SETUP))
     assert (fate, 1, 1) == (found.fate, found.reached, found.runs)
     assert ("" if fate == "equivalent" else case) == found.case == found.changed
+
+
+@needs_fork
+@pytest.mark.parametrize(
+    ("module", "function", "was", "now", "by_profile"),
+    [
+        (
+            "spline",
+            "_is_corner",
+            "before.is_exact and segment.is_exact",
+            "before.is_exact or segment.is_exact",
+            True,
+        ),
+        (
+            "circle",
+            "Circle.at",
+            "np.cos(phi) * self.first + np.sin(phi) * self.second",
+            "np.cos(phi) * self.first - np.sin(phi) * self.second",
+            False,
+        ),
+    ],
+)
+def test_red_by_laws_of_the_simulator_only(
+    module: str, function: str, was: str, now: str, by_profile: bool
+) -> None:
+    """An arm that stops where it need not has another profile; one off its points breaks a rule."""
+    mutant = _mutant(f"interp.robot.path.{module}", function, was, now)
+    (found,) = try_faults([mutant], reach_of([_case("motion/drawn_shapes")], _SETUP))
+    assert ("red", by_profile) == (found.fate, found.by_profile)
+
+
+def test_runs_that_differ_by_rounding_are_alike() -> None:
+    """A billionth of a degree is rounding, a hundred-thousandth is not, nor is another event."""
+    seen = observe(_case("motion/acc_cp"), _SETUP)
+    assert seen.path is not None
+    alike = []
+    for off in (1e-9, 1e-5):
+        path = replace(seen.path, axes=seen.path.axes + off)
+        alike.append(is_alike(seen, replace(seen, path=path)))
+    assert [True, False] == alike
+    assert not is_alike(seen, replace(seen, events=seen.events[1:]))
+    assert not is_alike(seen, replace(seen, path=None))
 
 
 @needs_fork
