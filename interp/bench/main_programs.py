@@ -22,7 +22,7 @@ from grammar.syntax.references import calls_in
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 from interp.controller.inputs.automatic_inputs import OPERATOR
-from interp.controller.inputs.input_script import Script, ScriptError
+from interp.controller.inputs.input_script import Script
 from interp.controller.state.profile import Profile
 from interp.controller.state.trace import TraceEvent
 from interp.executors import Prepared
@@ -65,16 +65,12 @@ Result = Literal[
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MainProgram:
-    """A main program, and the first routine of its submit program if its backup has one.
-
-    ``has_machine`` says whether its backup has the machine data of an arm.
-    """
+    """A main program, and the first routine of its submit program if its backup has one."""
 
     prepared: Prepared
     path: str
     routine: str
     submit: str | None
-    has_machine: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +127,7 @@ def main_programs(
             and first.node.name.key not in called[key]
         )
         if is_wanted:
-            found.append(
-                MainProgram(
-                    Prepared(program), path, first.name, submit_of(program), _has_machine(program)
-                )
-            )
+            found.append(MainProgram(Prepared(program), path, first.name, submit_of(program)))
     return found, list(unread)
 
 
@@ -177,13 +169,6 @@ def _moves(routine: ast.Routine) -> bool:
     return any(isinstance(node, _MOVES) for one in routine.body for node in walk(one))
 
 
-def _has_machine(program: CheckedProgram) -> bool:
-    return any(
-        unit.module.name == "$MACHINE" and "$LENGTH_A" in unit.source.text
-        for unit in program.units.values()
-    )
-
-
 def survey_profile() -> Profile:
     """Return the default profile with a slower submit program, so the robot gets more time."""
     return replace(Profile.load(), submit_requests=_SUBMIT_REQUESTS)
@@ -196,20 +181,20 @@ class _Over(Exception):
 def run_main(
     main: MainProgram,
     setup: RunSetup,
-    script: str = "",
     is_over: Callable[[], bool] = lambda: False,
 ) -> Ran:
-    """Run a main program; ``script`` adds to the actions of the operator and of the cell.
+    """Run a main program, with the actions of the operator and of the cell.
 
     ``is_over`` is called after each virtual second, and says whether the program has taken too
-    long. A defect of ours is a result like others, with its exception as the reason. Raises
-    `ScriptError` for a script with an unknown name.
+    long. A defect of ours is a result like others, with its exception as the reason.
     """
     seen = _Seen()
-    text = script + "\n" + OPERATOR
-    script_read = Script.read(text, f"{main.routine}.io")
     setup = replace(
-        setup, submit=main.submit, script=script_read, patience=PATIENCE, is_submit_traced=False
+        setup,
+        submit=main.submit,
+        script=Script.read(OPERATOR),
+        patience=PATIENCE,
+        is_submit_traced=False,
     )
 
     def on_time(now: int) -> None:
@@ -225,8 +210,6 @@ def run_main(
         over: Result = "goes on" if seen.is_in_loop else "cpu"
         reason = "no CPU time is left"
         return Ran(over, seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
-    except ScriptError:
-        raise
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         return Ran("crash", seen.now / 1e6, seen.motions, at=seen.at, reason=reason)

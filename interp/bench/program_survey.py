@@ -41,15 +41,10 @@ _STATEMENTS: Final = 3_000_000
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """The origin of files, the files, and scripts for their programs by the stem of the file.
-
-    ``script`` is for all of its programs. ``damage`` is the kind of damage of its files.
-    """
+    """The origin of files, the files, and the kind of damage that they have."""
 
     name: str
     sources: tuple[Source, ...]
-    script: str = ""
-    scripts: tuple[tuple[str, str], ...] = ()
     damage: str = ""
 
 
@@ -105,7 +100,6 @@ class Bounds:
     until: int = 600_000_000
     cpu: float = 30.0
     stands_in: bool = True
-    is_every: bool = False
     sample: Chance = Chance()
 
 
@@ -134,8 +128,7 @@ def survey(
     """Yield the result of each origin when it is complete; the largest origins are begun first.
 
     ``on_found`` is called with the number of further programs found, ``on_done`` for each that has
-    run. ``cache`` is a folder for results. Raises `input_script.ScriptError` for a script with an
-    unknown name.
+    run. ``cache`` is a folder for results.
     """
     key = code_digest("grammar", "interp", "support")
     with ResultStore(cache, f"programs {key}") as store, StickyPool(jobs) as pool:
@@ -199,7 +192,7 @@ class _Survey:
         if todo:
             origin = todo.popleft()
             texts = [(one.path, one.text) for one in origin.sources]
-            asked = (origin.name, origin.script, origin.scripts, texts, self._bounds)
+            asked = (origin.name, texts, self._bounds)
             digest = hashlib.sha256(repr(asked).encode()).hexdigest()
             future = self._pool.submit(process, _list_programs, origin, self._bounds)
             self._pending[future] = _Running(origin, process, digest), None
@@ -234,24 +227,18 @@ def _size(sources: Sequence[Source]) -> int:
 # --------------------------------------------------------------------------- in a process
 
 #: The programs of the origin on which this process works.
-_programs: list[tuple[MainProgram, str]] = []
+_programs: list[MainProgram] = []
 
 
 def _list_programs(origin: Origin, bounds: Bounds) -> tuple[list[str], list[tuple[str, str]]]:
     """Return the paths of the main programs of an origin, and its unreadable files."""
     mains, unread = main_programs(origin.sources, stands_in=bounds.stands_in)
-    scripts = dict(origin.scripts)
-    _programs[:] = [
-        (main, f"{origin.script}\n{scripts.get(Path(main.path).stem, '')}")
-        for main in mains
-        if (bounds.is_every or main.has_machine) and bounds.sample.draws(main.path)
-    ]
-    return [main.path for main, _ in _programs], unread
+    _programs[:] = [main for main in mains if bounds.sample.draws(main.path)]
+    return [main.path for main in _programs], unread
 
 
 def _run_program(place: int, bounds: Bounds) -> dict[str, Any]:
     """Return the row of one program: the fields of `Ran`, and its wall-clock time."""
-    main, script = _programs[place]
     profile = survey_profile()
     setup = RunSetup(
         executor=bounds.executor,
@@ -263,5 +250,5 @@ def _run_program(place: int, bounds: Bounds) -> dict[str, Any]:
         skips_failures=bounds.stands_in,
     )
     start, used = time.perf_counter(), time.process_time()
-    ran = run_main(main, setup, script, is_over=lambda: time.process_time() - used > bounds.cpu)
+    ran = run_main(_programs[place], setup, is_over=lambda: time.process_time() - used > bounds.cpu)
     return {**asdict(ran), "wall": round(time.perf_counter() - start, 3)}

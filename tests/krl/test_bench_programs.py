@@ -115,37 +115,11 @@ def test_where_and_why(found: dict[str, dict[str, Any]]) -> None:
     assert (0, "KR6R900 SIZED") == (row["motions"], row["machine"])
 
 
-def test_inputs_that_are_waited_for(found: dict[str, dict[str, Any]], tmp_path: Path) -> None:
-    """They come after a second, and the row tells how many had to change; a script has its own."""
+def test_inputs_that_are_waited_for(found: dict[str, dict[str, Any]]) -> None:
+    """They come after a second, and the row tells how many had to change."""
     row = found["asks"]
     assert ("end", 1) == (row["result"], row["inputs"])
     assert 1.58 < row["seconds"] < 1.62
-    scripts = tmp_path / "scripts"
-    scripts.mkdir()
-    (scripts / "asks.io").write_text("t=2 IN[8]=TRUE\n", encoding="utf-8")
-    row = results(some(tmp_path, "asks"), "--scripts", str(scripts))["asks"]
-    assert ("end", 2) == (row["result"], row["inputs"])  # $IN[7] there and back
-    assert 2.0 <= row["seconds"] < 2.02
-
-
-def test_scripts(tmp_path: Path) -> None:
-    """A script with the name of an archive or of a program says what the cell does."""
-    backup = some(tmp_path, "ends", "part", "waits", "halts", "cell")
-    scripts = tmp_path / "scripts"
-    scripts.mkdir()
-    (scripts / "waits.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
-    found = results(backup, "--scripts", str(scripts))
-    assert ("end", "waits") == (found["waits"]["result"], found["cell"]["result"])
-    (scripts / "plant.io").write_text("t=2 OV_PRO=50\n", encoding="utf-8")
-    assert "end" == results(backup, "--scripts", str(scripts))["cell"]["result"]
-
-
-def test_own_machine_data_is_asked_for(tmp_path: Path) -> None:
-    """Programs of a backup without an arm are left aside where that is asked for."""
-    backup = some(tmp_path, "ends", "part")
-    (backup / "R1" / "Mada" / "$machine.dat").unlink()
-    assert {} == results(backup, "--own-arm")
-    assert ["ends"] == list(results(backup))
 
 
 @pytest.mark.parametrize(
@@ -190,8 +164,6 @@ def test_damage(
     [
         (["missing"], "missing"),
         (["--damage", "cut,rust", "."], "kinds are files, lists, cut"),
-        (["--scripts", "nowhere", "."], "--scripts: nowhere: no such folder"),
-        (["--scripts", "bad", "."], "--scripts: "),
     ],
 )
 def test_bad_input(
@@ -203,8 +175,6 @@ def test_bad_input(
 ) -> None:
     """What cannot be used is one line with status 2."""
     monkeypatch.chdir(some(tmp_path, "ends", "part"))
-    Path("bad").mkdir()
-    Path("bad", "ends.io").write_text("nonsense\n", encoding="utf-8")
     assert 2 == main(["bench", "programs", *options])
     err = capsys.readouterr().err
     assert said in err

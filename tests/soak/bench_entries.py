@@ -19,7 +19,6 @@ from tests.soak.given import (
     runnable,
 )
 
-SCRIPT = "t=0.5 IN[1]=TRUE\non OUT[3]=TRUE after 0.2 IN[7]=TRUE\nfulfil waits after 1\n"
 #: A grammar that is damaged in no time, and reads the two programs that it is measured with.
 GRAMMAR = (REPOSITORY / "tests" / "small.g4").read_text(encoding="utf-8")
 NEGATIVE = (
@@ -42,12 +41,10 @@ def tried(folder: Path, foundry: Foundry) -> Given:
 
 
 def run(folder: Path, foundry: Foundry) -> Given:
-    """The main programs of a corpus, with a script for their inputs."""
+    """The main programs of a corpus."""
     corpus = _corpus(folder, foundry)
-    script = foundry.text(SCRIPT) if foundry.chance.random() < 0.5 else b""
-    put(folder / "scripts", f"{corpus.name}.io", script)
-    where = ("--scripts", folder / "scripts", "--json", folder / "out.json")
-    return krl("bench", "programs", "--every", "--max-time", "5", *where, "--", corpus)
+    where = ("--json", folder / "out.json")
+    return krl("bench", "programs", "--max-time", "5", *where, "--", corpus)
 
 
 def damaged(folder: Path, foundry: Foundry) -> Given:
@@ -93,7 +90,6 @@ OPTIONS = {
     "programs --executor": ["x", "", "TREE"],
     "programs --robot": ["x", "\x1b[31m"],
     "programs --max-time": ["-1", "x", "nan", "inf", "1e-30", "0", "1e300"],
-    "programs --scripts": ["nowhere", "\x1b[31m", "a\x00b"],
     "mutation --singles": ["-1", "x"],
     "mutation --runs": ["0", "x"],
     "mutation --jobs": ["0", "x"],
@@ -119,7 +115,7 @@ def options(folder: Path, foundry: Foundry) -> Given:
 ENTRIES = {
     "bench": Entry(40, "options, and places where no record can go", options),
     "bench real-code": Entry(25, "a program or an archive, tried routine by routine", tried),
-    "bench programs": Entry(25, "a program or an archive, and a script of its inputs", run),
+    "bench programs": Entry(25, "a program or an archive, run", run),
     "bench mutation": Entry(10, "a grammar, programs and negatives", damaged),
     "bench speed": Entry(4, "a program whose check is timed, and sizes", measured),
 }

@@ -47,7 +47,6 @@ FILES_WANTED = [
     ("construct propose c-1 --survey ?", ".json"),
     ("nightly --only nothing --history ? --out =", ".jsonl"),
     ("bench programs ?", ".src"),
-    ("bench programs --every --scripts ? !", ".io"),
     ("bench real-code ?", ".zip"),
     ("bench mutation --singles 1 --multiple 0 --jobs 1 --grammar ? !", ".g4"),
     ("bench mutation --singles 1 --multiple 0 --jobs 1 --negatives ? !", ".src"),

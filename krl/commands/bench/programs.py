@@ -11,7 +11,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, one_line
 from krl.running.program_loading import sources_below
 from krl.running.run_options import Executor, Robot
 from krl.terminal.options import (
@@ -73,17 +73,6 @@ def programs(
         Executor | None, typer.Option(help="Default: native, or vm if native is not built.")
     ] = None,
     robot: Annotated[Robot, typer.Option(help="The arm that moves.")] = Robot.NONE,
-    scripts: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="I/O scripts: DIR/ARCHIVE.io for all programs of an archive, DIR/NAME.io for one.",
-        ),
-    ] = None,
-    every: Annotated[
-        bool,
-        typer.Option("--every/--own-arm", help="Also programs without machine data."),
-    ] = True,
     strict: Annotated[
         bool, typer.Option("--strict", help="Use no stand-ins for what a backup lacks.")
     ] = False,
@@ -127,12 +116,11 @@ def programs(
     """Run the main programs of backups with their own machine, tools, bases and points.
 
     The submit program runs too; START after a HALT and acknowledgements are simulated. Inputs that
-    a WAIT FOR needs arrive after 1 s, unless a script sets them. A program counts as waiting once
+    a WAIT FOR needs arrive after 1 s. A program counts as waiting once
     its arm has stood still for 20 s. Stand-ins replace what a backup lacks, as in `krl run`. Each
     origin is shown as soon as its programs have run. Exit status 1 after a defect of the workbench.
     """
     from interp.bench.program_survey import Bounds, Chance, damaged, remaining, survey
-    from interp.controller.inputs.input_script import ScriptError
     from interp.executors import available
 
     check_files(json_file)
@@ -142,10 +130,9 @@ def programs(
         until=round(max_time * 1e6),
         cpu=max_cpu,
         stands_in=not strict,
-        is_every=every,
         sample=Chance(sample, seed),
     )
-    whole = _origins(programs_or_ours(paths), scripts)
+    whole = _origins(programs_or_ours(paths))
     left = remaining(whole, part.value)
     kinds = ["", *damage.split(",")] if damage else [""]
     origins = list(damaged(left, kinds, seed))
@@ -167,51 +154,34 @@ def programs(
     console = Console(highlight=False)
     finished: dict[Origin, Surveyed] = {}
     expected = 0
-    try:
-        with progress_bar("running programs") as bar:
+    with progress_bar("running programs") as bar:
 
-            def on_found(count: int) -> None:
-                """More programs are known of."""
-                nonlocal expected
-                expected += count
-                bar.expect(expected)
+        def on_found(count: int) -> None:
+            """More programs are known of."""
+            nonlocal expected
+            expected += count
+            bar.expect(expected)
 
-            for done in survey(
-                origins, bounds, jobs=all_cores(jobs), cache=cache, on_found=on_found, on_done=bar
-            ):
-                finished[done.origin] = done
-                _fill(record, [finished[one] for one in origins if one in finished])
-                write_json(record, json_file, indent=1)
-                _print_origin(console, done)
-    except ScriptError as error:
-        raise InputError(f"--scripts: {error}") from error
+        for done in survey(
+            origins, bounds, jobs=all_cores(jobs), cache=cache, on_found=on_found, on_done=bar
+        ):
+            finished[done.origin] = done
+            _fill(record, [finished[one] for one in origins if one in finished])
+            write_json(record, json_file, indent=1)
+            _print_origin(console, done)
     write_json(record, json_file, indent=1)
     _print_summary(console, record)
     return FINDINGS if "crash" in record["results"] else FINE
 
 
-def _origins(paths: list[Path], scripts: Path | None) -> "list[Origin]":
-    """Return the origins to survey, with their scripts."""
+def _origins(paths: list[Path]) -> "list[Origin]":
+    """Return the origins to survey."""
     from interp.bench.program_survey import Origin
 
     files: dict[str, list[Source]] = {}
     for origin, source in sources_below(paths):
         files.setdefault(origin, []).append(source)
-    known = _scripts(scripts)
-    return [
-        Origin(name, tuple(sources), known.get(Path(name).name, ""), tuple(known.items()))
-        for name, sources in files.items()
-    ]
-
-
-def _scripts(folder: Path | None) -> dict[str, str]:
-    """Return the input scripts by the name of an archive or of a program."""
-    if folder is None:
-        return {}
-    if not folder.is_dir():
-        raise InputError(f"--scripts: {folder}: no such folder")
-    found = sorted(folder.glob("*.io"))
-    return {file.stem: file.read_text(encoding="utf-8") for file in found}
+    return [Origin(name, tuple(sources)) for name, sources in files.items()]
 
 
 def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
