@@ -41,13 +41,6 @@ def test_entry_by_any_file(tmp_path: Path, around: str, entry: str) -> None:
     assert sorted(FILES) == _files(backup / "R1" / f"{entry}.src")
 
 
-def test_drive_of_another_name(tmp_path: Path) -> None:
-    """A drive that is not called R1 is known by the folders in it."""
-    backup = _backup(tmp_path / "KRC", {"R1": "Robot_7"})
-    renamed = sorted(path.replace("R1/", "Robot_7/") for path in FILES)
-    assert renamed == sorted(_files(backup / "Robot_7" / "Program" / "main.src"))
-
-
 @pytest.mark.parametrize("folder", ["", "R1", "R1/Program", "R1/System", "R1/Program/Parts"])
 def test_entry_by_any_folder(tmp_path: Path, folder: str) -> None:
     """A folder on the way to a file belongs to the same project as the file."""
@@ -62,23 +55,6 @@ def test_two_controllers(tmp_path: Path) -> None:
         _backup(tmp_path / name, {"R1": "Robot"})
     files = _files(tmp_path / "left" / "Robot" / "Program" / "main.src")
     assert len(FILES) == len(files)
-
-
-def test_cut_at_the_drive(tmp_path: Path) -> None:
-    """What lies in R1 is one project without a folder of that name."""
-    backup = _backup(tmp_path / "all")
-    (backup / "R1").rename(tmp_path / "cut")
-    files = _files(tmp_path / "cut" / "Program" / "main.src")
-    drive = sorted(path.removeprefix("R1/") for path in FILES if path.startswith("R1/"))
-    assert drive == files
-
-
-def test_cut_at_the_programs(tmp_path: Path) -> None:
-    """What lies in Program is one project, entered by a file of any depth."""
-    backup = _backup(tmp_path / "all")
-    (backup / "R1" / "Program").rename(tmp_path / "cut")
-    found = [_files(tmp_path / "cut" / name) for name in ("main.src", "Parts/part.src")]
-    assert [["Parts/part.src", "main.src"]] * 2 == found
 
 
 MIXED = ("notes.txt", "plan.pdf", "a.png", "b.png", "other.src", "help.src")
@@ -153,15 +129,6 @@ def test_program_among_other_files(tmp_path: Path) -> None:
     sources, _, left = read_sources(tmp_path / "main.src")
     assert ["help.src", "lib/Lib/part.src", "main.src"] == sorted(one.path for one in sources)
     assert ["3 of 6 files that the program does not name"] == left
-
-
-def test_archive(tmp_path: Path) -> None:
-    """An archive has the same project as the folder that it was made of."""
-    with ZipFile(tmp_path / "cell.zip", "w") as archive:
-        for path, text in FILES.items():
-            archive.writestr(f"KRC/{path}", text)
-    files = _files(tmp_path / "cell.zip" / "KRC" / "R1" / "Program" / "main.src")
-    assert sorted(FILES) == files
 
 
 @pytest.mark.parametrize("name", ["copies/a/job", "copies/a/parts/part", "job", "copies/b/job"])
