@@ -9,8 +9,6 @@ from grammar.diagnostics.codes import by_code, by_slug, code, of_message
 from grammar.semantics.predefined import System
 from grammar.semantics.rules import is_confirmed, tiers
 from grammar.semantics.types import (
-    BOOL,
-    CHAR,
     INT,
     REAL,
     SCALARS,
@@ -18,7 +16,6 @@ from grammar.semantics.types import (
     Array,
     Enumeration,
     Structure,
-    Type,
 )
 
 SOURCES = {"S2", "S3", "S5", "S6", "D3", "R"}
@@ -127,149 +124,6 @@ def test_rules_that_stop_the_advance_run_are_rules() -> None:
 # --------------------------------------------------------------------------------- the facts
 
 
-@pytest.mark.parametrize(
-    ("name", "type_"),
-    [
-        ("$IN", Array(BOOL, (8192,))),  # IOT-01
-        ("$ANOUT", Array(REAL, (32,))),  # IOT-01
-        ("$TIMER", Array(INT, (64,))),  # TIM-01
-        ("$FLAG", Array(BOOL, (1024,))),  # IOT-10
-        ("$TECHPAR", Array(REAL, (6, 10))),
-        ("$PRO_NAME1", Array(CHAR, (24,))),
-        ("$ADVANCE", INT),
-        ("$T1", BOOL),
-    ],
-)
-def test_variables_have_their_types(system: System, name: str, type_: Type) -> None:
-    """Types and sizes are those of the newest release known."""
-    assert type_ == system.variables[name].type
-
-
-@pytest.mark.parametrize(
-    ("name", "members"),
-    [
-        ("FRAME", "X Y Z A B C"),
-        ("POS", "X Y Z A B C S T"),
-        ("E3POS", "X Y Z A B C S T E1 E2 E3"),
-        ("E6POS", "X Y Z A B C S T E1 E2 E3 E4 E5 E6"),
-        ("AXIS", "A1 A2 A3 A4 A5 A6"),
-        ("E3AXIS", "A1 A2 A3 A4 A5 A6 E1 E2 E3"),
-        ("E6AXIS", "A1 A2 A3 A4 A5 A6 E1 E2 E3 E4 E5 E6"),
-        ("CP", "CP ORI1 ORI2"),
-        ("CONT", "CVEL CPTP CDIS CORI"),
-        ("LOAD", "M CM J"),
-    ],
-)
-def test_structures_have_their_components(system: System, name: str, members: str) -> None:
-    """Components stand in their order [TYP-14, TYP-15]."""
-    assert members.split() == [member.name for member in structure(system, name).members]
-
-
-def test_components_have_their_types(system: System) -> None:
-    """Status and Turn are INT, the rest of a pose REAL; structures lie in structures."""
-    assert INT == structure(system, "E6POS").member("s")
-    assert REAL == structure(system, "E6POS").member("e6")
-    assert system.types["E6AXIS"] == structure(system, "JERK_STRUC").member("AX")
-    assert system.types["INERTIA"] == structure(system, "LOAD").member("J")
-    assert Array(CHAR, (60,)) == structure(system, "STATE_T").member("MSG_TXT")
-    assert system.types["CMD_STAT"] == structure(system, "STATE_T").member("RET1")
-
-
-@pytest.mark.parametrize(
-    ("name", "constants"),
-    [
-        ("ORI_TYPE", "VAR CONSTANT JOINT IGNORE"),  # ORI-01
-        ("CIRC_TYPE", "BASE PATH"),  # ORI-04
-        ("PRO_MODE", "ISTEP PSTEP MSTEP CSTEP GO BSTEP"),  # SUB-09
-        ("VAR_STATE", "DECLARED INITIALIZED UNKNOWN"),  # TYP-18
-        ("MODE_OP", "T1 T2 AUT EX INVALID"),
-    ],
-)
-def test_enumerations_have_their_constants(system: System, name: str, constants: str) -> None:
-    """Constants stand in their order; there is no #CONST [CON-06]."""
-    assert tuple(constants.split()) == enumeration(system, name).constants
-
-
-def test_one_constant_belongs_to_several_enumerations(system: System) -> None:
-    """#BASE is a constant of three enumerations, in any letter case [TYP-16]."""
-    assert all("base" in enumeration(system, n) for n in ("IPO_MODE", "ROTSYS", "CIRC_TYPE"))
-    assert "CONST" not in enumeration(system, "ORI_TYPE")
-
-
-@pytest.mark.parametrize("name", "ROUND TRUNC CEIL FLOOR MOD EXP ASIN BAS SVEL_CP".split())
-def test_what_is_not_predefined(system: System, name: str) -> None:
-    """There are no such functions [FCT-01, CON-05]; BAS comes with a file of its own."""
-    assert name not in system.functions
-    assert system.functions.get(name) is None
-
-
-def test_functions_have_their_signatures(system: System) -> None:
-    """Parameters with names, types and modes, and the result [FCT-01, FCT-03, FCT-04]."""
-    sine, inverse, copy = (system.functions[name] for name in ("SIN", "INVERSE", "StrCopy"))
-    assert (REAL, [REAL]) == (sine.result, [p.type for p in sine.parameters])
-    assert ["E6POS", "E6AXIS", "INT"] == [str(p.type) for p in inverse.parameters]
-    assert [False, False, True] == [p.is_out for p in inverse.parameters]
-    assert BOOL == copy.result
-    assert Array(CHAR, (2047,)) == copy.parameters[0].type
-    assert system.functions["ERR_CLEAR"].result is None
-    messages = system.functions["SET_KRLMSG"].parameters
-    assert Array(system.types["KRLMSGPAR_T"], (3,)) == messages[2].type
-
-
-def test_functions_with_any_number_of_arguments(system: System) -> None:
-    """SWRITE has four fixed parameters, then as many as its format wants [FCT-09]."""
-    write = system.functions["SWRITE"]
-    assert (4, True) == (len(write.parameters), write.has_more)
-    assert not system.functions["STRLEN"].has_more
-
-
-def test_some_signatures_are_recollection(system: System) -> None:
-    """Those of channels and of PULSE are unconfirmed, those in a controller's own list are not."""
-    unsure = [name for name, entry in system.functions.items() if entry.is_unconfirmed]
-    assert ["CCLOSE", "COPEN", "CREAD", "PULSE", "SREAD"] == unsure
-
-
-def test_access_stops_the_advance_run(system: System) -> None:
-    """Outputs stop it read or written, the number of the tool when written [ADV-05, ADV-06]."""
-    output, tool, mode = (system.variables[n] for n in ("$OUT", "$ACT_TOOL", "$MODE_OP"))
-    assert (("ADV-05",), ("ADV-05",)) == (output.stops_on_read, output.stops_on_write)
-    assert ((), ("ADV-06",)) == (tool.stops_on_read, tool.stops_on_write)
-    assert (("ADV-06",), ()) == (mode.stops_on_read, mode.stops_on_write)
-    assert ("ADV-04",) == system.functions["PULSE"].stops
-    assert () == system.variables["$OUT_C"].stops_on_write
-
-
-def test_write_protection_says_whether_it_is_sure(system: System) -> None:
-    """Inputs are read only for sure, the operating mode as far as we recall, outputs are not."""
-    inputs, mode, output = (system.variables[n] for n in ("$IN", "$MODE_OP", "$OUT"))
-    assert ("read", False) == (inputs.access, inputs.access_unconfirmed)
-    assert ("read", True) == (mode.access, mode.access_unconfirmed)
-    assert ("write", False) == (output.access, output.access_unconfirmed)
-    assert system.variables["$A4PAR"].access is None
-
-
-def test_limits(system: System) -> None:
-    """The advance run has 0 to 5 blocks [ADV-01]."""
-    assert (0, 5) == system.variables["$ADVANCE"].limits
-    assert ("ADV-01", "CON-04") == system.variables["$ADVANCE"].rules
-    assert system.variables["$BASE"].limits is None
-
-
-def test_signals_know_their_side(system: System) -> None:
-    """Predefined signals lie on inputs or outputs, or are not connected."""
-    assert "inputs" == system.variables["$EXT_START"].signal
-    assert "outputs" == system.variables["$STOPMESS"].signal
-    assert "unconnected" == system.variables["$COLL_ALARM"].signal
-    assert system.variables["$OUT"].signal is None
-
-
-def test_what_is_only_mentioned_counts_as_unknown(system: System) -> None:
-    """Without a declaration written by a controller nothing wrong is said of a variable."""
-    assert UNKNOWN == system.variables["$SOFTPLCINT"].type
-    assert UNKNOWN == system.types["CALL_STACK"]
-    assert UNKNOWN == structure(system, "PRO_IP").member("SI01")
-
-
 def test_what_a_file_declares_is_open(system: System) -> None:
     """Types and sizes of a delivered $config.dat may be others in another one."""
     tools = system.variables["TOOL_DATA"]
@@ -309,17 +163,6 @@ def test_names_are_found_in_any_letter_case(system: System) -> None:
 def test_a_system_is_made_once() -> None:
     """The same release gives the same object."""
     assert System.load("8.6") is System.load("8.6")
-
-
-def test_messages(system: System) -> None:
-    """A message has a number, a phase, words and rules; an unknown number has none."""
-    message = system.message(2038)
-    assert message is not None
-    assert ("check", ("MSG-20", "SCO-09")) == (message.phase, message.source)
-    assert system.message(4711) is None
-    state = system.message(255)
-    assert state is not None
-    assert "state" == state.kind
 
 
 # ------------------------------------------------------------------------ rules and codes

@@ -10,13 +10,8 @@ from grammar.semantics.assignability import (
     case_label,
     condition,
     declarable,
-    index,
     initial,
-    integer,
-    number,
     passable,
-    selector,
-    target,
 )
 from grammar.semantics.operations import (
     ARITHMETIC,
@@ -49,7 +44,6 @@ from grammar.semantics.types import (
     Type,
     Unknown,
     Verdict,
-    is_position,
 )
 
 SYSTEM = System.load()
@@ -78,22 +72,6 @@ def test_letter_case_does_not_tell_types_apart() -> None:
     assert {PAIR: 1} == {again: 1}
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        Structure("PAIR", (Member("LEFT", INT),)),
-        Structure("PAIR", (Member("LEFT", REAL), Member("RIGHT", FRAME))),
-        Structure("PAIR", (Member("RIGHT", FRAME), Member("LEFT", INT))),
-        Structure("PEAR", PAIR.members),
-        Enumeration("PAIR", ("LEFT", "RIGHT")),
-        INT,
-    ],
-)
-def test_types_differ_by_name_or_content(other: Type) -> None:
-    """Two structures of one name with other components are two types."""
-    assert other != PAIR
-
-
 def test_types_travel_between_processes() -> None:
     """A type that was pickled equals itself."""
     assert pickle.loads(pickle.dumps(EVERYTHING)) == EVERYTHING
@@ -103,12 +81,6 @@ def test_types_are_shown_as_written() -> None:
     """A type is shown as in a declaration, a literal by what it is."""
     assert ["REAL[2,3]", "PAIR", "#BASE"] == [str(t) for t in (GRID, PAIR, Constant("BASE"))]
     assert "CHAR[,]" == str(Array(CHAR, (None, None)))
-
-
-def test_positions() -> None:
-    """Poses and axis positions are positions; nothing else is."""
-    positions = [t for t in EVERYTHING if is_position(t)]
-    assert [FRAME, POS, E6POS, AXIS, E6AXIS] == positions
 
 
 # ------------------------------------------------------------------------------- assignment
@@ -145,32 +117,6 @@ def test_no_pair_of_types_is_left_without_an_answer() -> None:
         for verdict in verdicts:
             assert verdict or (verdict.rules and verdict.reason)
             assert isinstance(verdict.is_unconfirmed, bool)
-
-
-@pytest.mark.parametrize(
-    ("to", "value", "is_lossless"),
-    [
-        (REAL, INT, True),
-        (INT, REAL, False),  # ARI-03: rounded
-        (CHAR, Text(1), True),
-        (CHAR, INT, True),
-        (NAME, Text(8), True),  # TYP-11
-        (NAME, Text(9), False),
-        (Array(CHAR, (None,)), Text(900), True),
-        (ORI, Constant("Joint"), True),
-        (FRAME, E6POS, False),
-        (E6POS, FRAME, True),
-        (AXIS, E6AXIS, False),
-        (FRAME, Aggregate(("X", "c")), True),
-        (E6POS, Aggregate(("X",), FRAME), True),  # type: ignore[arg-type]
-        (Array(CHAR, (3,)), Array(CHAR, (20,)), True),
-    ],
-)
-def test_what_can_be_assigned(to: Type, value: Type, is_lossless: bool) -> None:
-    """Numbers and positions are converted, constants found by their target."""
-    verdict = assignable(to, value)
-    assert (True, is_lossless) == (verdict.is_fine, verdict.is_lossless)
-    assert is_lossless or verdict.reason
 
 
 @pytest.mark.parametrize(
@@ -251,12 +197,6 @@ def test_in_converts_and_out_must_match(
     assert by_reference == bool(passable(parameter, argument, is_out=True, is_variable=True))
 
 
-def test_what_is_no_variable_is_converted_even_when_passed_out() -> None:
-    """An expression has nothing to be changed."""
-    assert passable(REAL, INT, is_out=True, is_variable=False)
-    assert not passable(REAL, Text(3), is_out=True, is_variable=False)
-
-
 def test_faults_of_arguments_have_their_numbers() -> None:
     """2274 is the fault of an argument, unless a constant or component is the fault."""
     wrong = passable(INT, BOOL, is_out=False, is_variable=True)
@@ -282,12 +222,6 @@ def test_texts_are_passed_in() -> None:
     assert (2274, "CHAR[8] is expected here, and this is INT") == (refused.message, refused.reason)
 
 
-def test_bits_of_a_letter() -> None:
-    """That letters have no bits is written nowhere, so nothing is said of it [ARI-07]."""
-    assert INT == binary("B_AND", CHAR, INT).type
-    assert INT == unary("B_NOT", CHAR).type
-
-
 def test_structures_within_structures_are_compared_once() -> None:
     """Equality takes no longer for a structure that holds another one many times over."""
 
@@ -304,27 +238,9 @@ def test_structures_within_structures_are_compared_once() -> None:
 # ---------------------------------------------------------------------------------- places
 
 
-@pytest.mark.parametrize("type_", EVERYTHING)
-def test_places_take_what_they_need(type_: Type) -> None:
-    """A condition is BOOL, a number INT or REAL, a counter INT, a target a position."""
-    known = type_ != UNKNOWN
-    assert bool(condition(type_, "CTL-01")) == (not known or type_ == BOOL)
-    assert bool(number(type_)) == (not known or type_ in (INT, REAL))
-    assert bool(integer(type_, "CTL-05")) == (not known or type_ == INT)
-    assert bool(target(type_)) == (not known or is_position(type_) or isinstance(type_, Aggregate))
-    assert not (index(type_) and type_ in (BOOL, FRAME, Text(9), INTS))
-
-
 def test_places_cite_the_rules_of_their_statement() -> None:
     """The rule of the statement stands before the general one."""
     assert ("CTL-01", "ARI-11") == condition(INT, "CTL-01").rules
-
-
-def test_switch_chooses_by_char_int_and_enumerations() -> None:
-    """SWITCH over anything else is message 2255 [CTL-03]."""
-    chosen = [t for t in EVERYTHING if selector(t)]
-    assert [INT, CHAR, ORI, IPO, Constant("BASE"), UNKNOWN] == chosen
-    assert 2255 == selector(REAL).message
 
 
 @pytest.mark.parametrize(
@@ -349,35 +265,6 @@ def test_labels_of_case(chosen: Type, label: Type, message: int | None) -> None:
 
 
 # ------------------------------------------------------------------------------- operators
-
-
-@pytest.mark.parametrize(
-    ("left", "operator", "right", "result"),
-    [
-        (INT, "+", INT, INT),
-        (INT, "/", INT, INT),  # ARI-02: no fraction
-        (INT, "*", REAL, REAL),
-        (REAL, "-", INT, REAL),
-        (INT, "+", UNKNOWN, UNKNOWN),
-        (REAL, "+", UNKNOWN, REAL),
-        (INT, "B_AND", INT, INT),
-        (BOOL, "EXOR", BOOL, BOOL),
-        (INT, "<", REAL, BOOL),
-        (CHAR, "==", Text(1), BOOL),
-        (CHAR, "<=", CHAR, BOOL),
-        (BOOL, "==", BOOL, BOOL),
-        (ORI, "<>", Constant("VAR"), BOOL),
-        (Constant("VAR"), "==", ORI, BOOL),
-        (FRAME, ":", POS, POS),  # ARI-08
-        (E6POS, ":", FRAME, FRAME),
-        (UNKNOWN, ":", FRAME, FRAME),
-    ],
-)
-def test_results(left: Type, operator: str, right: Type, result: Type) -> None:
-    """The operands decide the type of the result [ARI-01, ARI-07, ARI-08, ARI-10]."""
-    typed = binary(operator, left, right)
-    assert typed.verdict
-    assert result == typed.type
 
 
 @pytest.mark.parametrize(
@@ -415,28 +302,6 @@ def test_wrong_operands(
     assert UNKNOWN == typed.type
 
 
-@pytest.mark.parametrize(
-    ("operator", "operand", "result"),
-    [
-        ("-", INT, INT),
-        ("+", REAL, REAL),
-        ("NOT", BOOL, BOOL),
-        ("B_NOT", INT, INT),
-        ("-", UNKNOWN, UNKNOWN),
-        ("NOT", UNKNOWN, BOOL),
-        ("-", BOOL, None),
-        ("NOT", REAL, None),
-        ("NOT", INT, None),
-        ("B_NOT", REAL, None),
-    ],
-)
-def test_operators_of_one_operand(operator: str, operand: Type, result: Type | None) -> None:
-    """Signs belong to numbers, NOT to truth values, B_NOT to integers."""
-    typed = unary(operator, operand)
-    assert (result is not None) == typed.verdict.is_fine
-    assert (result or UNKNOWN) == typed.type
-
-
 def test_what_is_no_operator_is_a_mistake_of_ours() -> None:
     """An operator that KRL does not have is refused."""
     with pytest.raises(ValueError, match="not a binary operator"):
@@ -446,24 +311,6 @@ def test_what_is_no_operator_is_a_mistake_of_ours() -> None:
 
 
 # --------------------------------------------------------------------- indices, components
-
-
-@pytest.mark.parametrize(
-    ("array", "given", "result"),
-    [
-        (INTS, [True], INT),
-        (INTS, [False], INTS),
-        (GRID, [True, True], REAL),
-        (GRID, [True, False], Array(REAL, (3,))),
-        (TEXTS, [True, False], NAME),
-        (UNKNOWN, [True, True, True], UNKNOWN),
-    ],
-)
-def test_indices(array: Type, given: list[bool], result: Type) -> None:
-    """Indices left out leave their dimensions [TYP-08, TYP-11]."""
-    typed = subscript(array, given)
-    assert typed.verdict
-    assert result == typed.type
 
 
 @pytest.mark.parametrize(
