@@ -12,8 +12,7 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason
 from grammar.semantics.symbol_table import table_of
-from grammar.semantics.symbols import Kind
-from grammar.semantics.types import BOOL, INT, REAL, UNKNOWN, Array, Enumeration, Structure, Type
+from grammar.semantics.types import REAL, UNKNOWN, Array, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
@@ -78,152 +77,10 @@ def src(head: str, *lines: str) -> str:
 # ------------------------------------------------------------------------------------- scopes
 
 
-def test_data_list_of_the_same_name() -> None:
-    """SCO-05: main routine, local and GLOBAL routines of a file see its data list, others do not.
-
-    That GLOBAL routines of the same file see it too is what KUKA-written packages rest on.
-    """
-    of = project(
-        {
-            "a.src": src("A()", "N=1") + src("OWN()", "N=2") + "GLOBAL " + src("ALL()", "N=3"),
-            "a.dat": dat("A", "DECL INT N=0"),
-            "b.src": src("B()", "N=4"),
-        },
-        is_complete=True,
-    )
-    assert ["a.dat"] * 3 == [declared_in(use(of, "a.src", "N", nth)) for nth in range(3)]
-    answer = use(of, "b.src", "N")
-    assert isinstance(answer, NotFound)
-    assert answer.hidden is not None
-    assert "a.dat" == declared_in(answer.hidden)
-
-
 def test_names_in_any_letter_case() -> None:
     """TYP-05: files, modules and names belong together whatever their letter case."""
     of = project({"Job.SRC": src("JOB()", "Count=1"), "JOB.dat": dat("job", "INT cOUNT=1")})
     assert "JOB.dat" == declared_in(use(of, "Job.SRC", "Count"))
-
-
-def test_submit_program_has_a_data_list() -> None:
-    """A `.sub` file is paired like a `.src` file."""
-    of = project({"sps.sub": src("SPS()", "N=1"), "sps.dat": dat("SPS", "INT N=1")})
-    assert "sps.dat" == declared_in(use(of, "sps.sub", "N"))
-
-
-def test_local_data_shadow_the_data_list_and_that_shadows_global_data() -> None:
-    """The innermost declaration counts; each hidden one can be named."""
-    of = project(
-        {
-            "g.dat": dat("G PUBLIC", "DECL GLOBAL INT N=1"),
-            "a.dat": dat("A", "DECL REAL N=1.0"),
-            "a.src": src("A()", "DECL BOOL N", "N=TRUE") + src("B()", "N=2.0"),
-            "c.src": src("C()", "N=3"),
-        }
-    )
-    inner, middle = use(of, "a.src", "N", 1), use(of, "a.src", "N", 2)
-    assert ["a.src", "a.dat"] == [declared_in(inner), declared_in(middle)]
-    assert "g.dat" == declared_in(use(of, "c.src", "N"))
-    main = module(of, "a.src")
-    assert main.table is not None
-    hidden = list(of.scope(main, main.table.routines[0]).shadowed())
-    assert [(inner, middle)] == hidden
-    (outer,) = of.scope(module(of, "a.dat")).shadowed()
-    assert ["a.dat", "g.dat"] == [declared_in(found) for found in outer]
-
-
-def test_parameter_named_like_global_data() -> None:
-    """A parameter hides global data of its name."""
-    of = project(
-        {
-            "$config.dat": dat("$CONFIG", "DECL REAL N=1.0"),
-            "a.src": src("A(N:IN)", "DECL INT N", "N=1") + src("B()", "N=1.0"),
-        }
-    )
-    inner, outer = use(of, "a.src", "N", 2), use(of, "a.src", "N", 3)
-    assert isinstance(inner, Found)
-    assert (Kind.PARAMETER, INT) == (inner.symbol.kind, of.types.of(inner))
-    assert "$config.dat" == declared_in(outer)
-
-
-@pytest.mark.parametrize(
-    ("head", "declaration", "is_seen"),
-    [
-        ("G PUBLIC", "DECL GLOBAL INT N=1", True),
-        ("G PUBLIC", "DECL INT N=1", False),
-        ("G", "DECL GLOBAL INT N=1", False),
-        ("$CONFIG", "DECL INT N=1", True),
-        ("$CUSTOM PUBLIC", "INT N=1", True),
-    ],
-)
-def test_global_data(head: str, declaration: str, is_seen: bool) -> None:
-    """SCO-04: PUBLIC and GLOBAL together make data visible elsewhere, or a list of the system."""
-    texts = {"g.dat": dat(head, declaration), "a.src": src("A()", "N=2")}
-    answer = use(project(texts, is_complete=True), "a.src", "N")
-    assert is_seen is isinstance(answer, Found)
-    assert is_seen or (isinstance(answer, NotFound) and answer.hidden is not None)
-
-
-def test_routines_of_other_modules() -> None:
-    """SCO-01: the first routine of a module and its GLOBAL ones are called from everywhere."""
-    lib = src("LIB()") + src("OWN()") + "GLOBAL DEFFCT INT SHARED()\nRETURN 1\nENDFCT\n"
-    of = project({"lib.src": lib, "a.src": src("A()", "LIB()", "OWN()", "N=SHARED()")}, True)
-    assert "lib.src" == declared_in(use(of, "a.src", "LIB"))
-    assert "lib.src" == declared_in(use(of, "a.src", "SHARED"))
-    answer = use(of, "a.src", "OWN")
-    assert isinstance(answer, NotFound)
-    assert answer.hidden is not None
-
-
-def test_routine_with_the_name_of_the_file_that_is_not_first() -> None:
-    """SCO-01: a main routine in the wrong place is an error there and not for its callers."""
-    texts = {"lib.src": src("OTHER()") + src("LIB()"), "a.src": src("A()", "LIB()")}
-    of = project(texts, is_complete=True)
-    assert "lib.src" == declared_in(use(of, "a.src", "LIB"))
-    assert [True, False] == [found.is_misnamed for found in of.modules]
-
-
-def test_local_routine_hides_a_module() -> None:
-    """A call prefers the routine of the same file; a routine may call itself."""
-    of = project({"b.src": src("B()"), "a.src": src("A()", "B()") + src("B()", "A()", "B()")})
-    assert ["a.src"] * 4 == [
-        declared_in(use(of, "a.src", name, nth))
-        for name, nth in (("B", 0), ("B", 1), ("A", 1), ("B", 2))
-    ]
-
-
-def test_announced_routine_that_is_there() -> None:
-    """SCO-10: EXT is only an announcement; the call means the routine of the other module."""
-    of = project(
-        {
-            "a.src": src("A()", "EXT WORK (INT :IN)", "WORK(1)"),
-            "$config.dat": dat("$CONFIG", "EXT WORK (INT :IN)"),
-            "work.src": src("WORK(N:IN)"),
-        }
-    )
-    assert () == of.clashes
-    answer = use(of, "a.src", "WORK")
-    assert "work.src" == declared_in(answer)
-    assert isinstance(answer, Found)
-    assert Kind.ROUTINE is answer.symbol.kind
-
-
-@pytest.mark.parametrize(
-    "texts",
-    [
-        {"a.src": src("A()", "EXT WORK (INT :IN)") + src("B()", "WORK(1)")},
-        {"a.src": src("A()", "WORK(1)"), "a.dat": dat("A", "EXT WORK (INT :IN)")},
-        {"a.src": src("A()", "WORK(1)"), "$config.dat": dat("$CONFIG", "EXT WORK (INT :IN)")},
-    ],
-    ids=["another routine", "data list", "$CONFIG"],
-)
-def test_announced_routine_that_is_missing(texts: Mapping[str, str]) -> None:
-    """SCO-10: EXT in the file, its data list or $CONFIG gives the signature of what is missing."""
-    of = project(texts)
-    answer = use(of, "a.src", "WORK")
-    assert isinstance(answer, Found)
-    assert Kind.EXTERNAL is answer.symbol.kind
-    (unknown,) = resolved(of, "a.src").open_uses
-    assert ("WORK", Space.ROUTINE) == (unknown.name.key, unknown.space)
 
 
 def test_what_the_controller_has_is_not_hidden_by_ext() -> None:
@@ -239,129 +96,7 @@ def test_what_the_controller_has_is_not_hidden_by_ext() -> None:
     assert answer.module is None
 
 
-def test_import() -> None:
-    """ADV-05: IMPORT reaches data that are not GLOBAL, in a list that is PUBLIC."""
-    texts = {
-        "a.dat": dat("A", "IMPORT INT MINE IS /R1/B..THEIRS", "IMPORT INT NO IS /R1/C..N"),
-        "a.src": src("A()", "MINE=NO"),
-        "b.dat": dat("B PUBLIC", "DECL INT THEIRS=1"),
-        "c.dat": dat("C", "DECL INT N=1"),
-    }
-    of = project(texts, is_complete=True)
-    mine, refused = use(of, "a.src", "MINE"), use(of, "a.src", "NO")
-    assert isinstance(mine, Found)
-    assert isinstance(refused, Found)
-    assert "b.dat" == declared_in(of.imported(mine))
-    answer = of.imported(refused)
-    assert isinstance(answer, NotFound)
-    assert answer.hidden is not None
-    assert "c.dat" == declared_in(answer.hidden)
-
-
-def test_import_from_a_list_that_is_not_there() -> None:
-    """ADV-05: without the other list nobody can tell what IMPORT stands for."""
-    texts = {"a.dat": dat("A", "IMPORT INT N IS /R1/B..N"), "a.src": src("A()", "N=1")}
-    for is_complete, expected in ((False, MaybeElsewhere), (True, NotFound)):
-        of = project(texts, is_complete)
-        found = use(of, "a.src", "N")
-        assert isinstance(found, Found)
-        assert isinstance(of.imported(found), expected)
-
-
-def test_labels_stay_in_their_routine() -> None:
-    """CTL-07: a label of another routine is not found, however incomplete the project is."""
-    of = project({"a.src": src("A()", "GOTO X", "GOTO Y", "X:") + src("B()", "Y:")})
-    assert isinstance(use(of, "a.src", "X", 0), Found)
-    assert NotFound() == use(of, "a.src", "Y", 0)
-
-
-def test_channels() -> None:
-    """A channel is found as an argument, in its own space."""
-    texts = {
-        "$custom.dat": dat("$CUSTOM PUBLIC", "CHANNEL :LINK :SER_1 $PSER_1"),
-        "a.src": src("A()", "DECL INT LINK,H", "COPEN(:LINK,H)"),
-    }
-    answer = use(project(texts), "a.src", "LINK")
-    assert isinstance(answer, Found)
-    assert (Kind.CHANNEL, "$custom.dat") == (answer.symbol.kind, declared_in(answer))
-
-
 # ------------------------------------------------------------------------- types and members
-
-
-def test_members_of_structures() -> None:
-    """TYP-15, TYP-20: members are found through indices and structures, predefined ones too."""
-    of = project(
-        {
-            "a.dat": dat("A", "STRUC BOX_T INT NO, FRAME AT[2]", "DECL BOX_T BOX[3]"),
-            "a.src": src("A()", "BOX[1].AT[2].X=BOX[2].WIDTH", "BOX[3].NO.X=1"),
-        }
-    )
-    at, x, width = (use(of, "a.src", name, 0) for name in ("AT", "X", "WIDTH"))
-    assert "a.dat" == declared_in(at)
-    assert declared_in(x) is None
-    assert NotFound() == width
-    assert isinstance(x, Found)
-    assert isinstance(at, Found)
-    assert REAL == of.types.of(x)
-    assert "FRAME[2]" == str(of.types.of(at))
-    answers = resolved(of, "a.src").answers
-    assert 1 == sum(name.text == "X" for name in answers)  # an INT has no members to look up
-
-
-def test_type_is_looked_up_where_it_is_named() -> None:
-    """A GLOBAL variable may have a type that others do not see, or call otherwise."""
-    of = project(
-        {
-            "g.dat": dat("G PUBLIC", "STRUC PART_T INT NO", "DECL GLOBAL PART_T PART={NO 1}"),
-            "a.dat": dat("A", "ENUM PART_T NO_PART"),
-            "a.src": src("A()", "PART.NO=2"),
-        }
-    )
-    assert "g.dat" == declared_in(use(of, "a.src", "NO"))
-
-
-def test_components_of_aggregates() -> None:
-    """TYP-19: components are members of what is declared, assigned to, or named in front."""
-    lines = ("DECL FRAME F={X 1,Q 2}", "DECL BOX_T B={AT {Y 1},NO 2}", "B={BOX_T: AT {POS: S 2}}")
-    of = project({"a.dat": dat("A", "STRUC BOX_T INT NO, FRAME AT", *lines)})
-    assert NotFound() == use(of, "a.dat", "Q")
-    assert isinstance(use(of, "a.dat", "S"), Found)
-    assert [None, "a.dat", None] == [
-        declared_in(use(of, "a.dat", name)) for name in ("X", "NO", "Y")
-    ]
-
-
-def test_enumerations_with_the_same_constants() -> None:
-    """TYP-16: constants belong to the type of their target and are no names of the scope."""
-    lines = ("ENUM HUE_T RED, GREEN", "ENUM LAMP_T GREEN, OFF", "DECL HUE_T H", "DECL LAMP_T L")
-    of = project({"a.dat": dat("A", *lines), "a.src": src("A()", "H=#GREEN", "L=#GREEN")})
-    hue, lamp = use(of, "a.src", "H"), use(of, "a.src", "L")
-    assert isinstance(hue, Found)
-    assert isinstance(lamp, Found)
-    assert Enumeration("HUE_T", ("RED", "GREEN")) == of.types.of(hue)
-    assert Enumeration("LAMP_T", ("GREEN", "OFF")) == of.types.of(lamp)
-    assert {"H", "L", "A"} == {name.text for name in resolved(of, "a.src").answers}
-
-
-def test_types_of_what_is_declared() -> None:
-    """TYP-08, IOT-03: sizes may be constants; signals are BOOL, INT for groups, or analog."""
-    lines = ("DECL CONST INT MOST=4", "DECL REAL R[MOST,2]", "SIGNAL B $OUT[1]")
-    signals = ("SIGNAL I $IN[1] TO $IN[8]", "SIGNAL V $ANIN[1]", "SIGNAL DEAD FALSE")
-    of = project({"a.dat": dat("A", *lines, *signals, "DECL MISSING_T M", "SIGNAL S S")})
-    scope = of.scope(module(of, "a.dat"))
-    types = {key: of.types.of(found) for key in "RBIVMS" if (found := scope.own(Space.VALUE, key))}
-    dead = scope.own(Space.VALUE, "DEAD")
-    assert dead is not None
-    assert {
-        "R": Array(REAL, (4, 2)),
-        "B": BOOL,
-        "I": INT,
-        "V": REAL,
-        "M": UNKNOWN,
-        "S": UNKNOWN,
-    } == types
-    assert BOOL == of.types.of(dead)
 
 
 def test_structures_in_a_circle() -> None:
@@ -393,17 +128,6 @@ def test_found_is_one_object() -> None:
     of = project({"g.dat": dat("G PUBLIC", "DECL GLOBAL INT N=1"), "a.src": src("A()", "N=1")})
     near, far = (of.scope(module(of, path)).find(Space.VALUE, "N") for path in ("g.dat", "a.src"))
     assert near is far
-
-
-def test_what_the_controller_brings() -> None:
-    """System variables, types and functions are found without any file, with their types."""
-    lines = ("DECL E6POS P", "P=$POS_ACT", "N=ABS(P.X)", "N=TOOL_DATA[1].Y")
-    of = project({"a.src": src("A()", *lines)})
-    names = ("$POS_ACT", "ABS", "X", "Y")
-    assert [None] * 4 == [declared_in(use(of, "a.src", name)) for name in names]
-    variable = use(of, "a.src", "$POS_ACT")
-    assert isinstance(variable, Found)
-    assert "E6POS" == str(of.types.of(variable))
 
 
 def test_declared_system_data_come_before_what_is_predefined() -> None:
