@@ -186,16 +186,7 @@ def _seen(seen: Observation, *, is_whole: bool) -> Mapping[str, Any]:
         kept = [event.record() for event in seen.events if event.kind not in _STATEMENTS]
         record["events"] = kept[:_MOST_EVENTS]
         record["events_total"] = len(seen.events)
-        record["findings"] = [
-            {
-                "file": one.file,
-                "line": one.line,
-                "severity": one.severity,
-                "code": one.code,
-                "message": one.message,
-            }
-            for one in seen.findings
-        ]
+        record["findings"] = [asdict(one) for one in seen.findings]
     if (
         seen.path is not None
         and len(seen.path.times)
