@@ -14,7 +14,6 @@ from grammar.notation.model import Grammar, walk
 from recovery.induction.folds_of_alternatives import (
     alternatives_of_a_word,
     alternatives_of_two_rules,
-    analogous_words,
     derived_words,
     lists,
     unused_rules,
@@ -60,7 +59,6 @@ FOLDS: tuple[Callable[[GrammarView], Iterator[Inferred]], ...] = (
     variables,
     any_operands,
     derived_words,
-    analogous_words,
     named_arguments,
 )
 

@@ -77,10 +77,12 @@ def lists(view: GrammarView) -> Iterator[Inferred]:
 
 def derived_words(view: GrammarView) -> Iterator[Inferred]:
     """Yield operand and ending of a word for a derived one: ``PTP_REL`` is derived from PTP."""
-    for (rule, word, number), (other, base, place) in _derived(_leading_words(view)):
+    single = [(r, w, ns[0]) for r, w, ns in view.families if len(ns) == 1 and w in view.reserved]
+    pairs = [(s, o) for s in single for o in single if o[1] in s[1] and o[1] != s[1]]
+    for (rule, word, number), (other, base, place) in pairs:
         own, wide = view.line(rule, number), view.line(other, place)
         narrow, operand = own[1], wide[1]
-        if not isinstance(operand, Reference):
+        if len(base) < LEAST_STEM or not isinstance(operand, Reference):
             continue
         edits: list[Edit] = []
         is_narrower = isinstance(narrow, Reference) and narrow.name != operand.name
@@ -93,53 +95,6 @@ def derived_words(view: GrammarView) -> Iterator[Inferred]:
         if edits:
             title = f"{word} goes on as {base} does"
             yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
-
-
-def analogous_words(view: GrammarView) -> Iterator[Inferred]:
-    """Yield words by analogy: ``PTP_REL`` belongs to ``PTP`` as ``LIN_REL`` belongs to ``LIN``.
-
-    The new word has the form of the derived one. Both base words must have a form of an operand and
-    endings, and share some of the endings.
-    """
-    leading = _leading_words(view)
-    for (rule, derived, number), (other, base, place) in _derived(leading):
-        endings, affix = _endings_behind_operand(view, other, place), derived.replace(base, "", 1)
-        for third, word, where in leading:
-            new = derived.replace(base, word, 1)
-            alike = endings & _endings_behind_operand(view, third, where)
-            is_new = new not in view.lexer.kind_of and affix not in word
-            if alike and is_new:
-                known = view.grammar.by_name[rule]
-                text = known.source_of(view.alternative(rule, number)).replace(derived, new, 1)
-                edits = (*view.profile.vocabulary.reserve([new]), AddAlternative(rule, text))
-                title = f"{new} is to {word} as {derived} is to {base}"
-                breadth = FOLDING_SYMBOLS + len([*walk(view.alternative(rule, number))])
-                yield Inferred(title, edits, (), breadth=breadth)
-
-
-#: A rule, a word that begins one of its alternatives only, and the number of this alternative.
-_Leading = tuple[str, str, int]
-
-
-def _leading_words(view: GrammarView) -> list[_Leading]:
-    """Return the reserved words that begin a single alternative of a rule."""
-    return [(r, w, ns[0]) for r, w, ns in view.families if len(ns) == 1 and w in view.reserved]
-
-
-def _derived(words: Sequence[_Leading]) -> Iterator[tuple[_Leading, _Leading]]:
-    """Yield each word that contains another one, with the other one."""
-    for derived in words:
-        for base in words:
-            if base[1] in derived[1] and base[1] != derived[1] and len(base[1]) >= LEAST_STEM:
-                yield derived, base
-
-
-def _endings_behind_operand(view: GrammarView, rule: str, number: int) -> frozenset[str]:
-    """Return the words that may end a line of a word and an operand; none for another line."""
-    line = view.line(rule, number)
-    endings = list(takewhile(view.is_ending, reversed(line)))
-    is_operand = len(line) == 2 + len(endings) and isinstance(line[1], Reference)
-    return frozenset[str]().union(*map(view.ending_words, endings if is_operand else ()))
 
 
 def _folded(view: GrammarView, word: str, places: Sequence[tuple[str, int]]) -> tuple[Edit, ...]:

@@ -307,6 +307,7 @@ class Induction:
         operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
         taken: list[Taken] = []
         refused: dict[str, Refused] = {}
+        had = {recognizer.grammar.sha256}
         found = folds_of(GrammarView(recognizer, operands, self._prefixes))
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
@@ -318,12 +319,15 @@ class Induction:
                 narrower = Recognizer(shorter)
                 if size(shorter) >= size(grammar) + fold.breadth:
                     reason = "the grammar would not be shorter"
+                elif shorter.sha256 in had:
+                    reason = "has been so before"
                 elif not all(map(narrower.accepts, review.texts)):
                     reason = "loses lines that can be read"
             if reason:
                 refused[fold.title] = Refused(fold.title, fold.edits, 0.0, reason)
                 continue
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
+            had.add(shorter.sha256)
             review = replace(review, recognizer=narrower)
             found = folds_of(GrammarView(narrower, operands, self._prefixes))
         kept, lost = self.shown.kept(self.grammar, taken, self._names)
