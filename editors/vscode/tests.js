@@ -9,11 +9,20 @@ const { readJunit } = require("./junit");
 
 const FILES = "**/test_*.{toml,src}";
 
-/** The controller of the explorer: an item a file, and below it a case each, once it has run. */
+/** The controller of the explorer: an item a file, and below it a case each. */
 exports.testExplorer = (setting) => {
   const tests = vscode.tests.createTestController("krl", "KRL");
-  const add = (uri) => tests.items.add(tests.createTestItem(uri.toString(), vscode.workspace.asRelativePath(uri), uri));
-  tests.resolveHandler = async () => (await vscode.workspace.findFiles(FILES)).forEach(add);
+  const add = (uri) => {
+    const file = tests.createTestItem(uri.toString(), vscode.workspace.asRelativePath(uri), uri);
+    file.canResolveChildren = true;
+    tests.items.add(file);
+  };
+  tests.resolveHandler = async (file) => {
+    if (!file) return (await vscode.workspace.findFiles(FILES)).forEach(add);
+    const { text } = await krlTest(setting("command"), file, ["--", "--collect-only", "-q"]);
+    const found = text.split(/\r?\n/).filter((line) => line.includes("::"));
+    if (found.length) setCases(tests, file, found.map((line) => line.slice(line.indexOf("::") + 2)));
+  };
   const watcher = vscode.workspace.createFileSystemWatcher(FILES);
   watcher.onDidCreate(add);
   watcher.onDidDelete((uri) => tests.items.delete(uri.toString()));
@@ -29,21 +38,30 @@ exports.testExplorer = (setting) => {
   return vscode.Disposable.from(tests, watcher);
 };
 
+/** Runs `krl test` on a file; returns whether it failed, and what it says. */
+function krlTest(command, file, given, token) {
+  return new Promise((resolve) => {
+    const cwd = vscode.workspace.getWorkspaceFolder(file.uri)?.uri.fsPath;
+    const child = execFile(command, ["test", file.uri.fsPath, ...given], { cwd, maxBuffer: 1 << 26 }, (error, out, err) =>
+      resolve({ failed: Boolean(error), text: out + err }),
+    );
+    token?.onCancellationRequested(() => child.kill());
+  });
+}
+
+function setCases(tests, file, names) {
+  file.children.replace(names.map((name) => tests.createTestItem(`${file.id}::${name}`, name, file.uri)));
+}
+
 async function runFile(tests, run, file, command, token) {
   run.started(file);
   const folder = await mkdtemp(path.join(tmpdir(), "krl-test-"));
   const junit = path.join(folder, "junit.xml");
   try {
-    const said = await new Promise((resolve) => {
-      const cwd = vscode.workspace.getWorkspaceFolder(file.uri)?.uri.fsPath;
-      const child = execFile(command, ["test", file.uri.fsPath, "--junit", junit], { cwd, maxBuffer: 1 << 26 }, (error, out, err) =>
-        resolve({ failed: Boolean(error), text: out + err }),
-      );
-      token.onCancellationRequested(() => child.kill());
-    });
+    const said = await krlTest(command, file, ["--junit", junit], token);
     run.appendOutput(said.text.replace(/\r?\n/g, "\r\n"), undefined, file);
     const cases = readJunit(await readFile(junit, "utf8").catch(() => ""));
-    file.children.replace(cases.map((one) => tests.createTestItem(`${file.id}::${one.name}`, one.name, file.uri)));
+    if (cases.length) setCases(tests, file, cases.map((one) => one.name));
     for (const one of cases) {
       const item = file.children.get(`${file.id}::${one.name}`);
       if (one.skipped) run.skipped(item);

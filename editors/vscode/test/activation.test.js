@@ -17,9 +17,10 @@ function load(command, startFails) {
   const settings = { command, "run.robot": "kinematic", "run.io": "auto" };
   const items = () => {
     const map = new Map();
-    return { add: (one) => map.set(one.id, one), get: (id) => map.get(id), replace: (all) => all.forEach((one) => map.set(one.id, one)), [Symbol.iterator]: () => map[Symbol.iterator]() };
+    return { add: (one) => map.set(one.id, one), get: (id) => map.get(id), replace: (all) => (map.clear(), all.forEach((one) => map.set(one.id, one))), [Symbol.iterator]: () => map[Symbol.iterator]() };
   };
   const tests = { items: items(), createTestItem: (id, label, uri) => ({ id, label, uri, children: items() }), createRunProfile: (_, __, run) => (did.runTests = run) };
+  did.tests = tests;
   tests.createTestRun = () => new Proxy({}, { get: (_, name) => (item) => did.runs.push([name, item?.label]) });
   const api = {
     workspace: {
@@ -77,13 +78,18 @@ test("a server that does not start is one message that names the cure", async ()
   assert.deepStrictEqual(did.errors, ["krl lsp did not start: pip install 'krl-workbench[lsp]', or set krl.command."]);
 });
 
-test("the test explorer runs each file and tells each case", { skip: process.platform === "win32" }, async () => {
+test("the test explorer lists the cases of each file, runs it and tells each case", { skip: process.platform === "win32" }, async () => {
   const command = path.join(mkdtempSync(path.join(tmpdir(), "krl-")), "krl");
   const junit = '<testsuites><testcase name="opens" time="0.5"/><testcase name="shuts" time="1"><failure>late</failure></testcase></testsuites>';
-  writeFileSync(command, `#!/bin/sh\n[ "$1 $3" = "test --junit" ] && echo '${junit}' > "$4"; exit 1\n`);
+  const lines = ['[ "$1 $3" = "test --junit" ] && echo "$junit" > "$4" && exit 1', '[ "$4" = --collect-only ] && echo "test_a.toml::opens, slowly\n\n1 test collected"'];
+  writeFileSync(command, ["#!/bin/sh", `junit='${junit}'`, ...lines, ""].join("\n"));
   chmodSync(command, 0o755);
   const [extension, did] = load(command);
   await extension.activate({ subscriptions: [] });
+  await did.tests.resolveHandler();
+  const file = did.tests.items.get("file:test_a.toml");
+  await did.tests.resolveHandler(file);
+  assert.deepStrictEqual([...file.children].map(([, one]) => one.label), ["opens, slowly"]);
   await did.runTests({}, { onCancellationRequested: () => {} });
   const told = did.runs.filter(([name]) => ["passed", "failed", "errored"].includes(name));
   assert.deepStrictEqual(told, [["passed", "opens"], ["failed", "shuts"], ["failed", "test_a.toml"]]);
