@@ -546,3 +546,19 @@ def test_folds_behind_one_that_is_lost(toy: Grammar, monkeypatch: pytest.MonkeyP
     grown = _grown(toy, files)
     assert ["no call"] == [construct.title for construct in grown.constructs]
     assert all(Recognizer(grown.grammar).accepts(file.text) for file in files)
+
+
+def _rotation(view: GrammarView) -> Iterator[Inferred]:
+    """Yield a fold that moves the first alternative of a rule to its end."""
+    rule = view.grammar.by_name["simpleStatement"]
+    text = rule.source_of(rule.alternatives[0])
+    edits = (RemoveAlternative(rule.name, 1), AddAlternative(rule.name, text))
+    yield Inferred("rotated", edits, (), breadth=1)
+
+
+def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without end a fold could be taken that leads back to a grammar of the same round."""
+    monkeypatch.setattr(folding, "FOLDS", (_rotation,))
+    files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
+    last = _grown(toy, files).rounds[-1]["refused"]
+    assert ["has been so before"] == [refused["reason"] for refused in last]
