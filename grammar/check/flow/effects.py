@@ -149,11 +149,15 @@ class _Collector:
         if data is None or context.table.is_system:
             return
         declared: dict[str, ast.Name] = {}
+        seen = set[str]()
         for item in data.items:
             if isinstance(item, ast.VariableDeclaration):
                 for one in item.declarators:
-                    if one.value is None and not one.name.text.startswith("$"):
+                    if one.name.key in seen:  # an error anyway
+                        declared.pop(one.name.key, None)
+                    elif one.value is None and not one.name.text.startswith("$"):
                         declared[one.name.key] = one.name
+                    seen.add(one.name.key)
             elif isinstance(item, ast.Assignment) and (root := root_variable(item.target)):
                 declared.pop(root.name.key, None)
             elif isinstance(item, ast.Importation) and (root := root_variable(item.source)):
