@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
-from grammar.notation.model import Element, Group, Literal, Reference, walk
+from grammar.notation.model import Element, Group, Literal, Reference, reached, walk
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import WORD_LIST_PART
 
@@ -94,19 +94,22 @@ class Vocabulary:
         )
 
     def is_written(self, word: str) -> bool:
-        """Return whether a rule other than the lists of keywords uses a word."""
+        """Return whether a rule other than the lists of keywords uses a word.
+
+        Rules that the rule of programs does not reach do not count.
+        """
         return word in self._written
 
     @cached_property
     def _written(self) -> frozenset[str]:
-        return frozenset(
-            e.name
+        called = {
+            rule.name: {
+                e.name for a in rule.alternatives for e in walk(a) if isinstance(e, Reference)
+            }
             for rule in self.grammar.rules
             if not rule.is_lexer and rule.name not in self.word_lists
-            for a in rule.alternatives
-            for e in walk(a)
-            if isinstance(e, Reference) and e.is_token
-        )
+        }
+        return frozenset(reached(called, self.grammar.start)) - called.keys()
 
     def reserve(self, keywords: Iterable[str]) -> tuple[Edit, ...]:
         """Return the edits that reserve words and add them to the lists of keywords."""

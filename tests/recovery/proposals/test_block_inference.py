@@ -1,8 +1,9 @@
 """A block the grammar has no form for is found from the lines between its opener and closer."""
 
-from grammar.notation.edits import RemoveAlternative, RemoveRule, apply
+from grammar.notation.edits import AddRule, AddToken, RemoveAlternative, RemoveRule, apply
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.proposals.alignment import Aligner
 from recovery.proposals.block_inference import BlockFinder
@@ -13,8 +14,13 @@ PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 NO_WHILE = apply(PRELIMINARY, [RemoveAlternative("statement", 4), RemoveRule("whileStatement")])
 
 
-def blocks(opener: str, *bodies: str, meant: frozenset[str] = frozenset()) -> list[str]:
-    recognizer = Recognizer(NO_WHILE)
+def blocks(
+    opener: str,
+    *bodies: str,
+    meant: frozenset[str] = frozenset(),
+    grammar: Grammar = NO_WHILE,
+) -> list[str]:
+    recognizer = Recognizer(grammar)
     finder = BlockFinder(recognizer, GrammarProfile(recognizer), Aligner(Phraser(recognizer)))
     texts = [f"DEF A()\n{body}\nEND\n" for body in bodies]
     return [" ".join(block.symbols) for block in finder.find(opener, texts, meant)]
@@ -36,6 +42,18 @@ def test_an_unknown_block_with_parts_in_the_middle() -> None:
         and form.endswith("ENDSWITCH")
         for form in found
     )
+
+
+def test_words_of_a_rule_that_nothing_calls_are_free() -> None:
+    """What is left of a lost block in the grammar does not hide its parts."""
+    left = [AddToken("CASE"), AddRule("statement", "caseBranch : CASE NAME eol ;")]
+    (form, *_) = blocks(
+        "SWITCH",
+        "SWITCH A\nCASE 1\nCASE 2\nENDSWITCH",
+        meant=frozenset({"SWITCH"}),
+        grammar=apply(NO_WHILE, left),
+    )
+    assert "(CASE" in form
 
 
 def test_what_no_block_goes_without_has_to_be_there() -> None:
