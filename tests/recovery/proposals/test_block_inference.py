@@ -46,7 +46,7 @@ def test_an_unknown_block_with_parts_in_the_middle() -> None:
 
 def test_words_of_a_rule_that_nothing_calls_are_free() -> None:
     """What is left of a lost block in the grammar does not hide its parts."""
-    left = [AddToken("CASE"), AddRule("statement", "caseBranch : CASE NAME eol ;")]
+    left = (AddToken("CASE"), AddRule("statement", "caseBranch : CASE NAME eol ;"))
     (form, *_) = blocks(
         "SWITCH",
         "SWITCH A\nCASE 1\nCASE 2\nENDSWITCH",
