@@ -63,7 +63,9 @@ def switch(code: Code) -> bool:
     """Write a SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
     choices, style = code.choices, code.style
     type_ = style.selectors(code)
-    labels = _labels(type_)
+    labels, most = _labels(type_), style.case_labels
+    if is_long := type_ == INT and choices.chance(40):  # so long that a machine may use a table
+        labels, most = [str(number) for number in range(-2, 28)], 30
     if type_ == INT and style.is_closed:
         selector: str | None = f"({expression(code, INT, 1)}) B_AND 3"
     else:
@@ -77,7 +79,7 @@ def switch(code: Code) -> bool:
     code.line(f"SWITCH {selector}")
     left = list(labels)
     while left and (len(left) == len(labels) or choices.chance(style.case_share)):
-        count_ = choices.between(1, min(len(left), style.case_labels))
+        count_ = choices.between(min(len(left), 12 if is_long else 1), min(len(left), most))
         given, left = left[:count_], left[count_:]
         if names and style.is_closed and choices.chance(20):
             given.append(choices.pick(names))
