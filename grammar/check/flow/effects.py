@@ -8,7 +8,6 @@ happens to arguments is in the `routine_summaries`.
 from __future__ import annotations
 
 import operator
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any
 
@@ -41,9 +40,8 @@ class Effects:
 
     ``changed`` are the names that are assigned or passed on, with a constant index as in
     ``$FLAG[3]``; ``reset`` those that may become FALSE. ``switched_on`` has interrupt numbers, and
-    ``""`` for all or unknown ones. ``literals`` are undeclared variables in upper case with the
-    kinds of literals with which they are compared or to which they are set. ``valueless`` are
-    variables without an initial value, ``summaries`` those of its routines.
+    ``""`` for all or unknown ones. ``valueless`` are variables without an initial value,
+    ``summaries`` those of its routines.
     """
 
     interrupts: tuple[Place, ...] = ()
@@ -52,24 +50,11 @@ class Effects:
     reset: frozenset[str] = frozenset()
     waits: tuple[tuple[Place, frozenset[str]], ...] = ()
     changed: frozenset[str] = frozenset()
-    literals: tuple[tuple[str, str, Place], ...] = ()
     valueless: tuple[Place, ...] = ()
     summaries: Summaries | None = None
 
 
 NO_EFFECTS = Effects()
-
-# Two places alike and one that differs.
-_FEWEST = 2
-
-#: What a variable of one type can be compared with.
-_KINDS: Mapping[type[ast.Node], str] = {
-    ast.BoolLiteral: "a truth value",
-    ast.IntegerLiteral: "a number",
-    ast.RealLiteral: "a number",
-    ast.BitLiteral: "a number",
-    ast.StringLiteral: "a text",
-}
 
 _OPERATORS: Mapping[str, Callable[[bool, bool], bool]] = {
     "AND": operator.and_,
@@ -112,7 +97,6 @@ class _Collector:
         self._waits: list[tuple[Place, frozenset[str]]] = []
         self._changed = set(unread.changed)
         self._summaries = SummaryCollector(context)
-        self._literals: list[tuple[str, str, Place]] = []
 
     def collect(self) -> Effects:
         context = self._context
@@ -125,8 +109,6 @@ class _Collector:
         for node in context.types if context.routines else ():
             if type(node) is ast.Call:
                 self._call(node)
-            elif type(node) is ast.Binary and node.operator in ("==", "<>"):
-                self._literal(node.left, node.right)
         valueless = tuple(self._valueless())
         return Effects(
             tuple(self._interrupts),
@@ -135,7 +117,6 @@ class _Collector:
             frozenset(self._reset),
             tuple(self._waits),
             frozenset(self._changed),
-            tuple(self._literals),
             valueless,
             self._summaries.made(),
         )
@@ -196,11 +177,10 @@ class _Collector:
         self._changed.add(node.counter.key)
 
     def assignment(self, node: ast.Assignment) -> None:
-        """Record the assigned name, and the literal beside an undeclared variable."""
+        """Record the assigned name."""
         if key := self._key(node.target):
             self._changed.add(key)
         self._assigned(node)
-        self._literal(node.target, node.value)
 
     def values(self, nodes: Iterable[ast.Assignment]) -> None:
         """Visit the assignments after WITH."""
@@ -215,22 +195,6 @@ class _Collector:
                 self._reset.add(key)
         if isinstance(node.action, ast.Assignment):
             self._assigned(node.action)
-            self._literal(node.action.target, node.action.value)
-
-    def _literal(self, variable: ast.Expression, value: ast.Expression) -> None:
-        """Note what an undeclared variable, or a component of one, stands beside."""
-        if type(variable) is ast.Subscript:
-            return  # letters may be given by their codes
-        value = without_parentheses(value)
-        if type(value) is ast.Unary and value.operator in "+-":
-            value = value.operand
-        kind = _KINDS.get(type(value))
-        root = root_variable(variable)
-        if kind is None or root is None or root.name.text.startswith("$"):
-            return
-        if self._context.found(root.name) is None:
-            shown = ".".join((root.name.text, *_members(variable)))
-            self._literals.append((shown.upper(), kind, self._place(value, shown)))
 
     # --------------------------------------------------------------------------- keys
 
@@ -315,16 +279,6 @@ class _Collector:
         self._summaries.call(node)
 
 
-def _members(node: ast.Expression) -> list[str]:
-    """Return the component names of an expression such as ``a.b[1].c``."""
-    found: list[str] = []
-    while isinstance(node, ast.Member | ast.Subscript):
-        if isinstance(node, ast.Member):
-            found.insert(0, node.name.text)
-        node = node.base
-    return found
-
-
 def _written_key(node: ast.Expression) -> str:
     """Return the output or flag that a signal denotes."""
     match node:
@@ -357,7 +311,6 @@ def of_project(found: Iterable[Effects], used: Set[str]) -> Iterator[Diagnostic]
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
     reset = frozenset[str]().union(*(one.reset for one in files))
     changed = frozenset[str]().union(*(one.changed for one in files))
-    yield from _of_two_kinds(files)
     yield from of_summaries([one.summaries for one in files if one.summaries])
     for one in files:
         if "" not in switched_on:
@@ -372,24 +325,6 @@ def of_project(found: Iterable[Effects], used: Set[str]) -> Iterator[Diagnostic]
             if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"
                 yield diagnose("never-fulfilled", place.path, place.region, message)
-
-
-def _of_two_kinds(files: Iterable[Effects]) -> Iterator[Diagnostic]:
-    """Undeclared variables that are one kind of value in all places of a file but one."""
-    uses: dict[tuple[str, str], list[tuple[str, Place]]] = {}
-    for one in files:
-        for key, kind, place in one.literals:
-            uses.setdefault((place.path, key), []).append((kind, place))
-    for some in uses.values():
-        counts = Counter(kind for kind, _ in some)
-        if len(counts) == 2 and len(some) > _FEWEST and 1 in counts.values():
-            (usual, count), (rare, _) = counts.most_common()
-            place = next(place for kind, place in some if kind == rare)
-            message = f"{place.what} is {usual} elsewhere, and this is {rare}"
-            reason = f"so it is in {count} places"
-            yield diagnose(
-                "wrong-value", place.path, place.region, message, reason=reason, severity="warning"
-            )
 
 
 def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:

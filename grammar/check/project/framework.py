@@ -28,7 +28,7 @@ from grammar.check.names.unresolved_names import (
 )
 from grammar.check.names.unresolved_names import of_project as of_names
 from grammar.check.structure import folds, misplaced_statements, splines
-from grammar.check.types import declarations, initial_values, statements
+from grammar.check.types import declarations, initial_values, statements, undeclared_kinds
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import Project, Workspace
 from grammar.semantics.predefined import System
@@ -50,6 +50,7 @@ _TYPING: tuple[Check, ...] = (statements.check, initial_values.check)
 CHECKS: tuple[Check, ...] = (
     *_TYPING,
     declarations.check,
+    undeclared_kinds.check,
     duplicate_names.check,
     undeclared_names.check,
     name_limits.check,
