@@ -8,7 +8,7 @@ happens to arguments is in the `routine_summaries`.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from typing import Any
 
 from grammar.check.analysis.accesses import accesses, called_parameters, is_passed_on
@@ -305,26 +305,40 @@ _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
 # ------------------------------------------------------------------------------------- a project
 
 
-def of_project(found: Iterable[Effects], used: Set[str]) -> Iterator[Diagnostic]:
-    """Yield the findings that depend on the effects of several files; ``used`` are all names."""
+def of_project(
+    found: Iterable[Effects], names: Callable[[], Mapping[str, Set[str]]]
+) -> Iterator[Diagnostic]:
+    """Yield the findings that depend on several files; ``names`` returns those of each file."""
     files = list(found)
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
     reset = frozenset[str]().union(*(one.reset for one in files))
     changed = frozenset[str]().union(*(one.changed for one in files))
     yield from of_summaries([one.summaries for one in files if one.summaries])
+    yield from _never_assigned([place for one in files for place in one.valueless], changed, names)
     for one in files:
         if "" not in switched_on:
             yield from _never_on(one.interrupts, switched_on)
         if "$OUT" not in reset:
             yield from _never_reset(one.outputs, reset)
-        for place in one.valueless if REST not in changed else ():
-            if place.what.upper() in used and place.what.upper() not in changed:
-                message = f"{place.what} has no value, and nothing assigns to it"
-                yield diagnose("never-assigned", place.path, place.region, message)
         for place, keys in one.waits:
             if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"
                 yield diagnose("never-fulfilled", place.path, place.region, message)
+
+
+def _never_assigned(
+    valueless: Sequence[Place], changed: Set[str], names: Callable[[], Mapping[str, Set[str]]]
+) -> Iterator[Diagnostic]:
+    """Yield the variables without a value that the program of their data list uses."""
+    if REST in changed or not valueless:
+        return
+    programs = {path.upper(): words for path, words in names().items()}
+    for place in valueless:
+        key = place.what.upper()
+        program = programs.get(f"{place.path[:-4]}.src".upper(), ())
+        if key in program and key not in changed:
+            message = f"{place.what} has no value, and nothing assigns to it"
+            yield diagnose("never-assigned", place.path, place.region, message)
 
 
 def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:

@@ -163,7 +163,7 @@ def check_project(
         (constant for one in kept for constant in one.constants),
         partial(_constants_of, file_of, spelling.files),
     )
-    found += of_effects((one.effects for one in kept), used)
+    found += of_effects((one.effects for one in kept), lambda: spelling.files)
     return in_order(found)
 
 

@@ -134,6 +134,7 @@ def test_behind_a_routine_that_does_not_return(agrees: Agrees, body: str, mark: 
         ("INT N=1", "$ANOUT[1] = N", False),
         ("INT N[2]\nN[1]=1", "$ANOUT[1] = N[1]", False),
         ("INT N", "HALT", False),
+        ("INT K, N=1", "HALT", False),
         ("INT N", "N = 1", False),
         ("INT N", "$ANOUT[1] = N\nFILL(N)", False),
         ("REAL N", "ANIN ON N = 1.0 * $ANIN[1]", False),
@@ -150,6 +151,7 @@ def test_variables_that_nothing_gives_a_value(
     given = {
         "NEG.src": f"DEF NEG()\n{body}\nEND",
         "FILL.src": "DEF FILL(M:OUT)\nINT M\nM = 1\nEND",
+        "USES.src": "DEF USES(K:IN)\nINT K\n$ANOUT[1] = K\nEND",
         "NEG.dat": data.format(";> KRL417?" if is_known else ""),
     }
     ignored = ("KRL117", "KRL7")
