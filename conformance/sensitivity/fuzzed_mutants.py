@@ -1,7 +1,7 @@
-"""Share of mutants of the machine in Python that the fuzzer detects.
+"""The share of mutants of the Python machine that the fuzzer detects.
 
-A mutant is found by the first generated program on which the machine with it does something else
-than the tree interpreter.
+A mutant is found by the first generated program on which the mutated machine behaves differently
+from the tree interpreter.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _SECONDS: Final = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A mutant, and the number of the program that found it; ``None`` where none did.
+    """A mutant, and the number of the program that found it, or ``None``.
 
-    ``runs`` is how many programs were run with it: none where it cannot be put in place.
+    ``runs`` is how many programs were run; 0 if the mutant is invalid.
     """
 
     mutant: Mutant
@@ -40,7 +40,7 @@ class Verdict:
 
 @dataclass(slots=True)
 class ReferenceRuns:
-    """Programs of which the traces are known; made one after the other, as they are needed."""
+    """Programs with known traces, generated one after another when they are needed."""
 
     seed: int
     most: int
@@ -101,9 +101,10 @@ def examine_mutants(
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
 ) -> list[Verdict]:
-    """So many mutants, each on so many programs at most; the same whatever ``jobs`` is.
+    """Return verdicts on ``count`` mutants, each on at most this number of programs.
 
-    ``on_done`` is called with how many mutants were examined since the last call.
+    The result does not depend on ``jobs``. ``on_done`` is called with the number of mutants
+    examined since the last call.
     """
     every = drawn(seed, count, [MACHINE])
     shares = [every[first::jobs] for first in range(jobs)]
@@ -122,7 +123,7 @@ def _examined(mutants: Sequence[Mutant], seed: int, programs: int) -> list[Verdi
 
 
 def record_of(verdicts: Sequence[Verdict], programs: int, seed: int) -> dict[str, Any]:
-    """What is written as JSON; the share is that of the mutants that could be put in place."""
+    """Return the verdicts as data for JSON; the share is that of valid mutants."""
     valid = [one for one in verdicts if one.runs]
     runs = sorted(one.runs for one in valid if one.found_by is not None)
     fields = ("file", "line", "function", "source", "was", "now")

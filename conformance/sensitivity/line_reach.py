@@ -1,4 +1,4 @@
-"""Which cases run which lines: selects the cases that can notice a change of a line."""
+"""Which cases execute which lines: selects the cases that can notice a change of a line."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ NOTHING_KEPT: Final = ResultStore(None, "")
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """What a case runs: the first lines of statements by module, negative in lambdas.
+    """The lines that a case executes, as first lines of statements by module; negative in lambdas.
 
-    ``cost`` is the number of events and set-points, which it takes time to come to. ``seen`` tells
-    what was seen of it from anything else (`seen_digest`).
+    ``cost`` is the number of events and set-points, which approximates the run time. ``seen``
+    identifies everything that was observed (`seen_digest`).
     """
 
     case: Case
@@ -43,7 +43,7 @@ class Reach:
     seen: str = ""
 
     def has(self, module: str, lines: frozenset[int]) -> bool:
-        """Whether the case runs one of these lines of a module."""
+        """Return whether the case executes one of these lines of a module."""
         return not lines.isdisjoint(self.lines.get(module, frozenset()))
 
 
@@ -54,9 +54,9 @@ def reach_of(
     on_done: Callable[[int], None] = lambda _count: None,
     store: ResultStore = NOTHING_KEPT,
 ) -> list[Reach]:
-    """What each case runs with a setup, in the order of cases, without those that do not pass.
+    """Return the lines that each case executes, in order, without cases that do not pass.
 
-    ``store`` keeps it by the digest of the case.
+    ``store`` caches them by the digest of the case.
     """
     found: dict[str, Reach | None] = {}
     for case in cases:
@@ -77,7 +77,7 @@ def _key(case: Case) -> str:
 
 
 def _row(reach: Reach | None) -> dict[str, Any]:
-    """A reach as JSON; empty for a case that does not pass."""
+    """Return a reach as data for JSON; empty for a case that does not pass."""
     if reach is None:
         return {}
     lines = {module: sorted(numbers) for module, numbers in reach.lines.items()}
@@ -142,9 +142,9 @@ _MARKS: Final = ("__reached_lines__", "__reached_lambdas__")
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """A byte for each line of a module where functions run it, and one where lambdas do.
+    """A byte for each line of a module that functions have executed, and one for lambdas.
 
-    ``lasts`` are the last lines of statements by their first ones, of lambdas by these negative.
+    ``lasts`` are the last lines of statements by their first lines, negative for lambdas.
     """
 
     functions: bytearray
@@ -157,7 +157,7 @@ class _Marks:
             one[:] = bytes(len(one))
 
     def lines(self) -> frozenset[int]:
-        """The lines of the statements that were run, negative for lambdas."""
+        """Return the lines of executed statements, negative for lambdas."""
         return frozenset(
             sign * line
             for sign, marks in ((1, self.functions), (-1, self.lambdas))
@@ -211,7 +211,7 @@ def _add_marks(tree: ast.Module, lasts: dict[int, int]) -> None:
 
 
 def _after_mark(row: ast.stmt) -> list[ast.stmt]:
-    """A statement, behind its mark where it is no docstring."""
+    """Return a statement after its mark, except for a docstring."""
     if isinstance(row, ast.Expr) and isinstance(row.value, ast.Constant):
         return [row]
     return [*ast.parse(f"{_MARKS[0]}[{row.lineno}] = 1").body, row]

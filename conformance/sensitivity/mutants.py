@@ -1,8 +1,8 @@
-"""Mutants: one random change each in code that decides semantics.
+"""Mutants: one random change each in code that determines semantics.
 
-A mutant is put in place in the running process: the code of the functions that are there is
-exchanged, and what a module-level assignment gave a name is computed again. What interpreters
-have cached is forgotten. Nothing is written to a file.
+A mutant is activated in the running process: the code of existing functions is exchanged, and the
+value of a module-level assignment is computed again. Caches of interpreters are cleared. Nothing is
+written to a file.
 """
 
 from __future__ import annotations
@@ -144,14 +144,14 @@ _RULE: Final = re.compile(r"\b[A-Z]{3}-\d\d\b")
 
 
 class InvalidMutant(ValueError):
-    """A change that cannot be put in place, as it would be another function with other names."""
+    """A change that cannot be activated, because the function would need other names."""
 
 
 class SeededFault(Protocol):
     """A fault that cases should notice: a drawn `Mutant`, or one that is planted by hand.
 
-    ``lines``, first and last, are those of its function or statement. ``is_module_level`` is set
-    for the change of a name of the module ``module``, which is then ``function``.
+    ``lines`` are the first and last line of its function or statement. ``is_module_level`` is set
+    for a change of the value of a name of ``module``, which is then ``function``.
     """
 
     @property
@@ -169,10 +169,10 @@ class SeededFault(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """A change of a module; ``number`` is its place among all changes of this module.
+    """A change of a module; ``number`` is its index among all changes of this module.
 
-    ``lines`` are those of its statement: a case that runs none of them cannot notice it.
-    ``source`` is the line it begins on.
+    ``lines`` are those of its statement: a case that executes none of them cannot notice it.
+    ``source`` is its first line.
     """
 
     package: str
@@ -194,12 +194,12 @@ class Mutant:
 
     @property
     def change(self) -> tuple[str, ...]:
-        """What it is, wherever the lines of its module have moved to."""
+        """A description that does not change when lines of the module move."""
         return self.module, self.function, self.source, self.was, self.now
 
     @property
     def file(self) -> str:
-        """The file of its module, from the root of the project."""
+        """The path of its module in the repository."""
         return self.module.replace(".", "/") + ".py"
 
     @contextmanager
@@ -223,7 +223,7 @@ class Mutant:
 
 
 def all_mutants(packages: Iterable[str] = OF_CASES) -> Iterator[str]:
-    """The names of all mutants there are of some of `PACKAGES`, one package behind the other."""
+    """Return the names of all mutants of some of `PACKAGES`, one package after another."""
     left_out = [one for _, some in PACKAGES.values() for one in some]
     for module in (name for package in packages for name in _modules(package)):
         for number, function in enumerate(_changed(module)):
@@ -232,16 +232,16 @@ def all_mutants(packages: Iterable[str] = OF_CASES) -> Iterator[str]:
 
 
 def drawn(seed: int, count: int, packages: Iterable[str] = OF_CASES) -> tuple[Mutant, ...]:
-    """So many of all mutants of some packages, drawn by chance, in the order of `all_mutants`."""
+    """Return ``count`` random mutants of some packages, in the order of `all_mutants`."""
     every = tuple(all_mutants(packages))
     chosen = Random(f"mutants {seed}").sample(range(len(every)), min(count, len(every)))
     return tuple(named(every[at]) for at in sorted(chosen))
 
 
 def named(name: str) -> Mutant:
-    """The mutant of a name, ``interp.values.values:12``; raises `KeyError` where there is none.
+    """Return the mutant of a name, ``interp.values.values:12``; raises `KeyError` if unknown.
 
-    It may be of a module that none is drawn from.
+    Its module may be one from which none is drawn.
     """
     module, _, number = name.partition(":")
     is_known = module in _every_module() and number.isdigit()
@@ -267,7 +267,7 @@ def named(name: str) -> Mutant:
 
 
 def of_line(file: str, line: int) -> list[Mutant]:
-    """The mutants that begin on a line of a file, ``interp/values/values.py``."""
+    """Return the mutants that begin on a line of a file, ``interp/values/values.py``."""
     module = file.removesuffix(".py").replace("/", ".")
     if module not in _every_module():
         return []
@@ -277,7 +277,7 @@ def of_line(file: str, line: int) -> list[Mutant]:
 
 @cache
 def modules() -> tuple[str, ...]:
-    """The names of all modules that mutants are drawn from."""
+    """Return the names of all modules from which mutants are drawn."""
     return tuple(name for package in PACKAGES for name in _modules(package))
 
 
@@ -304,7 +304,7 @@ def uses_of(fault: SeededFault) -> Mapping[str, frozenset[int]]:
 
 
 def around(fault: SeededFault) -> Mapping[str, frozenset[int]]:
-    """The lines of its function, and of what its statement names: functions, methods, classes."""
+    """Return the lines of a fault's function, and of the functions and classes that it names."""
     first, last = sorted(map(abs, fault.lines))
     words = {fault.function.rpartition(".")[2]}
     for node in ast.walk(tree_of(fault.module)):
@@ -318,7 +318,7 @@ def around(fault: SeededFault) -> Mapping[str, frozenset[int]]:
 
 
 def cited(fault: SeededFault) -> frozenset[str]:
-    """The rules that its function cites, those that its statement names, and their modules."""
+    """Return the rules that a fault's function cites or its statement names, and modules."""
     found = set()
     for module, lines in around(fault).items():
         rows = _text(module).splitlines()
@@ -361,13 +361,13 @@ def _text(module: str) -> str:
 
 
 def tree_of(module: str) -> ast.Module:
-    """The syntax tree of a module, made anew, so that it can be changed."""
+    """Return a new syntax tree of a module, which may be changed."""
     return ast.parse(_text(module))
 
 
 @cache
 def _changed(module: str) -> tuple[str, ...]:
-    """The function that each mutant of a module changes, by its number."""
+    """Return the function that each mutant of a module changes, by number."""
     return tuple(one.function for one in changes(tree_of(module)))
 
 
@@ -451,7 +451,7 @@ def load() -> None:
 
 @cache
 def _functions() -> Mapping[tuple[Any, ...], Sequence[FunctionType]]:
-    """The functions that are there, by file and place; asked for once all modules are loaded."""
+    """Return the existing functions by file and place, once all modules are loaded."""
     for name in modules():
         import_module(name)
     found: dict[tuple[Any, ...], list[FunctionType]] = {}

@@ -101,12 +101,12 @@ class Change:
 
     @property
     def was(self) -> str:
-        """What is changed, as source on one line."""
+        """The changed code, as source on one line."""
         return " ".join(ast.unparse(self.old).split())
 
     @property
     def now(self) -> str:
-        """What it becomes."""
+        """The code after the change."""
         return " ".join(ast.unparse(self.new).split())
 
     def make(self) -> None:
@@ -119,9 +119,9 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class _Scope:
-    """Where a node lies: names of functions and classes around it, and its statement's lines.
+    """The place of a node: names of enclosing functions and classes, lines of its statement.
 
-    ``reals`` are the names that the module gives to numbers that are no whole ones, and these.
+    ``reals`` are the names of module constants that are not whole numbers, and these numbers.
     """
 
     names: tuple[str, ...] = ()
@@ -139,7 +139,7 @@ class _Scope:
 
 
 def changes(tree: ast.Module) -> Iterator[Change]:
-    """All changes of a module, in the order of its source."""
+    """Return all changes of a module, in the order of its source."""
     scope = _Scope(reals=_reals(tree))
     for statement in tree.body:
         match statement:
@@ -162,7 +162,7 @@ def _reals(tree: ast.Module) -> dict[str, float]:
 
 
 def _value(node: ast.AST | None, reals: Mapping[str, float]) -> float:
-    """The number that an expression of numbers gives, NaN where it is none."""
+    """Return the value of a constant expression, or NaN."""
     match node:
         case ast.Constant(float(value)):
             return value
@@ -174,7 +174,7 @@ def _value(node: ast.AST | None, reals: Mapping[str, float]) -> float:
 
 
 def _is_real(node: ast.AST | None, reals: Collection[str]) -> bool:
-    """Whether it is a number that is not whole, its name, or computed with one."""
+    """Return whether a number is not whole, is the name of such a number, or computed from one."""
     return node is not None and any(
         (isinstance(one, ast.Constant) and isinstance(one.value, float) and one.value % 1.0 != 0.0)
         or (isinstance(one, ast.Name) and one.id in reals)
@@ -254,7 +254,7 @@ def _of_place(
 def _others(
     parent: ast.AST, name: str, node: ast.AST, reals: Mapping[str, float]
 ) -> Iterator[tuple[Operator, ast.expr]]:
-    """What may stand in place of an expression."""
+    """Yield the replacements of an expression."""
     if _is_condition(parent, name) and isinstance(node, ast.expr) and not _has_opposite(node):
         yield "condition", ast.UnaryOp(ast.Not(), node)
     match node:
@@ -301,14 +301,14 @@ def _is_condition(parent: ast.AST, name: str) -> bool:
 
 
 def _has_opposite(node: ast.expr) -> bool:
-    """Whether another operator negates the whole of it."""
+    """Return whether another operator negates the whole expression."""
     if isinstance(node, ast.UnaryOp):
         return isinstance(node.op, ast.Not)
     return isinstance(node, ast.Compare) and len(node.ops) == 1
 
 
 def _is_no_number(*operands: ast.expr) -> bool:
-    """Whether ``+`` joins texts or lists, or ``|`` a type and None, as far as it can be seen."""
+    """Return whether ``+`` joins texts or lists, or ``|`` a type and None, if that is visible."""
     kinds = (ast.JoinedStr, ast.List, ast.Tuple)
     return any(
         isinstance(one, kinds)
@@ -318,7 +318,7 @@ def _is_no_number(*operands: ast.expr) -> bool:
 
 
 def _is_type_test(parent: ast.AST, name: str, index: int | None) -> bool:
-    """The second argument of ``isinstance``, and the first of ``cast``, are types."""
+    """Return whether an argument is a type: the second of ``isinstance``, the first of ``cast``."""
     if not isinstance(parent, ast.Call) or name != "args" or not isinstance(parent.func, ast.Name):
         return False
     return (parent.func.id, index) in (("isinstance", 1), ("cast", 0))
@@ -339,7 +339,7 @@ def _is_droppable(node: ast.stmt) -> bool:
 
 
 def _is_own_mistake(node: ast.stmt) -> bool:
-    """Whether a statement reports a mistake that no program of KRL can make."""
+    """Return whether a statement reports a mistake that no program of KRL can make."""
     if not isinstance(node, ast.Raise) or node.exc is None:
         return False
     return _OWN_MISTAKE.match(ast.unparse(node.exc)) is not None

@@ -86,7 +86,7 @@ def _named(name: str) -> Fault:
 
 
 class _EveryLine(tuple[str, int]):
-    """A line that every line is equal to."""
+    """A line that is equal to every line."""
 
     __hash__ = tuple.__hash__
 

@@ -1,10 +1,10 @@
-"""Features of KRL removed from cases: those that pass without what their title names are weak.
+"""Removes features of KRL from cases: a case that passes without what its title names is weak.
 
-A feature is what a program uses of the language: a statement by its keywords, a part that it may
-leave out, a system variable written or read, a predefined routine. There is no list of them: the
-syntax tree says which parts there are, the tables of the controller which names. It is removed from
-the text of a case, where blanks take its place, so that lines stay where they are; what is read
-gives zero or FALSE instead.
+A feature is anything that a program uses of the language: a statement by its keywords, an optional
+part, a system variable that is written or read, a predefined routine. The features are not listed:
+the syntax tree has the parts, the tables of the controller have the names. A feature is removed
+from the text of a case and replaced by blanks, so that lines stay where they are; a removed value
+is replaced by zero or FALSE.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _Edit = tuple[str, int, int, str]
 
 @dataclass(frozen=True, slots=True)
 class Removal:
-    """A case run without a feature that its title names; ``verdict`` is what became of it."""
+    """A case run without a feature that its title names; ``verdict`` is the result."""
 
     case: str
     feature: str
@@ -58,7 +58,7 @@ def try_removals(
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
 ) -> list[Removal]:
-    """What becomes of each case that passes when a feature named in its title is removed."""
+    """Return the results of all passing cases after removal of a feature in their titles."""
     running = [case for case in cases if case.phase == "run"]
     found: list[Removal] = []
     for share, removals in in_shares(_removals, running, size=_SHARE, jobs=jobs):
@@ -77,7 +77,7 @@ def _removals(cases: Sequence[Case]) -> list[Removal]:
 
 
 def removals_record(removals: Sequence[Removal]) -> dict[str, Any]:
-    """What is written as JSON: how often features were removed, and what passed nevertheless."""
+    """Return data for JSON: how often features were removed, and what still passed."""
     return {
         "removed": len(removals),
         "features": len({one.feature for one in removals}),
@@ -88,7 +88,7 @@ def removals_record(removals: Sequence[Removal]) -> dict[str, Any]:
 
 
 def named_by(case: Case) -> list[str]:
-    """The features of a case that have a word in its title: a keyword, or a name."""
+    """Return the features of a case that have a word in its title: a keyword or a name."""
     said = set(_WORD.findall(case.title))
     shared = {feature: said.intersection(feature.split()) for feature in features(case)}
     return [
@@ -99,7 +99,7 @@ def named_by(case: Case) -> list[str]:
 
 
 def without(case: Case, feature: str) -> Case:
-    """The case without a feature; what it expects, and where, stays as it is."""
+    """Return the case without a feature; its expectations and their places do not change."""
     edits = sorted(features(case)[feature], reverse=True)
     texts = {source.path: source.text for source in case.sources}
     for path, start, end, text in edits:
@@ -112,7 +112,7 @@ def without(case: Case, feature: str) -> Case:
 
 @cache
 def features(case: Case) -> Mapping[str, Sequence[_Edit]]:
-    """The features that a case uses, and how each is removed from it."""
+    """Return the features that a case uses, and how each is removed from it."""
     found: dict[str, list[_Edit]] = {}
     for source in case.sources:
         module = read_module(source.text, source.path)
@@ -147,7 +147,7 @@ def _of(routine: ast.Routine, source: Source) -> Iterator[tuple[str, ast.Node, s
 
 
 def _statement(node: ast.Node, source: Source) -> str:
-    """The keywords that a statement begins with, or the name of what it writes or calls."""
+    """Return the keywords at the start of a statement, or the name that it writes or calls."""
     match node:
         case ast.Assignment():
             variable = root_variable(node.target)
@@ -161,7 +161,7 @@ def _statement(node: ast.Node, source: Source) -> str:
 
 
 def _parts(node: Any) -> Iterator[tuple[str, ast.Node, str]]:
-    """What a statement of one line may leave out: criteria, WITH, PRIO, ONSTART …"""
+    """Yield the optional parts of a one-line statement: criteria, WITH, PRIO, ONSTART …"""
     whole = expression(node)
     for field in fields(node):
         empty = _empty(getattr(node, field.name), str(field.type))
@@ -173,7 +173,7 @@ def _parts(node: Any) -> Iterator[tuple[str, ast.Node, str]]:
 
 
 def _empty(value: Any, type_: str) -> tuple[Any] | None:
-    """The value of a field that is left out; ``None`` where it has to be there, or is not."""
+    """Return the value of an omitted field; ``None`` if it is required or not there."""
     if not value:
         return None
     if isinstance(value, bool):
@@ -184,7 +184,7 @@ def _empty(value: Any, type_: str) -> tuple[Any] | None:
 
 
 def _neutral(node: ast.Node) -> tuple[str, str] | None:
-    """A system variable read, or a predefined function called, and what it gives when removed."""
+    """Return a read system variable or called function, and the value that replaces it."""
     if isinstance(node, ast.Call) and node.name.key in System.load().functions:
         result = System.load().functions[node.name.key].result
         return (node.name.key, _NEUTRAL[result]) if result and result in _NEUTRAL else None
@@ -204,6 +204,6 @@ def _neutral(node: ast.Node) -> tuple[str, str] | None:
 
 @cache
 def _keywords() -> frozenset[str]:
-    """The words of templates, and those that tell variants of a statement apart."""
+    """Return the words of templates, and those that distinguish variants of a statement."""
     lines = [line for lines in ast.TEMPLATES.values() for line in lines]
     return frozenset(re.findall(r"\b[A-Z_]+\b", " ".join((*lines, *language()["variant"]))))

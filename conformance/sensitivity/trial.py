@@ -84,7 +84,7 @@ class Trial(Generic[_Fault]):
 
 
 def is_possible() -> bool:
-    """Whether this system can copy a process and limit what it takes."""
+    """Return whether this system can fork a process and limit its resources."""
     return hasattr(os, "fork") and find_spec("resource") is not None
 
 
@@ -227,7 +227,7 @@ def _candidates(fault: SeededFault, reaches: Sequence[Reach], most: int) -> _Can
 
 
 def _chosen(fault: SeededFault, cases: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """At most so many of the cases."""
+    """Return at most ``most`` of the cases."""
     chosen: dict[str, Reach] = {}
     for way in (_of_rarest(fault, cases), _of_rules(fault, cases), _of_ways(fault, cases)):
         new = (one for one in way if one.case.name not in chosen)
