@@ -1,4 +1,4 @@
-"""Type rules for expressions: literals, variables, operators. Calls and aggregates are beside."""
+"""Type rules for literals, variables and operators; calls and aggregates have own modules."""
 
 from __future__ import annotations
 

@@ -12,8 +12,8 @@ from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, without_parentheses
 
-# Two places alike and one that differs.
-_FEWEST = 3
+#: The least number of places that agree against a single one that differs.
+_USUAL = 2
 
 #: What a variable of one type can be compared with.
 _KINDS: Mapping[type[ast.Node], str] = {
@@ -30,22 +30,20 @@ _Pair = tuple[ast.Expression, ast.Expression]
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Yield the places where a variable of a file is another kind of value than elsewhere in it."""
-    uses: dict[str, dict[str, list[_Pair]]] = {}
+    uses: dict[str, dict[str, list[tuple[str, ast.Expression]]]] = {}
     for variable, value in _pairs(context):
         kind = _kind(value)
         root = root_variable(variable) if kind and type(variable) is not ast.Subscript else None
         if root is not None and root.name.text[0] != "$" and context.found(root.name) is None:
-            key = _shown(root, variable).upper()
-            uses.setdefault(key, {}).setdefault(kind, []).append((variable, value))
+            shown = _shown(root, variable)
+            uses.setdefault(shown.upper(), {}).setdefault(kind, []).append((shown, value))
     for kinds in uses.values():
         if len(kinds) != 2:
             continue
         (rare, few), (usual, many) = sorted(kinds.items(), key=lambda item: len(item[1]))
-        if len(few) == 1 and len(many) + 1 >= _FEWEST:
-            variable, value = few[0]
-            root = root_variable(variable)
-            assert root is not None, "it has been looked up"
-            message = f"{_shown(root, variable)} is {usual} elsewhere, and this is {rare}"
+        if len(few) == 1 and len(many) >= _USUAL:
+            shown, value = few[0]
+            message = f"{shown} is {usual} elsewhere, and this is {rare}"
             reason = f"so it is in {len(many)} places"
             yield context.finding("wrong-value", value, message, reason=reason, severity="warning")
 
