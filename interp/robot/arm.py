@@ -235,6 +235,10 @@ class Arm(Protocol):
         """Return set-points at increasing times, none of them later than now."""
         ...
 
+    def forget(self, time: int) -> None:
+        """Forget the path before a time, which is not asked for again."""
+        ...
+
     def override(self, now: int, percent: float) -> None:
         """Apply a change of $OV_PRO; 0 stops on the path, any other value continues from there."""
         ...

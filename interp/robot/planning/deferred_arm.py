@@ -78,6 +78,11 @@ class DeferredArm:
         """Set-points."""
         return self._arm.sample(times)
 
+    def forget(self, time: int) -> None:
+        """Forget the path before a time."""
+        if self._is_made:
+            self._arm.forget(time)
+
     def override(self, now: int, percent: float) -> None:
         """$OV_PRO changes; an invalid one is reported at once."""
         if self._is_made or not 0.0 <= percent <= 100.0:

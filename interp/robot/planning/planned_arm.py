@@ -8,6 +8,7 @@ the stop as it is.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -213,6 +214,14 @@ class PlannedArm:
             ("motion_end", None) not in passage.taken for plan in plans for passage in plan.passages
         )
 
+    def _oldest(self) -> float:
+        """Return the number of the oldest motion of which a part or an event may lie ahead."""
+        plans = (*(plan for plan in self._brakes if plan is not None), self._plan)
+        sections = [section for plan in plans for section in plan.route[:1]]
+        for passage in (passage for plan in plans for passage in plan.passages[:1]):
+            sections += [section for section, _, _ in passage.parts()]
+        return min((section.number for section in sections), default=math.inf)
+
     def _taken(self, passages: tuple[Passage, ...], event: ArmEvent) -> tuple[Passage, ...]:
         """Return passages without an event; one without events is dropped unless it is the last."""
         found = []
@@ -283,6 +292,10 @@ class PlannedArm:
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:
         """See `interp.robot.arm.Arm.sample`."""
         return self._timeline.sample(np.asarray(times, dtype=np.int64))
+
+    def forget(self, time: int) -> None:
+        """See `interp.robot.arm.Arm.forget`."""
+        self._timeline.forget(time * MICROSECOND, self._oldest())
 
     def path(self) -> tuple[Leg, ...]:
         """Return the legs of the path, from the oldest that is kept to the last planned one.

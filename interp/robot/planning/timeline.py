@@ -150,17 +150,30 @@ class Timeline:
         for leg in legs:
             self.append(leg)
 
+    def forget(self, time: float, number: float) -> None:
+        """Forget the legs before the one at a time, up to the first motion with a number or more.
+
+        A program of 20,000 motions would keep 20,000 curves otherwise.
+        """
+        behind = max(bisect_right(self._begins, time) - 1, 0)
+        while behind > 0 and self.legs[behind - 1].section.number >= number:
+            behind -= 1
+        self._remove(slice(behind))
+
     def _dropped(self, place: int) -> list[Leg]:
         """Remove the legs from an index on, and return them."""
         removed = self.legs[place:]
-        for leg in removed:
+        self._remove(slice(place, None))
+        return removed
+
+    def _remove(self, rows: slice) -> None:
+        for leg in self.legs[rows]:
             own = self._of[leg.section.key]
             own.remove(leg)
             if not own:
                 del self._of[leg.section.key]
-        del self.legs[place:]
-        del self._begins[place:]
-        return removed
+        del self.legs[rows]
+        del self._begins[rows]
 
     def leg_at(self, time: float) -> Leg | None:
         """Return the last leg that begins by a time, or ``None`` if the arm has not moved yet."""

@@ -184,6 +184,7 @@ class Tracking:
         times = np.arange(self._sent + step, until + 1, step, dtype=np.int64)
         self._sent = int(times[-1])
         samples = self._arm.sample(times)
+        self._arm.forget(self._sent)
         try:
             measured = self._robot.follow(samples)
         except RobotFault as fault:

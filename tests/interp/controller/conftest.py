@@ -191,6 +191,9 @@ class SecondArm:
         zeros = np.zeros((len(times), 6))
         return Samples(times, zeros)
 
+    def forget(self, time: int) -> None:
+        """It keeps no path."""
+
     def override(self, now: int, percent: float) -> None:
         """The path clock goes slower."""
         self.percent = percent

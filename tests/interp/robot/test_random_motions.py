@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from interp.robot.arm import Approximation, Place, SplinePart
 from interp.values.faults import Fault
+from tests.interp.robot.conftest import Driver
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.machine_data import MachineData
-    from tests.interp.robot.conftest import Driver
 
 DOCUMENTED = {1102, 1211, 1366, 1447, 1456, 1457, 1458, 1506, 2829}
 """Messages of motions that a random program may well ask for."""
@@ -140,3 +140,34 @@ def test_limits_are_never_exceeded(machine: MachineData, driver: Driver, steps: 
     for leg in driver.arm.path():
         assert leg.profile.lowest >= -1e-6
     driver.check_limits()
+
+
+@settings(
+    phases=[Phase.explicit, Phase.generate],
+)
+@given(steps=st.lists(STEPS, min_size=2, max_size=9))
+def test_forgetting_the_past_changes_nothing(machine: MachineData, steps: list[Any]) -> None:
+    """Events and places are the same whether what was travelled is kept or forgotten."""
+    keeps, forgets = Driver(machine), Driver(machine)
+    for step in steps:
+        for driver in (keeps, forgets):
+            do(driver, step)
+        forgets.arm.forget(forgets.now)
+        assert keeps.arm.position(keeps.now) == forgets.arm.position(forgets.now)
+    for driver in (keeps, forgets):
+        driver.arm.override(driver.now, 100.0)
+    assert keeps.play() == forgets.play()
+    kept, rest = (
+        [(leg.section.key, leg.begins, leg.ends) for leg in driver.arm.path()]
+        for driver in (keeps, forgets)
+    )
+    assert kept[len(kept) - len(rest) :] == rest
+
+
+def test_a_long_path_is_forgotten(driver: Driver) -> None:
+    """Of a path with a thousand motions only the end is kept."""
+    for number in range(1000):
+        driver.move("LIN", {"X": 500.0 + number % 2, "Y": 0.0, "Z": 700.0})
+        driver.play()
+        driver.arm.forget(driver.now)
+    assert {leg.section.number for leg in driver.arm.path()} <= {999, 1000}

@@ -82,6 +82,9 @@ class PacedArm:
         still = np.zeros((len(times), 6))
         return Samples(times, still)
 
+    def forget(self, time: int) -> None:
+        """It keeps no path."""
+
     def override(self, now: int, percent: float) -> None:
         """Only noted."""
         self.calls.append(f"override {percent:g} at {now}")

@@ -38,6 +38,10 @@ class Turning:
         axes[:, 0] = times / 1_000.0
         return Samples(times, axes)
 
+    def forget(self, time: int) -> None:
+        """Note that this time and what comes after it will be asked for."""
+        self.kept = time
+
 
 class Lagging(KinematicRobot):
     """Measures half a degree less, until it fails."""
