@@ -291,19 +291,21 @@ def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
     """Print the failed cases, then the figures."""
     from conformance.evaluation.verdicts import VERDICTS
     from conformance.lint import coverage
+    from reports.rendering.number_format import counted
 
     failed = [one for one in results if one.verdict == "fail"]
     for one in failed[:_SHOWN]:
         _print_failure(one)
     if len(failed) > _SHOWN:
-        typer.echo(f"… and {len(failed) - _SHOWN} more cases failed")
+        typer.echo(f"… and {counted(len(failed) - _SHOWN, 'more case')} failed")
     runs = [result for one in results for result in one.results]
-    counted = {verdict: sum(r.verdict == verdict for r in runs) for verdict in VERDICTS}
-    verdicts = ", ".join(f"{count:,} {verdict}" for verdict, count in counted.items() if count)
+    totals = {verdict: sum(r.verdict == verdict for r in runs) for verdict in VERDICTS}
+    verdicts = ", ".join(f"{count:,} {verdict}" for verdict, count in totals.items() if count)
     rate = len(runs) / seconds if seconds else 0.0
     covered, hard = coverage(one.case for one in results).count(hard=True)
     negative = sum(one.case.is_negative for one in results)
-    typer.echo(f"{len(results):,} cases ({negative:,} negative), {len(runs):,} runs: {verdicts}")
+    cases, done = counted(len(results), "case"), counted(len(runs), "run")
+    typer.echo(f"{cases} ({negative:,} negative), {done}: {verdicts}")
     typer.echo(f"rules that may fail: {covered} of {hard} have a case; {rate:.1f} runs a second")
 
 
