@@ -1,10 +1,12 @@
 """Notes on a finished run: stand-ins, skipped lines, contacts."""
 
+import re
 from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from interp.controller.scheduler import RunOutcome
     from interp.controller.state.trace import TraceEvent
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
@@ -37,8 +39,21 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     if done.outcome.ending == "time" and setup.patience <= done.outcome.time < setup.until:
         stood = f"{setup.patience / 1e6:g} s"
         yield f"the arm has stood still for {stood}; --until S goes on for longer"
-    for line in dict.fromkeys(done.controller.unfulfilled) if done.outcome.ending == "time" else ():
-        yield f"waited for: {line}"
+    if done.outcome.ending == "time":
+        for line in dict.fromkeys(done.controller.unfulfilled):
+            yield f"waited for: {line}"
+        if not done.controller.automatic_inputs.is_on:
+            yield from _waiting(done.outcome, program)
+
+
+def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:
+    """Yield the WAIT FOR at which a run without automatic inputs ended."""
+    at = outcome.at
+    for unit in program.units.values():
+        if at is not None and unit.module.path == at.file:
+            text = unit.source.line(at.line).strip()
+            if re.match(r"WAIT\s+FOR\b", text, re.IGNORECASE):
+                yield f"waited for: {text}; --io auto fulfils waits, --io SCRIPT sets inputs"
 
 
 def refused(done: "RunResult") -> Iterator["TraceEvent"]:

@@ -154,6 +154,13 @@ def test_automatic_inputs(run: Run) -> None:
     )
 
 
+def test_a_wait_without_inputs_is_shown(run: Run) -> None:
+    """If nothing sets inputs, a run that ends in a WAIT FOR says so, and what could set them."""
+    _, _, err = run("wait  for $IN[3]\n", "--until", "1")
+    assert "waited for: wait for $IN[3]; --io auto fulfils waits, --io SCRIPT sets inputs\n" == err
+    assert "" == run("WAIT SEC 9\n", "--until", "1")[2]
+
+
 def test_programs_that_only_serve_end(run: Run) -> None:
     """Once the arm has stood for 20 s, WAIT SEC not counted; --until runs on."""
     body = "PTP {A1 9,A2 -90,A3 90,A4 0,A5 0,A6 0}\nWAIT SEC 100\n"
