@@ -36,7 +36,7 @@ def run(*arguments: object) -> int:
 def test_own_case_passes(capsys: pytest.CaptureFixture[str]) -> None:
     """A case of the project by its name; status 0."""
     assert 0 == run("control/exit_for", "--executor", "tree", "--robot", "none")
-    assert "1 cases (0 negative), 1 runs: 1 pass" in capsys.readouterr().out
+    assert "1 case (0 negative), 1 run: 1 pass" in capsys.readouterr().out
 
 
 def test_failure_is_reported_and_gives_status_1(
