@@ -329,6 +329,9 @@ MISSING_RUN = 3
 ALIKE_SHARE = 0.5
 #: Words so alike from which on one form reads them all. Not measured.
 ALIKE_WORDS = 3
+#: How often a word stands behind the first word of a line, as a share of how often it begins one,
+#: from which on it is no statement of its own. Not measured.
+INNER_SHARE = 0.1
 #: What a level counts by which operators bind weaker than they need, in symbols. Not measured.
 LEVEL_SYMBOLS = 12
 #: Alternatives from which on a rule of words is the list of all of them. Not measured.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 from random import Random
 
 from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.language import CorpusFile
+from recovery.tuning import INNER_SHARE
 
 
 def held_out(
@@ -51,6 +53,13 @@ class CorpusLines:
             frozenset[str]().union(*(files[place].origins for place in having[n]))
             for n in range(len(self.lines))
         ]
+
+    @cached_property
+    def inner_words(self) -> frozenset[str]:
+        """Lexemes that often stand behind the first one of a line, as names of types do."""
+        first = Counter(line[0] for line in self.lines)
+        later = Counter(word for line in self.lines for word in line[1:])
+        return frozenset(word for word in first if later[word] >= INNER_SHARE * first[word])
 
 
 def _lines(text: str, lexer: Lexer) -> Iterable[tuple[str, ...]]:

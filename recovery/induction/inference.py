@@ -34,17 +34,19 @@ class Inference:
         origins: Sequence[Collection[str]],
         blocks: Sequence[BlockLines] = (),
         prefixes: frozenset[str] = frozenset(),
+        inner_words: frozenset[str] = frozenset(),
         least: int = 1,
     ) -> None:
         """``contexts`` as of `LineSymbols`, ``origins`` and ``least`` as of `SupportedForms`.
 
         ``blocks`` are those of the corpus that the grammar does not have, ``prefixes`` words that
-        may be missing at the head of a line.
+        may be missing at the head of a line, ``inner_words`` those that often follow another word.
         """
         self._at = LineSymbols(recognizer, lines, contexts)
         self._forms = SupportedForms(self._at, origins, least)
         self._blocks = blocks
         self._prefixes = prefixes
+        self._inner_words = inner_words
         self.profile = self._at.profile
 
     def inner(self) -> Iterator[Inferred]:
@@ -58,5 +60,7 @@ class Inference:
         hosts = LineHosts(self._at)
         blocks = BlockEdits(self._at, self._forms, hosts, self._blocks)
         yield from blocks.edits()
-        lines = LineEdits(self._at, self._forms, hosts, self._prefixes, blocks.words)
+        lines = LineEdits(
+            self._at, self._forms, hosts, self._prefixes, self._inner_words, blocks.words
+        )
         yield from lines.edits()

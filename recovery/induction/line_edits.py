@@ -28,16 +28,19 @@ class LineEdits:
         forms: SupportedForms,
         hosts: LineHosts,
         prefixes: frozenset[str],
+        inner_words: frozenset[str],
         block_words: frozenset[str],
     ) -> None:
         """``prefixes`` are words that may be missing at the head of a line.
 
-        Lines that one of the ``block_words`` begins are left to blocks.
+        ``inner_words`` often follow another word, as those of types do. Lines that one of the
+        ``block_words`` begins are left to blocks.
         """
         self.at = at
         self.forms = forms
         self.hosts = hosts
         self._prefixes = prefixes
+        self._types = at.rules.type_words | inner_words
         self._block_words = block_words
         self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
 
@@ -145,8 +148,8 @@ class LineEdits:
                 gathered[hosts].append((head, members, tails))
         for hosts, heads in gathered.items():
             # around each word those that have most kinds of tail in common with it
-            # of words that begin statements too those of types are no others
-            types = self.at.rules.type_words if self.hosts.has_statements(hosts) else frozenset()
+            # where statements are, words of types are no others
+            types = self._types if self.hosts.has_statements(hosts) else frozenset()
             for head, _, tails in heads:
                 alike = [
                     h

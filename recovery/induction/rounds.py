@@ -167,8 +167,9 @@ class Induction:
         self._prefixes = prefixes = keywords.prefixes()
         blocks = [] if inner else blocks_of(keywords.corpus, keywords, recognizer, prefixes)
         having = [line.origins for line in known]
+        inner_words = keywords.corpus.inner_words
         inference = Inference(
-            recognizer, table.patterns, contexts, having, blocks, prefixes, least[0]
+            recognizer, table.patterns, contexts, having, blocks, prefixes, inner_words, least[0]
         )
         trial = EditTrial(recognizer, table.patterns)
         # a rule of that name may be something else
