@@ -75,10 +75,13 @@ class LineHosts:
         return called <= self.at.rules.within_lines
 
     def of(self, number: int) -> tuple[str, ...]:
-        """Rules that a line could be where it begins, those that end with a line end last."""
+        """Rules that a line could be where it begins, those that end with a line end last.
+
+        Where all alternatives of a rule are blocks, no line alone is another one.
+        """
         before = self.at.lines[number].form.before
         if before not in self._hosts_of:
-            entered = self.entered(number)
+            entered = self.entered(number) - self.at.profile.of_blocks
             lines = sorted(entered & self.at.profile.of_lines)
             self._hosts_of[before] = tuple(sorted(entered & self._whole_lines) + lines)
         return self._hosts_of[before]

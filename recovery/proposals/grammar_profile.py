@@ -90,19 +90,21 @@ class GrammarProfile:
     @cached_property
     def of_lines(self) -> frozenset[str]:
         """Rules whose alternatives end with a line end, or are all blocks."""
+        ending = {rule.name for rule in self.grammar.rules if self.closing(rule.name)}
+        return (ending | self.of_blocks) - self.line_ends
+
+    @cached_property
+    def of_blocks(self) -> frozenset[str]:
+        """Rules whose alternatives are all blocks."""
         return frozenset(
             rule.name
             for rule in self.grammar.rules
             if not rule.is_lexer
-            and rule.name not in self.line_ends
-            and (
-                self.closing(rule.name)
-                or all(
-                    len(a.elements) == 1
-                    and isinstance(e := a.elements[0], Reference)
-                    and e.name in self.blocks
-                    for a in rule.alternatives
-                )
+            and all(
+                len(a.elements) == 1
+                and isinstance(e := a.elements[0], Reference)
+                and e.name in self.blocks
+                for a in rule.alternatives
             )
         )
 
