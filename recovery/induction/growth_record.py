@@ -13,6 +13,7 @@ from typing import Any
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, apply, describe, to_data
 from grammar.notation.model import Grammar, GrammarError
+from grammar.notation.rebase import rebased
 from grammar.notation.wellformed import problem
 from recovery.induction.steps import Reading, Refused, Round, Taken
 from recovery.ledger.construct import Construct, Evidence
@@ -87,23 +88,40 @@ def without(
 ) -> tuple[list[Construct], list[Construct]]:
     """Return the constructs that remain after some are struck out, and those removed with them.
 
-    Constructs that no longer apply are removed, too; the numbers are assigned again.
+    Constructs that no longer apply are removed, too. The others are numbered again, and their edits
+    have the addresses of the same places in the remaining grammar.
     """
     wanted = set(struck)
     left: list[Construct] = []
     gone: list[Construct] = []
-    grammar = start
+    whole = grammar = start
     for construct in constructs:
-        try:
-            after = grammar if construct.id in wanted else apply(grammar, construct.edits)
-        except GrammarError:
-            after = grammar
-        if after is grammar or problem(after):
+        kept = None if construct.id in wanted else _rebased(construct, whole, grammar)
+        whole = apply(whole, construct.edits)
+        if kept is None:
             gone.append(construct)
         else:
-            grammar = after
-            left.append(replace(construct, number=len(left) + 1))
+            edits, grammar = kept
+            left.append(replace(construct, number=len(left) + 1, edits=edits))
     return left, gone
+
+
+def _rebased(
+    construct: Construct, whole: Grammar, grammar: Grammar
+) -> tuple[tuple[Edit, ...], Grammar] | None:
+    """Return the edits of a construct of ``whole`` for another grammar, and the result of these.
+
+    ``None`` if they do not apply to it.
+    """
+    edits: list[Edit] = []
+    after = grammar
+    try:
+        for edit in construct.edits:
+            edits.append(rebased(edit, whole, after))
+            whole, after = apply(whole, [edit]), apply(after, edits[-1:])
+    except GrammarError:
+        return None
+    return None if after is grammar or problem(after) else (tuple(edits), after)
 
 
 def without_some(

@@ -91,7 +91,7 @@ class GrammarProfile:
     def of_lines(self) -> frozenset[str]:
         """Rules whose alternatives end with a line end, or are all blocks."""
         ending = {rule.name for rule in self.grammar.rules if self.closing(rule.name)}
-        return (ending | self.of_blocks) - self.line_ends
+        return self.of_blocks.union(ending) - self.line_ends
 
     @cached_property
     def of_blocks(self) -> frozenset[str]:
