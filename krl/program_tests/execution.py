@@ -241,11 +241,11 @@ def _check_called(expected: str, program: CheckedProgram) -> None:
 
 
 def _stood_in(program: CheckedProgram, done: RunResult) -> Iterator[str]:
-    """Yield a note with the called routines that are in no file, if there are any."""
-    lacking = {one.name.upper() for one in program.stand_ins}
+    """Yield a note with the missing routines that were called and did nothing, if any."""
+    lacking = {one.name.upper() for one in program.stand_ins if one.origin != "library"}
     called = (event.fields["name"] for event in done.events if event.kind == "call")
     if names := [name for name in dict.fromkeys(called) if str(name).upper() in lacking]:
-        yield f"    note:     in no file, so calls had no effect: {', '.join(names)}"
+        yield f"    note:     missing, so calls did nothing: {', '.join(names)}"
 
 
 def _failure(

@@ -59,10 +59,14 @@ def test_a_failure_says_what_was_expected_and_seen(run: Run) -> None:
 
 
 def test_a_failure_names_called_routines_that_no_file_has(run: Run, tmp_path: Path) -> None:
-    """A message that an option package would have shown is not looked for in vain."""
-    (tmp_path / "tell.src").write_text('DEF tell()\n  MsgNotify("part")\nEND\n', encoding="utf-8")
+    """A message that an option package would have shown is not looked for in vain.
+
+    BAS is not named, as its stand-in does what it does on controllers.
+    """
+    text = 'DEF tell()\n  BAS(#INITMOV, 0)\n  MsgNotify("part")\nEND\n'
+    (tmp_path / "tell.src").write_text(text, encoding="utf-8")
     outcomes = run("program = 'tell.src'\n[[test]]\nname = 'a'\nexpect = ['message 1']\n")
-    note = "    note:     in no file, so calls had no effect: MSGNOTIFY"
+    note = "    note:     missing, so calls did nothing: MSGNOTIFY"
     assert outcomes["a"].failures[-1] == note
 
 
