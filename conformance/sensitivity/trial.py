@@ -293,11 +293,13 @@ def _tried(fault: _Fault, cases: _Candidates, executor: str) -> Trial[_Fault]:
         os.close(reading)
         _in_fork(fault, cases, executor, writing)
     os.close(writing)
-    outcome: dict[str, Any] = {"fate": "survived"}
+    outcome: dict[str, Any] = {}
     with os.fdopen(reading, "rb") as received:
         while received.peek(1):
             outcome = pickle.load(received)
     os.waitpid(child, 0)
+    if not outcome:
+        raise RuntimeError(f"{fault.name}: its process ended before the first case")
     return Trial(fault, reached=cases.reached, sure=cases.sure, **outcome)
 
 
@@ -331,7 +333,9 @@ def _outcomes(fault: SeededFault, cases: _Candidates, executor: str) -> Iterator
     """
     import resource  # not on every system
 
-    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.RLIM_INFINITY))
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)  # nobody may raise it again
+    most = _MEMORY if hard == resource.RLIM_INFINITY else min(_MEMORY, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (most, hard))
     runs, changed = 0, ""
     differing: list[tuple[Case, Observation]] = []
     setups = [Setup(executor, _ROBOT)]
