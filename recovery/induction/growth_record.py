@@ -11,11 +11,11 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
-from grammar.notation.edits import AddAlternative, AddToken, Edit, apply, describe, to_data
+from grammar.notation.edits import AddAlternative, AddToken, Edit, apply
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.rebase import rebased
 from grammar.notation.wellformed import problem
-from recovery.induction.steps import Reading, Refused, Round, Taken
+from recovery.induction.steps import Reading, Refused, Round, Taken, described
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force
@@ -46,7 +46,7 @@ class Growth:
                     {
                         "id": construct.id,
                         "title": step.title,
-                        "edits": _described(before, construct.edits),
+                        "edits": _short(before, construct.edits),
                         "files": step.evidence.files,
                         "origins": step.evidence.origins,
                         "lines": step.evidence.lines,
@@ -148,20 +148,14 @@ def _reading(reading: Reading) -> dict[str, int]:
     return {"parsed": reading.parsed, "files": reading.files, "failing": reading.failing}
 
 
-def _described(grammar: Grammar, edits: Iterable[Edit]) -> list[str]:
-    out = []
-    for edit in edits:
-        try:
-            out.append(describe(grammar, edit)[:_LONGEST_EDIT])
-        except (GrammarError, KeyError, IndexError):  # its place is of an edit before it
-            out.append(str(to_data(edit))[:_LONGEST_EDIT])
-    return out
+def _short(grammar: Grammar, edits: Iterable[Edit]) -> list[str]:
+    return [text[:_LONGEST_EDIT] for text in described(grammar, edits)]
 
 
 def _refused(grammar: Grammar, refused: Refused) -> dict[str, Any]:
     return {
         "title": refused.title,
-        "edits": _described(grammar, refused.edits),
+        "edits": _short(grammar, refused.edits),
         "gain": round(refused.gain, 1),
         "reason": refused.reason,
     }

@@ -23,7 +23,7 @@ from grammar.notation.edits import (
     Widen,
     apply,
 )
-from grammar.notation.model import Grammar
+from grammar.notation.model import Grammar, GrammarError
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
@@ -38,7 +38,16 @@ from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.shown_files import Failures, ShownFiles, reading
-from recovery.induction.steps import Evidence, Inferred, Reading, Refused, Round, Taken, joined
+from recovery.induction.steps import (
+    Evidence,
+    Inferred,
+    Reading,
+    Refused,
+    Round,
+    Taken,
+    described,
+    joined,
+)
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
 from recovery.induction.would_be_keywords import WouldBeKeywords, names_read
 from recovery.language import CorpusFile, Language
@@ -309,26 +318,21 @@ class Induction:
         taken: list[Taken] = []
         refused: dict[str, Refused] = {}
         had = {recognizer.grammar.sha256}
+        tried: set[tuple[str, ...]] = set()  # without numbers of alternatives, which a fold changes
         found = folds_of(GrammarView(recognizer, operands, self._prefixes))
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
-            grammar = review.recognizer.grammar
-            reason = review.objection(grammar, fold.edits, fold.edits)
-            if not reason:
-                shorter = apply(grammar, fold.edits)
-                narrower = Recognizer(shorter)
-                if size(shorter) >= size(grammar) + fold.breadth:
-                    reason = "the grammar would not be shorter"
-                elif shorter.sha256 in had:
-                    reason = "has been so before"
-                elif not all(map(narrower.accepts, review.texts)):
-                    reason = "loses lines that can be read"
-            if reason:
-                refused[fold.title] = Refused(fold.title, fold.edits, 0.0, reason)
+            words = described(review.recognizer.grammar, fold.edits)
+            if words in tried:
+                continue
+            tried.add(words)
+            narrower = _narrower(review, fold, had)
+            if isinstance(narrower, str):
+                refused[fold.title] = Refused(fold.title, fold.edits, 0.0, narrower)
                 continue
             taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
-            had.add(shorter.sha256)
+            had.add(narrower.grammar.sha256)
             review = replace(review, recognizer=narrower)
             found = folds_of(GrammarView(narrower, operands, self._prefixes))
         kept, lost = self.shown.kept(self.grammar, taken, self._names)
@@ -377,6 +381,29 @@ class Induction:
             return None
         self._corpus = self._keywords = None
         return step
+
+
+def _narrower(review: EditReview, fold: Inferred, had: Set[str]) -> Recognizer | str:
+    """Return the recogniser of the grammar after a fold, or why the fold must not be taken.
+
+    ``had`` are the digests of earlier grammars. What takes least time is examined first, because
+    most folds are refused.
+    """
+    grammar = review.recognizer.grammar
+    try:
+        shorter = apply(grammar, fold.edits)
+    except GrammarError as error:
+        return str(error)
+    if size(shorter) >= size(grammar) + fold.breadth:
+        return "the grammar would not be shorter"
+    if shorter.sha256 in had:
+        return "has been so before"
+    if reason := review.objection(grammar, fold.edits, fold.edits):
+        return reason
+    narrower = Recognizer(shorter)
+    if not all(map(narrower.accepts, review.texts)):
+        return "loses lines that can be read"
+    return narrower
 
 
 def _size(edit: Edit) -> int:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from grammar.notation.edits import AddAlternative, AddToken, Edit
+from grammar.notation.edits import AddAlternative, AddToken, Edit, describe, to_data
+from grammar.notation.model import Grammar, GrammarError
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,3 +81,15 @@ def joined(steps: Sequence[Taken]) -> list[Edit]:
         if not (isinstance(edit, AddToken | AddAlternative) and edit in found):
             found.append(edit)
     return found
+
+
+def described(grammar: Grammar, edits: Iterable[Edit]) -> tuple[str, ...]:
+    """Return a line for each edit, with the text that it changes instead of its address."""
+
+    def line(edit: Edit) -> str:
+        try:
+            return describe(grammar, edit)
+        except (GrammarError, KeyError, IndexError):  # its place is of an edit before it
+            return str(to_data(edit))
+
+    return tuple(map(line, edits))

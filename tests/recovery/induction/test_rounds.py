@@ -16,6 +16,7 @@ from grammar.notation.edits import (
     MakeOptional,
     RemoveAlternative,
     RemoveRule,
+    Replace,
     apply,
 )
 from grammar.notation.g4 import read, read_file
@@ -29,7 +30,7 @@ from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import Evidence, Inferred, Refused, Taken
+from recovery.induction.steps import Evidence, Inferred, Refused, Taken, described
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -485,7 +486,7 @@ import json, sys
 from grammar.notation.g4 import read
 from recovery.language import CorpusFile
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import Evidence, Inferred, Refused, Taken
+from recovery.induction.steps import Evidence, Inferred, Refused, Taken, described
 from recovery.negatives.negatives import NegativeSet
 start, files = json.load(sys.stdin)
 shown = [CorpusFile(path, text, frozenset(origins)) for path, text, origins in files]
@@ -562,3 +563,15 @@ def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> 
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
     last = _grown(toy, files).rounds[-1]["refused"]
     assert ["has been so before"] == [refused["reason"] for refused in last]
+
+
+def test_edits_are_described_without_their_address() -> None:
+    """A fold that was refused is known again after others have changed the numbers."""
+    whole, rest = (
+        read(f"grammar G;\nr\n    : {rows}\n    ;\nA : 'A' ;\nB : 'B' ;\n")
+        for rows in ("A B | B | A", "B | A")
+    )
+    edits = (Replace("r", (2, 1), "A"), RemoveAlternative("r", 3))
+    later = (Replace("r", (1, 1), "A"), RemoveAlternative("r", 2))
+    assert described(whole, edits) == described(rest, later)
+    assert described(whole, edits) != described(whole, later)
