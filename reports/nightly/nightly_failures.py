@@ -2,7 +2,7 @@
 
 A failure is: a step that did not end; a case that fails on any executor and robot; a case of an
 unsure rule that passed in the previous run; a violated law; executors that diverge on a random
-program.
+program; a planted fault that no case notices.
 """
 
 from collections.abc import Iterator, Mapping
@@ -50,6 +50,7 @@ def failures(
         *(one for name in _CONFORM for one in _no_longer_passing(name, made, before or {})),
         *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
         *_programs(made.get("fuzz", {})),
+        *_unnoticed(made.get("bench-conform", {})),
     ]
 
 
@@ -58,6 +59,13 @@ def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
         status = text(step, "status")
         if status not in _FINE:
             yield Failure(what=f"step {name}: {status}", page="", command="")
+
+
+def _unnoticed(bench: Record) -> Iterator[Failure]:
+    for one in records(bench, "survivors"):
+        fault = text(one, "fault")
+        what = f"no case notices the planted fault: {text(one, 'group')}: {fault}"
+        yield Failure(what=what, page="", command=f'krl conform --fault "{fault}"')
 
 
 def failed_cases(step: str, record: Record) -> list[str]:

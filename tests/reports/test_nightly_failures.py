@@ -61,6 +61,13 @@ _DIVERGENCE = {
             "",
             "krl fuzz --programs 9 --seed 4",
         ),
+        (
+            "bench-conform",
+            {"survivors": [{"group": "triggers", "fault": "none fires", "runs": 0}]},
+            "no case notices the planted fault: triggers: none fires",
+            "",
+            'krl conform --fault "none fires"',
+        ),
     ],
 )
 def test_each_step_can_fail(
