@@ -66,9 +66,9 @@ KRL = Language(
 
 
 def language_of(suffix: str) -> Language:
-    """A language of which nothing is known but how the names of its files end.
+    """Return a language of which only the suffix of its files is known.
 
-    The folders in a root are an origin each; files in the root itself belong to the root.
+    Each folder in a root is an origin; files in the root itself belong to the root.
     """
 
     def source(roots: Sequence[Path]) -> Iterable[tuple[str, str, bytes, str]]:

@@ -167,10 +167,10 @@ def _names(edits: Sequence[Edit], mutant: Mutant, whole: Grammar) -> bool:
 
 
 def _same_place(edits: Sequence[Edit], mutant: Mutant) -> bool:
-    """Whether an edit is where something was taken out: same rule, same place in it.
+    """Return whether an edit is in the rule and at the place where something was removed.
 
-    A taken alternative comes back as an alternative of that rule; a taken part between the
-    elements it was between.
+    A removed alternative is replaced by an alternative of that rule, a removed part between the
+    elements on both sides of it.
     """
     edit = edits[-1]
     for removed in mutant.edits:

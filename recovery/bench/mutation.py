@@ -42,7 +42,7 @@ class Mutant:
         )
 
     def title(self, whole: Grammar) -> str:
-        """What was taken out, in readable words."""
+        """Return what was removed, in words."""
         return f"{self.kind}: " + "; ".join(describe(whole, e) for e in self.edits[:2])
 
 

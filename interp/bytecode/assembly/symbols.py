@@ -28,7 +28,7 @@ class Symbols:
     # ------------------------------------------------------------------------------ types
 
     def add_type(self, line: Line, type_: Structure | Enumeration) -> None:
-        """A structure or an enumeration gets its name and number."""
+        """Name and number a structure or an enumeration."""
         if type_.name.upper() in self._named:
             raise line.error(f"there is a type {type_.name} already")
         size(type_)
@@ -36,7 +36,7 @@ class Symbols:
         self.number_of(type_)
 
     def number_of(self, type_: Type) -> int:
-        """The number of a type; an array type that is not there yet gets one."""
+        """Return the number of a type; a new array type is added."""
         number = self._numbers.get(type_)
         if number is None:
             number = self._numbers[type_] = len(self.types)
@@ -44,7 +44,7 @@ class Symbols:
         return number
 
     def type_named(self, line: Line, is_element: bool = False) -> Type:
-        """A type; with ``is_element`` one whose brackets, if any follow, belong to a view."""
+        """Read a type; with ``is_element``, brackets after it belong to a view."""
         name = line.name()
         found = self._named.get(name.upper())
         if found is None:
@@ -60,11 +60,11 @@ class Symbols:
         return found
 
     def type_number(self, line: Line) -> int:
-        """The number of a type."""
+        """Read a type and return its number."""
         return line.integer(0) if line.found("#") else self.number_of(self.type_named(line))
 
     def handed_over(self, line: Line, mode: Mode) -> tuple[int, int]:
-        """The type of an argument, and how many dimensions it has as a view."""
+        """Read the type of an argument; return its number, and the dimensions if it is a view."""
         if line.found("#"):
             type_ = line.integer(0)
         else:
@@ -81,20 +81,20 @@ class Symbols:
     # ----------------------------------------------------------------- texts and entries
 
     def add_label(self, line: Line, section: str, number: int) -> None:
-        """A text or an entry gets its name."""
+        """Name a text or an entry."""
         name = line.name()
         if name in self._labels[section]:
             raise line.error(f"there is a {section} {name} already")
         self._labels[section][name] = number
 
     def labelled(self, line: Line, section: str) -> int:
-        """The number of a text or an entry."""
+        """Read the name of a text or an entry and return its number."""
         return looked_up(line, line.name(), self._labels[section], section)
 
     # --------------------------------------------------------------------------- constants
 
     def constant(self, line: Line, type_: int) -> int:
-        """A constant of an enumeration, by its name or its place."""
+        """Read a constant of an enumeration, by its name or index, and return its index."""
         if line.found("#"):
             return line.integer()
         enumeration = self.types[type_] if type_ < len(self.types) else None
@@ -103,18 +103,18 @@ class Symbols:
     # --------------------------------------------------------------------------- variables
 
     def add_variable(self, line: Line, module: str, label: Key, address: int, type_: Type) -> None:
-        """A variable of a data list gets its address."""
+        """Give a variable of a data list its address."""
         if (module.upper(), key(label)) in self._places:
             raise line.error(f"there is a variable {module}.{label[0]} already")
         self._places[module.upper(), key(label)] = address, type_
 
     def data_place(self, line: Line) -> int:
-        """The address of a part of a variable."""
+        """Read a part of a variable and return its address."""
         address, type_ = self._places[self._variable(line)]
         return address + part_offset(line, type_)
 
     def data_number(self, line: Line) -> int:
-        """The number of a variable among the data."""
+        """Read a variable and return its number among the data."""
         return list(self._places).index(self._variable(line))
 
     def _variable(self, line: Line) -> tuple[str, Key]:
@@ -128,7 +128,7 @@ class Symbols:
     # ------------------------------------------------------------------------ code objects
 
     def code_number(self, line: Line) -> int:
-        """The number of a code object, which may come later."""
+        """Read the name of a code object and return its number; it may be defined later."""
         if line.found("#"):
             return line.integer(0)
         label = line.label()
@@ -139,7 +139,7 @@ class Symbols:
 
 
 def _announced(lines: Sequence[Line]) -> dict[Key, int]:
-    """The code objects, which can be named before they come."""
+    """Return the numbers of the code objects, which may be used before they are defined."""
     found: dict[Key, int] = {}
     for line in lines:
         if line.found("code"):
@@ -152,7 +152,7 @@ def _announced(lines: Sequence[Line]) -> dict[Key, int]:
 
 
 def part_offset(line: Line, type_: Type) -> int:
-    """What follows the name of a variable, ``.X[1,2]``, as the offset of that part."""
+    """Read what follows the name of a variable, ``.X[1,2]``; return the offset of that part."""
     path: list[str | int] = []
     while True:
         if line.found("."):
@@ -171,14 +171,14 @@ def part_offset(line: Line, type_: Type) -> int:
 
 
 def looked_up(line: Line, name: str, known: Mapping[str, int], what: str) -> int:
-    """The number of a name, which must be known."""
+    """Return the number of a name; raise `AssemblyError` if it is unknown."""
     if name not in known:
         raise line.error(f"there is no {what} {name}")
     return known[name]
 
 
 def constant_word(line: Line, kind: Type) -> int:
-    """The word of a constant of this kind."""
+    """Read a constant of a kind and return its word."""
     if line.has("real"):
         return line.real()
     if line.found("!"):
@@ -189,7 +189,7 @@ def constant_word(line: Line, kind: Type) -> int:
 
 
 def constant_place(line: Line, type_: Type | None) -> int:
-    """The place of the constant that is named next."""
+    """Read a constant of an enumeration and return its index."""
     name = line.name().upper()
     if isinstance(type_, Enumeration):
         for place, constant in enumerate(type_.constants):

@@ -70,12 +70,12 @@ class Line:
         self._next = 0
 
     def error(self, message: str) -> AssemblyError:
-        """An error on this line, to be raised."""
+        """Return an error on this line, for the caller to raise."""
         return AssemblyError(self.number, message)
 
     @property
     def is_done(self) -> bool:
-        """Whether nothing is left."""
+        """Return whether all tokens are read."""
         return self._next == len(self._tokens)
 
     def restart(self) -> None:
@@ -83,11 +83,11 @@ class Line:
         self._next = 0
 
     def peek(self) -> Token | None:
-        """The next token, which stays."""
+        """Return the next token without reading it."""
         return None if self.is_done else self._tokens[self._next]
 
     def take(self, kind: str, what: str) -> str:
-        """The next token, which must be of that kind; ``what`` is what it should have been."""
+        """Read a token of a kind; ``what`` names it in the error message."""
         token = self.peek()
         if token is None:
             raise self.error(f"{what} is missing")
@@ -111,12 +111,12 @@ class Line:
             raise self.error(f"{text} is needed" + (f", not {token.text}" if token else ""))
 
     def has(self, kind: str) -> bool:
-        """Whether the next token is of that kind."""
+        """Return whether the next token is of a kind."""
         token = self.peek()
         return token is not None and token.kind == kind
 
     def string(self) -> str:
-        """A text."""
+        """Read a text."""
         written = self.take("string", "a text")
         try:
             text: str = json.loads(written)
@@ -126,7 +126,7 @@ class Line:
         return text
 
     def integer(self, low: int = -(2**31), high: int = 2**31 - 1) -> int:
-        """A number of 32 bits."""
+        """Read a number of 32 bits."""
         written = self.take("int", "a number")
         number = int(written) if len(written) <= 12 else high + 1
         if not low <= number <= high:
@@ -134,18 +134,18 @@ class Line:
         return number
 
     def real(self) -> int:
-        """The bits of a REAL."""
+        """Read a REAL and return its bits."""
         bits = real_word(self.take("real", "a REAL"))
         if bits is None:
             raise self.error("the REAL is too large")
         return bits
 
     def name(self) -> str:
-        """A name, written plainly or as a text."""
+        """Read a name, which may be quoted."""
         return self.string() if self.has("string") else self.take("word", "a name")
 
     def label(self) -> Label:
-        """A name with its number."""
+        """Read a name with its number."""
         name = self.name()
         return (name, self.integer(1) if self.found("@") else 1)
 
@@ -157,7 +157,7 @@ class Line:
 
 
 def split(text: str) -> list[Line]:
-    """The lines of a text that hold tokens."""
+    """Return the lines of a text that contain tokens."""
     lines = []
     for number, written in enumerate(text.splitlines(), start=1):
         tokens = []
@@ -173,7 +173,7 @@ def split(text: str) -> list[Line]:
 
 
 def real_word(text: str) -> int | None:
-    """The bits of a REAL as written; ``None`` where it is too large."""
+    """Return the bits of a REAL as written; ``None`` if it is too large."""
     if text.startswith("real:"):
         bits = int(text[5:], 16)
         return bits - 2**32 if bits >= 2**31 else bits
@@ -189,12 +189,12 @@ _PLAIN = re.compile(r"[A-Za-z_$%][\w$%]*", re.ASCII)
 
 
 def string_text(text: str) -> str:
-    """A text as it is written."""
+    """Return a text as it is written."""
     return json.dumps(text)
 
 
 def real_text(bits: int) -> str:
-    """A REAL by its bits as it is written."""
+    """Return a REAL, given by its bits, as it is written."""
     number = real_of(bits)
     if not math.isfinite(number):
         return f"real:{bits & 0xFFFFFFFF:08x}"
@@ -206,12 +206,12 @@ def real_text(bits: int) -> str:
 
 
 def name_text(name: str) -> str:
-    """A name as it is written."""
+    """Return a name as it is written."""
     return name if _PLAIN.fullmatch(name) else string_text(name)
 
 
 def path_text(path: Path) -> str:
-    """What follows a name: ``.X[1,2]``."""
+    """Return what follows a name, such as ``.X[1,2]``."""
     text = ""
     for step in path:
         if isinstance(step, str):
@@ -224,7 +224,7 @@ def path_text(path: Path) -> str:
 
 
 def labels(names: Iterable[str]) -> list[Label]:
-    """A label for each name, which differ in more than letter case."""
+    """Return a label for each name; labels differ in more than letter case."""
     seen: Counter[str] = Counter()
     found = []
     for name in names:
@@ -234,11 +234,11 @@ def labels(names: Iterable[str]) -> list[Label]:
 
 
 def key(label: Label) -> Key:
-    """The label with letter case left aside."""
+    """Return a label without its letter case."""
     return label[0].upper(), label[1]
 
 
 def label_text(label: Label) -> str:
-    """A label as it is written: ``NAME``, and from the second of a name on ``NAME@2``."""
+    """Return a label as it is written: ``NAME``, or ``NAME@2`` for the second of a name."""
     name, number = label
     return name_text(name) + (f"@{number}" if number > 1 else "")

@@ -92,7 +92,10 @@ class EffectStep:
 
 
 def steps_of(operands: Mapping[str, str], checks: str, effect: str) -> tuple[EffectStep, ...]:
-    """The steps of an instruction, whose ``operands`` are kinds by names; `ValueError` if wrong."""
+    """Return the steps of an instruction, given the kinds of its operands by name.
+
+    Raises `ValueError` for an invalid notation.
+    """
     takes, mark, leaves = effect.partition("--")
     if not mark:
         raise ValueError(f"{effect!r} has no --")

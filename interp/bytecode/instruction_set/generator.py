@@ -101,14 +101,14 @@ def _entry(one: Shape, kinds: list[str]) -> str:
 
 
 def _flag_test(flag: str, meaning: str) -> Iterator[str]:
-    """A function in C that is true for the instructions with a flag."""
+    """Yield a function in C that is true for the instructions with a flag."""
     yield from (f"/* {meaning} */", f"static inline int krl_{flag}(uint32_t op)", "{")
     names = [f"op == KRL_{one.name}" for one in instructions() if flag in one.flags]
     yield from (f"    return {' || '.join(names)};", "}", "")
 
 
 def _operand_ranges() -> str:
-    """The cases of a switch: whether an operand of a kind names something."""
+    """Return the cases of a switch in C that checks whether an operand is in range."""
     lines = [f"/* {_MADE_BY}. */"]
     for name, kind in OPERAND_KINDS.items():
         if name in _CHECKED_ELSEWHERE or kind.least is None:
@@ -123,7 +123,7 @@ def _operand_ranges() -> str:
 
 
 def stack_effects_in_c(shapes: Sequence[Shape]) -> str:
-    """The cases of a switch: the steps of the verifier for each instruction."""
+    """Return the cases of a switch in C: the steps of the verifier for each instruction."""
     cases: dict[tuple[str, ...], list[str]] = {}
     for one in shapes:
         cases.setdefault(tuple(_statements(one)), []).append(one.name)
@@ -174,7 +174,7 @@ def _rows() -> str:
 
 
 def _document(text: str) -> str:
-    """The document with its tables as they have to be."""
+    """Return the document with up-to-date tables."""
     before, begin, rest = text.partition(_BEGIN)
     _, end, after = rest.partition(_END)
     if not begin or not end:
@@ -183,7 +183,7 @@ def _document(text: str) -> str:
 
 
 def products() -> Mapping[Path, str]:
-    """The files that are generated, with what has to be in them."""
+    """Return the text of each generated file."""
     native = _ROOT / "interp" / "native"
     document = _ROOT / "docs" / "bytecode.md"
     return {
@@ -196,7 +196,7 @@ def products() -> Mapping[Path, str]:
 
 
 def outdated() -> list[str]:
-    """The files that are not what the table says, by their paths in the repository."""
+    """Return the paths, in the repository, of generated files that are out of date."""
     return [
         path.relative_to(_ROOT).as_posix()
         for path, text in products().items()

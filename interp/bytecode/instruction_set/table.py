@@ -86,7 +86,7 @@ class Shape:
 
     @property
     def words(self) -> int:
-        """How many words it has, the opcode included."""
+        """The number of words, the opcode included."""
         return 1 + len(self.operands)
 
 
@@ -100,7 +100,7 @@ def instructions() -> tuple[Shape, ...]:
 
 @cache
 def shape(name: str) -> Shape:
-    """The instruction of a name; `KeyError` where there is none."""
+    """Return the instruction with a name; raise `KeyError` if there is none."""
     return {one.name: one for one in instructions()}[name]
 
 

@@ -191,9 +191,9 @@ class Names:
         return self._program.types[variable.type], self._program.addresses[number]
 
     def _has_gone(self, slot: Slot) -> bool:
-        """Whether an action is to reach a variable by it whose routine has ended.
+        """Return whether a reference leads to a variable of a routine that has ended.
 
-        A view that was left out leads nowhere either, but it has sizes.
+        An omitted view leads nowhere either, but it has sizes.
         """
         last = self._state.fp + slot.offset + slot.cells - 1
         return self._is_reference(slot) and self._state.cells[last] is None
