@@ -121,6 +121,10 @@ class CheckedProgram:
             one.table.routine: one for unit in self.units.values() for one in self.routines_of(unit)
         }
 
+    def unit_of(self, file: str) -> Unit | None:
+        """Return the file with a path, or ``None`` if the project has none."""
+        return next((one for one in self.units.values() if one.module.path == file), None)
+
     def routines_of(self, unit: Unit) -> tuple[Routine, ...]:
         """Return the routines of a file in their order; a data list has none."""
         syntax, table = unit.module.syntax, unit.module.table

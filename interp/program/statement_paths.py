@@ -11,12 +11,9 @@ from interp.program.load import CheckedProgram, Routine
 
 def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
     """Return the routine of a file by its name, or ``None`` if there is none."""
-    for unit in program.units.values():
-        if unit.module.path == file:
-            for routine in program.routines_of(unit):
-                if routine.node.name.key == name.upper():
-                    return routine
-    return None
+    unit = program.unit_of(file)
+    routines = () if unit is None else program.routines_of(unit)
+    return next((one for one in routines if one.node.name.key == name.upper()), None)
 
 
 def statement_lines(routine: Routine) -> set[int]:

@@ -265,11 +265,8 @@ def _failure(
 
 def _code(program: CheckedProgram, file: str, line: int) -> str:
     """Return a line of a program without its expectations; empty if there is none."""
-    for unit in program.units.values():
-        if unit.module.path == file:
-            lines = unit.source.text.splitlines()
-            return lines[line - 1].partition(";>")[0].strip() if 0 < line <= len(lines) else ""
-    return ""
+    unit = program.unit_of(file)
+    return "" if unit is None else unit.source.line(line).partition(";>")[0].strip()
 
 
 def _path(stated: Expected, program: CheckedProgram) -> str:

@@ -159,12 +159,8 @@ class Prompt(cmd.Cmd):
         return text + (f", {arm.waiting - 1} more planned" if arm.waiting > 1 else "")
 
     def _line(self, file: str, line: int) -> str:
-        lines = self._lines(file)
-        return lines[line - 1] if 0 < line <= len(lines) else ""
-
-    def _lines(self, file: str) -> list[str]:
-        units = (one for one in self._program.units.values() if one.module.path == file)
-        return next((one.source.text.splitlines() for one in units), [])
+        unit = self._program.unit_of(file)
+        return "" if unit is None else unit.source.line(line)
 
     def _shown_value(self, text: str) -> str:
         try:
@@ -342,7 +338,8 @@ class Prompt(cmd.Cmd):
         """`list [LINE], l`: the source around here."""
         at = self._at()
         middle = _number(rest, "list") if rest else at.line
-        lines = self._lines(at.file)
+        unit = self._program.unit_of(at.file)
+        lines = [] if unit is None else unit.source.text.splitlines()
         stops = {one.line for one in self._debugger.breakpoints.all}
         for line in range(max(1, middle - _AROUND), min(len(lines), middle + _AROUND) + 1):
             mark = ">" if line == at.line else "*" if line in stops else " "

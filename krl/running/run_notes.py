@@ -49,11 +49,12 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
 def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:
     """Yield the WAIT FOR at which a run without automatic inputs ended."""
     at = outcome.at
-    for unit in program.units.values():
-        if at is not None and unit.module.path == at.file:
-            text = unit.source.line(at.line).strip()
-            if re.match(r"WAIT\s+FOR\b", text, re.IGNORECASE):
-                yield f"waited for: {text}; --io auto fulfils waits, --io SCRIPT sets inputs"
+    unit = None if at is None else program.unit_of(at.file)
+    if at is None or unit is None:
+        return
+    text = unit.source.line(at.line).strip()
+    if re.match(r"WAIT\s+FOR\b", text, re.IGNORECASE):
+        yield f"waited for: {text}; --io auto fulfils waits, --io SCRIPT sets inputs"
 
 
 def refused(done: "RunResult") -> Iterator["TraceEvent"]:
