@@ -9,7 +9,7 @@ the stop as it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -209,17 +209,23 @@ class PlannedArm:
 
     def pending(self) -> int:
         """See `interp.robot.arm.Arm.pending`."""
-        plans = (*(plan for plan in self._brakes if plan is not None), self._plan)
         return sum(
-            ("motion_end", None) not in passage.taken for plan in plans for passage in plan.passages
+            ("motion_end", None) not in passage.taken
+            for plan in self._plans()
+            for passage in plan.passages
         )
+
+    def _plans(self) -> Iterator[_Plan]:
+        """Yield what brakes have interrupted, and the current plan."""
+        yield from (plan for plan in self._brakes if plan is not None)
+        yield self._plan
 
     def _oldest(self) -> float:
         """Return the number of the oldest motion of which a part or an event may lie ahead."""
-        plans = (*(plan for plan in self._brakes if plan is not None), self._plan)
-        sections = [section for plan in plans for section in plan.route[:1]]
-        for passage in (passage for plan in plans for passage in plan.passages[:1]):
-            sections += [section for section, _, _ in passage.parts()]
+        sections: list[Section] = []
+        for plan in self._plans():
+            sections += plan.route[:1]
+            sections += [part for passage in plan.passages[:1] for part, _, _ in passage.parts()]
         return min((section.number for section in sections), default=math.inf)
 
     def _taken(self, passages: tuple[Passage, ...], event: ArmEvent) -> tuple[Passage, ...]:

@@ -26,6 +26,7 @@ class Turning:
 
     def __init__(self) -> None:
         self.asked: list[int] = []
+        self.kept = 0
 
     def position(self, time: int) -> Position:
         """The set-point."""
@@ -90,13 +91,16 @@ def test_external_axes_without_a_known_start(machine: MachineData) -> None:
 
 
 def test_set_points_go_in_chunks(arm: Any) -> None:
-    """They are asked for a second's worth at once, however often time goes on."""
+    """They are asked for a second's worth at once, however often time goes on.
+
+    What was asked for may be forgotten.
+    """
     tracking = Tracking(arm, KinematicRobot(10_000), default_machine(), 10_000, START)
     for now in range(0, 2_500_000, 3_000):
         tracking.advance(now)
-    assert [100, 100] == arm.asked
+    assert ([100, 100], 2_000_000) == (arm.asked, arm.kept)
     tracking.settle(2_500_000)
-    assert [100, 100, 50] == arm.asked
+    assert ([100, 100, 50], 2_500_000) == (arm.asked, arm.kept)
 
 
 def test_points_in_the_frames_in_force(arm: Any) -> None:
