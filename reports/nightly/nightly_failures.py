@@ -5,6 +5,7 @@ unsure rule that passed in the previous run; a violated law; executors that dive
 program; a planted fault that no case notices.
 """
 
+import shlex
 from collections.abc import Iterator, Mapping
 from typing import NotRequired, TypedDict
 from urllib.parse import urlencode
@@ -63,9 +64,9 @@ def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
 
 def _unnoticed(bench: Record) -> Iterator[Failure]:
     for one in records(bench, "survivors"):
-        fault = text(one, "fault")
+        fault = shown(text(one, "fault"), _LONGEST)
         what = f"no case notices the planted fault: {text(one, 'group')}: {fault}"
-        yield Failure(what=what, page="", command=f'krl conform --fault "{fault}"')
+        yield Failure(what=what, page="", command=f"krl conform --fault {shlex.quote(fault)}")
 
 
 def failed_cases(step: str, record: Record) -> list[str]:

@@ -63,10 +63,10 @@ _DIVERGENCE = {
         ),
         (
             "bench-conform",
-            {"survivors": [{"group": "triggers", "fault": "none fires", "runs": 0}]},
-            "no case notices the planted fault: triggers: none fires",
+            {"survivors": [{"group": "targets", "fault": "$TOOL counts nothing", "runs": 0}]},
+            "no case notices the planted fault: targets: $TOOL counts nothing",
             "",
-            'krl conform --fault "none fires"',
+            "krl conform --fault '$TOOL counts nothing'",
         ),
     ],
 )
