@@ -6,7 +6,7 @@ place is found again by the elements on both sides of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
@@ -41,8 +41,8 @@ def rebased(edit: Edit, whole: Grammar, other: Grammar) -> Edit:
         return edit
     was, now = _rules(edit.rule, whole, other)
     count = 0 if isinstance(edit, Insert) else getattr(edit, "count", 1)
-    before, chosen, behind = _context(was, sequence_at(was, edit.at[:-1]), edit.at[-1], count)
-    places = list(_places(now, count))
+    texts = _texts(was, sequence_at(was, edit.at[:-1]))
+    before, chosen, behind = _context(texts, edit.at[-1], count)
     # where one neighbour is missing the other one tells the place, unless that is an end
     alike: list[Callable[[_Context], bool]] = [lambda found: found == (before, chosen, behind)]
     if behind or chosen:
@@ -50,10 +50,16 @@ def rebased(edit: Edit, whole: Grammar, other: Grammar) -> Edit:
     if before or chosen:
         alike.append(lambda found: found[:2] == (before, chosen))
     for is_same in alike:
-        same = [at for at, found in places if is_same(found)]
-        if same:
-            near = [at for at in same if at[:-1] == edit.at[:-1]]
-            return replace(edit, at=_only(near or same, edit.at, edit.rule))
+        # of several alternatives the one that has most in common with the old one
+        shared: dict[Address, int] = {}
+        for address, sequence in sequences(now):
+            others = _texts(now, sequence)
+            for first in range(1, len(others) - count):
+                if is_same(_context(others, first, count)):
+                    shared[(*address, first)] = len(set(texts).intersection(others))
+        if shared:
+            best = [at for at, number in shared.items() if number == max(shared.values())]
+            return replace(edit, at=_only(best, edit.at, edit.rule))
     raise GrammarError(f"rule {edit.rule} has no such place")
 
 
@@ -63,15 +69,12 @@ def _rules(name: str, whole: Grammar, other: Grammar) -> tuple[Rule, Rule]:
     return whole.by_name[name], other.by_name[name]
 
 
-def _places(rule: Rule, count: int) -> Iterator[tuple[Address, _Context]]:
-    """Yield all addresses in a rule with ``count`` elements there, and their context."""
-    for address, sequence in sequences(rule):
-        for first in range(1, len(sequence.elements) + 2 - count):
-            yield (*address, first), _context(rule, sequence, first, count)
+def _texts(rule: Rule, sequence: Alternative) -> list[str]:
+    """Return the elements of a sequence as written, between two empty texts."""
+    return ["", *(" ".join(rule.source_of(e).split()) for e in sequence.elements), ""]
 
 
-def _context(rule: Rule, sequence: Alternative, first: int, count: int) -> _Context:
-    texts = ["", *(" ".join(rule.source_of(e).split()) for e in sequence.elements), ""]
+def _context(texts: list[str], first: int, count: int) -> _Context:
     return texts[first - 1], tuple(texts[first : first + count]), texts[first + count]
 
 

@@ -16,7 +16,7 @@ from grammar.parser.sentences import Sentences, Speller
 from krl.cli import main
 from recovery.induction import comparison
 from recovery.induction.comparison import compared, within_reach
-from recovery.induction.growth_record import without_some
+from recovery.induction.growth_record import without, without_some
 from recovery.language import KRL
 from recovery.ledger.ledger import Ledger, in_force
 
@@ -108,9 +108,12 @@ def test_files_beyond_reach_are_reported(corpus: Path) -> None:
 def test_constructs_are_drawn_and_taken_out(seed: int) -> None:
     """The ledger without some constructs, and what needs them, reads nothing that it does not."""
     ledger = Ledger.read(GRAMMAR.with_name("constructs")).accepted
-    grammar, gone = without_some(read_file(PRELIMINARY), ledger, 15, seed)
+    start = read_file(PRELIMINARY)
+    grammar, gone = without_some(start, ledger, 15, seed)
     assert 15 <= len(gone) < len(ledger)
     assert problem(grammar) is None
+    left, again = without(start, ledger, [construct.id for construct in gone])
+    assert (gone, grammar.text) == (again, in_force(start, left).text)
     whole, random = Recognizer(read_file(GRAMMAR)), Random(seed)
     sentences, speller = Sentences(grammar), Speller(grammar)
     for _ in range(60):

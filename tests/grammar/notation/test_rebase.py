@@ -49,6 +49,13 @@ def test_places_are_found_by_their_neighbours(
         assert expected == rebased(edit, grown(earlier), BEFORE)
 
 
+def test_an_alternative_is_known_by_its_elements() -> None:
+    """The neighbours occur in two alternatives, and another one has the number now."""
+    whole = read(f"grammar G;\nr\n    : A A\n    | B C\n    | B C D\n    | B C A\n    ;\n{TOKENS}")
+    other = read(f"grammar G;\nr\n    : B C\n    | B C D\n    | B C A\n    ;\n{TOKENS}")
+    assert Insert("r", (2, 2), "A?") == rebased(Insert("r", (3, 2), "A?"), whole, other)
+
+
 def test_a_place_that_is_not_certain_is_refused() -> None:
     """Two places have the same neighbours, and neither has the old address."""
     other = read(f"grammar G;\nr\n    : A B A B\n    ;\n{TOKENS}")
