@@ -208,15 +208,13 @@ class LineEdits:
         reads = self.at.rules.includes
         hosts = [h for h in hosts if all(h != rule and reads(h, rule) for rule in fixed)]
         title = head.replace("_ ", "name ").strip()
-        is_new = bool(WORD.fullmatch(head)) and not grown
-        left_open = self._left_open(members) if is_new else []
         for text in self.forms.of(shapes) if hosts or not grown else ():
-            # a word alone that ends a block is no line of another kind where blocks are incomplete
-            for host in () if left_open and text == head else hosts:
+            for host in hosts:
                 added = AddAlternative(host, f"{text}{self.hosts.ending(host)}")
                 edits = (*self.forms.reserving(text), added)
                 yield Inferred(f"{title} … as {host}", edits, tuple(members))
-            for rule, at in left_open:
+            is_new = WORD.fullmatch(head) and not grown
+            for rule, at in self._left_open(members) if is_new else ():
                 edits = (*self.forms.reserving(text), Insert(rule, at, text))
                 yield Inferred(f"{title} … behind {rule}", edits, tuple(members))
 

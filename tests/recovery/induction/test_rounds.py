@@ -126,6 +126,59 @@ def test_the_lines_within_a_block_grow(toy: Grammar) -> None:
     assert [True, False] == [recognizer.accepts(text) for text in texts]
 
 
+def test_words_that_follow_words_are_of_one_kind(toy: Grammar) -> None:
+    """Words of statements share a form; words that are types, as lines elsewhere show, do not."""
+    start = _with(
+        toy,
+        "    | halt\n",
+        "    | halt\n    | DECL NAME NAME\n",
+        "HALT :",
+        "DECL : 'DECL' ;\nHALT :",
+    )
+    texts = (
+        "DECL INT A{0}\nINT B{0}\nGOTO L{0}\nDECL POS P{0}\nPOS Q\nSKIPTO N{0}\nBACKTO O{0}\n",
+        "INT R{0}\nDECL INT S{0}\nBACKTO T\nPOS U\nSKIPTO V{0}\nGOTO W\n",
+    )
+    files = tuple(
+        CorpusFile(f"{origin}/{n}.toy", text.format(origin), frozenset({origin}))
+        for origin in "KLM"
+        for n, text in enumerate(texts)
+    )
+    titles = [construct.title for construct in _grown(start, files).constructs]
+    assert ["GOTO and 2 words as statement", "INT … as statement", "POS … as statement"] == [
+        title for title in titles if title.endswith("as statement")
+    ]
+
+
+def test_the_last_line_of_a_block_is_no_line_of_its_own(toy: Grammar) -> None:
+    """Nor is a first line that the grammar cannot read yet: the block has to be there."""
+    routines = (
+        "(routine eol)* EOF\n    ;\n\nroutine\n    : proc\n    | func\n    ;\n\nproc\n"
+        "    : HALT NAME eol statement* ENDP\n    ;\n\nfunc\n    : FUNC NAME eol statement*"
+    )
+    start = _with(
+        toy,
+        "NEWLINE* statement* EOF",
+        routines,
+        "    | halt\n",
+        "",
+        "halt\n    : HALT\n    ;\n\n",
+        "",
+        "HALT :",
+        "ENDP : 'ENDP' ;\nFUNC : 'FUNC' ;\nHALT :",
+    )
+    both = "HALT F\n{0} := 1\nENDP\nFUNC G\n{0} := 2\nG({0})\nDONE\n"
+    texts = (both, f"{both}FUNC J\nDONE\n", "FUNC H ODD {0}\n{0} := 2\nDONE\n")
+    files = tuple(
+        CorpusFile(f"{origin}/{n}.toy", text.format(origin), frozenset({origin}))
+        for origin in "ABCD"
+        for n, text in enumerate(texts)
+    )
+    grown = Recognizer(_grown(start, files).grammar)
+    lines = ("DONE\n", "FUNC A\nDONE\n", "FUNC A ODD B\n", "FUNC A ODD B\nX := 1\nDONE\n")
+    assert [False, True, False, True] == [grown.accepts(line) for line in lines]
+
+
 @pytest.mark.parametrize(
     ("word", "count", "wrong", "accepted"),
     [
@@ -563,6 +616,25 @@ def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> 
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
     last = _grown(toy, files).rounds[-1]["refused"]
     assert ["has been so before"] == [refused["reason"] for refused in last]
+
+
+def _refused_and_taken(view: GrammarView) -> Iterator[Inferred]:
+    """Yield a fold that makes the grammar no shorter, named by its place, and one that moves it."""
+    rule = view.grammar.by_name["simpleStatement"]
+    texts = [rule.source_of(alternative) for alternative in rule.alternatives]
+    at = texts.index("halt")
+    yield Inferred(f"call in {at}", (Replace(rule.name, (at + 1, 1), "call"),), (), breadth=1)
+    if "call" in texts[:at]:
+        yield Inferred("no call", (RemoveAlternative(rule.name, 2),), (), breadth=1)
+
+
+def test_a_refused_fold_is_not_tried_again(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not even when a fold that was taken since has changed the numbers of alternatives."""
+    monkeypatch.setattr(folding, "FOLDS", (_refused_and_taken,))
+    files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
+    first = next(done for done in _grown(toy, files).rounds if done["taken"])
+    titles = [[step["title"] for step in first[key]] for key in ("taken", "refused")]
+    assert [["no call"], ["call in 2"]] == titles
 
 
 def test_edits_are_described_without_their_address() -> None:
