@@ -46,6 +46,8 @@ Exchange = tuple[int, int, str]
 _DECLARING = frozenset("DECL GLOBAL CONST STRUC ENUM CHAR INT REAL BOOL SIGNAL".split())
 _CLOSING = CLOSERS.keys() - {"ENDDAT"}
 _OPENING = BLOCKS.keys() - {"DEFDAT"}
+#: Words of lines that declare parameters, where a call would have arguments.
+_HEADS = frozenset(("DEF", "DEFFCT", "EXT", "EXTFCT"))
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 _LITERALS = {"INT": ("TRUE", '"x"'), "REAL": ("TRUE", '"x"'), "BOOL": ("1.5", '"x"')}
 
@@ -155,7 +157,8 @@ def _misspelt(words: Sequence[Token], chance: random.Random) -> Exchange | None:
 def _arguments(tokens: Sequence[Token], chance: random.Random, *, is_more: bool) -> Exchange | None:
     """Return a call with one more argument at its end, or without its last one."""
     calls = []
-    for index, token in enumerate(tokens[:-1]):
+    is_head = any(token.text.upper() in _HEADS for token in tokens[:2])
+    for index, token in enumerate(() if is_head else tokens[:-1]):
         if token.kind == "NAME" and tokens[index + 1].text == "(":
             depth = 0
             start = tokens[index + 1].end
@@ -164,7 +167,7 @@ def _arguments(tokens: Sequence[Token], chance: random.Random, *, is_more: bool)
                 if depth == 1 and other.text == ",":
                     start = other.start
                 if depth == 0:
-                    calls.append((start, other.start, tokens[index + 1].end == other.start))
+                    calls.append((start, other.start, other is tokens[index + 2]))
                     break
     if not is_more:
         calls = [one for one in calls if not one[2]]

@@ -54,7 +54,10 @@ def test_lines_without_a_place_get_no_mistake() -> None:
         ("WORK({X 1, Y 2})", "WORK()"),
         ("WORK(1, F(2, 3), )", "WORK(1, F(2, 3))"),
         ("WORK()", None),
+        ("WORK( )", None),
         ("WORK = 1", None),
+        ("GLOBAL DEF WORK(A :IN)", None),
+        ("EXT WORK(INT :IN)", None),
     ],
 )
 def test_the_last_argument_is_dropped(call: str, left: str | None) -> None:
