@@ -122,4 +122,5 @@ def _parameter(parameter: PackageParameter) -> ParameterSymbol:
         Access.ROUTINE,
         TypeReference(parameter.type, indices) if is_known else None,
         mode="OUT" if parameter.is_out else "IN",
+        is_optional=parameter.is_optional,
     )

@@ -98,9 +98,13 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ParameterSymbol(Symbol):
-    """A parameter. ``mode`` is IN or OUT; the default is OUT [SCO-06]."""
+    """A parameter. ``mode`` is IN or OUT; the default is OUT [SCO-06].
+
+    ``is_optional`` is known of routines of option packages: a call can leave it out.
+    """
 
     mode: str = "OUT"
+    is_optional: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

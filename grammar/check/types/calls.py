@@ -1,8 +1,8 @@
 """Calls: the number and types of arguments, and whether there is a result.
 
 An :IN argument is converted if that loses at most a fraction; a variable passed :OUT must have the
-type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; only functions of the
-controller are known to need them.
+type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; functions of the
+controller and of option packages are known to need them.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ def _check_arguments(
             message = f"{symbol.name} takes {many}, and these are {len(given)}"
         first = next(filter(None, given[len(wanted) :]), node)
         checker.report("too-many-arguments", first, message, is_unconfirmed=is_uncertain)
-    if isinstance(scope, SystemScope):
-        _check_missing(checker, node, symbol)
+    if isinstance(scope, SystemScope | PackageScope):
+        _check_missing(checker, node, symbol, is_uncertain=is_uncertain)
     for parameter, argument in zip(wanted, given, strict=False):
         if argument is not None:
             _check(checker, symbol, parameter, scope, argument, is_uncertain=is_uncertain)
@@ -89,16 +89,22 @@ def _counted(number: int) -> str:
     return "one argument" if number == 1 else f"{number} arguments"
 
 
-def _check_missing(checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol) -> None:
-    """Report missing arguments of a function of the controller.
+def _check_missing(
+    checker: TypeChecker, node: ast.Call, symbol: RoutineSymbol, *, is_uncertain: bool
+) -> None:
+    """Report missing arguments of a function of the controller or of an option package.
 
     KUKA's own programs leave some arguments empty, but never end a list early.
     """
+    needed = [parameter.name for parameter in symbol.parameters if not parameter.is_optional]
     missing = [parameter.name for parameter in symbol.parameters[len(node.arguments) :]]
+    missing = [name for name in missing if name in needed]
     if missing:
-        message = f"{symbol.name} needs {_counted(len(symbol.parameters))}"
+        message = f"{symbol.name} needs {_counted(len(needed))}"
         reason = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
-        checker.report("argument-missing", node, message, reason=reason)
+        checker.report(
+            "argument-missing", node, message, reason=reason, is_unconfirmed=is_uncertain
+        )
 
 
 def _check(

@@ -40,11 +40,17 @@ def _read(text: str, path: str) -> ast.Module:
     return module
 
 
-def find(files: Mapping[str, str], *, is_complete: bool | None = True) -> list[Diagnostic]:
+def find(
+    files: Mapping[str, str],
+    *,
+    is_complete: bool | None = True,
+    packages: frozenset[str] | None = None,
+) -> list[Diagnostic]:
     """What the check of some files finds."""
     texts = sources(files)
     read = [File(path, _read(text, path)) for path, text in files.items()]
-    return check(link(read, is_complete=is_complete), lambda module: texts[module.path])
+    analysis = link(read, is_complete=is_complete, packages=packages)
+    return check(analysis, lambda module: texts[module.path])
 
 
 def expected_in(files: Mapping[str, str]) -> Table:
@@ -86,6 +92,7 @@ def agrees() -> Callable[..., None]:
         given: str | Mapping[str, str],
         *,
         is_complete: bool | None = True,
+        packages: frozenset[str] | None = None,
         with_data: bool = False,
         ignored: tuple[str, ...] = (),
     ) -> None:
@@ -93,7 +100,9 @@ def agrees() -> Callable[..., None]:
             text = given.strip()
             given = {"NEG.dat" if text.startswith("DEFDAT") else "NEG.src": text}
         assert expected_in(given) == found_in(
-            find(given, is_complete=is_complete), with_data=with_data, ignored=ignored
+            find(given, is_complete=is_complete, packages=packages),
+            with_data=with_data,
+            ignored=ignored,
         )
 
     return assert_agrees

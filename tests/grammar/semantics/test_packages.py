@@ -35,6 +35,6 @@ def test_optional_parameters() -> None:
     """A parameter with a question mark behind IN may be left out."""
     assert (
         PackageParameter("CHANNEL", "CHAR", True, False, False),
-        PackageParameter("PATH", "CHAR", True, False, False),
+        PackageParameter("PATH", "CHAR", True, False, True),
         PackageParameter("LENGTH", "INT", False, False, True),
     ) == load_packages().routines["EKI_SEND"].parameters

@@ -79,6 +79,21 @@ def test_call(agrees: Agrees, rule: str, line: str) -> None:
     agrees(program(line))
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "I = EKI_CLOSE() ;> KRL302?",
+        'I = EKI_GETREAL("A", "B") ;> KRL302?',
+        'I = EKI_SEND("A")',
+        "BAS() ;> KRL302?",
+        "BAS(#INITMOV)",
+    ],
+)
+def test_arguments_of_option_packages(agrees: Agrees, line: str) -> None:
+    """What a package needs is known of its manual, whatever else the backup lacks [SCO-13]."""
+    agrees(program(line), is_complete=None, packages=frozenset({"EKI"}))
+
+
 def test_a_routine_of_another_module(agrees: Agrees) -> None:
     """Arguments are judged by the declaration that a call leads to, in its own place."""
     agrees(
