@@ -1,10 +1,10 @@
-"""The same input gives the same record, whatever else differs (`make determinism`).
+"""The same input gives the same output, whatever else differs (`make determinism`).
 
-Each command runs ten times: with other numbers of processes, hash seeds, orders in which files
-were made, time zones, languages and widths of the terminal, on the programs of the corpus or of
-``KRL_DETERMINISM_CORPUS``, some of them damaged by ``KRL_DETERMINISM_SEED``. Only times and
-durations may differ. That no option that writes is missing here is a test of its own
-(`tests/krl/test_written_files.py`).
+What a command writes and prints is compared. Each command runs ten times: with other numbers of
+processes, hash seeds, orders in which files were made, time zones, languages and widths of the
+terminal, on the programs of the corpus or of ``KRL_DETERMINISM_CORPUS``, some of them damaged by
+``KRL_DETERMINISM_SEED``. Only times and durations may differ. That no option that writes is missing
+here is a test of its own (`tests/krl/test_written_files.py`).
 """
 
 from __future__ import annotations
@@ -30,6 +30,9 @@ from tests.soak.given import REPOSITORY
 pytestmark = pytest.mark.soak
 
 RUNS = int(os.environ.get("KRL_DETERMINISM_RUNS", "10"))
+#: Of the terminal, by turns: what is printed may depend on it, what is written may not.
+WIDTHS = (80, 200)
+_PRINTED = "printed in {} columns"
 SEED = int(os.environ.get("KRL_DETERMINISM_SEED", "1"))
 #: Fields of records that say when, or for how long.
 TIMES = {"analysis_seconds", "generated", "seconds", "wall"}
@@ -41,6 +44,8 @@ COMMANDS = {
     "check": "check --no-cache --jobs {jobs} --format json --out {out}/c.json {in}",
     "check as SARIF": "check --no-cache --jobs {jobs} --format sarif --out {out}/c.sarif {in}",
     "check as JUnit": "check --no-cache --jobs {jobs} --format junit --out {out}/c.xml {in}",
+    "check as text": "check --no-cache --jobs {jobs} --diff {in}",
+    "check for GitHub": "check --no-cache --jobs {jobs} --format github {in}",
     "check, kept": "check --cache {out}/cache --jobs {jobs} --write-baseline {out}/b.json {in}",
     "diff": "diff --json {out}/d.json --html {out}/d.html {in} {some}",
     "growth": "growth --jobs {jobs} --out {out} --json {out}/g.json {some}",
@@ -56,6 +61,12 @@ COMMANDS = {
     "construct replay": "construct replay --out {out}/G.g4",
     "construct oracle": "construct oracle --bundle {out}/bundle",
     "corpus synth": "corpus synth --size 40kB --seed 7 --out {out}/synth",
+    "format": "format {in}",
+    "disasm": "disasm {image}",
+    "steps": "disasm --steps {image}",
+    "debug": "debug --io auto --max-time 20 {program}",
+    "construct show": "construct show 40",
+    "explain": "explain",
     "bench programs": "bench programs --jobs {jobs} --max-time 5 --cache {out}/cache "
     "--json {out}/p.json {some}",
     "bench real-code": "bench real-code --executor vm --json {out}/c.json {some}",
@@ -112,6 +123,7 @@ def _written(words: str, folder: Path, run: int) -> dict[str, Any]:
         "program": programs[SEED % len(programs)],
         "some": _some(corpus, folder / "some"),
         "assembly": folder / "p.krla",
+        "image": folder / "p.krlb",
         "tests": _TESTS,
     }
     everything = runpy.run_path(str(REPOSITORY / "tests/interp/bytecode/conftest.py"))
@@ -120,22 +132,41 @@ def _written(words: str, folder: Path, run: int) -> dict[str, Any]:
         "PYTHONHASHSEED": str(run * 7919 % 4_000_000),
         "TZ": ("UTC", "Asia/Kolkata", "America/Los_Angeles")[run % 3],
         "LC_ALL": ("C.UTF-8", "C")[run % 2],
-        "COLUMNS": ("80", "200")[run % 2],
+        "COLUMNS": str(WIDTHS[run % 2]),
         "XDG_CACHE_HOME": str(folder / "cache"),
     }
-    done = subprocess.run(
-        [sys.executable, "-m", "krl", *(word.format(**places) for word in words.split())],
-        cwd=REPOSITORY,
-        env=environment,
-        capture_output=True,
-        check=False,
-    )
-    assert done.returncode in (0, 1), done.stderr.decode()
-    return {"status": done.returncode} | {
+    if "{image}" in words:
+        _krl("asm -o {image} {assembly}", places, environment)
+    done = _krl(words, places, environment)
+    written = {
         str(path.relative_to(out)): _content(path, str(folder))
         for path in sorted(out.rglob("*"))
         if path.is_file() and "cache" not in path.parts
     }
+    if words.startswith("format"):
+        written |= {str(path): path.read_bytes() for path in sorted(corpus.rglob("*.*"))}
+    # pytest prints the number of its workers; durations are columns of the other table
+    if not words.startswith(("test", "bench programs")):
+        printed = done.stdout.replace(str(folder).encode(), b"FOLDER")
+        printed = re.sub(rb"[ \xe2\x94\x80]+", b" ", printed)  # as wide as a duration is long
+        written[_PRINTED.format(WIDTHS[run % 2])] = _TIMES_SHOWN.sub(b"N", printed)
+    return {"status": done.returncode} | written
+
+
+def _krl(
+    words: str, places: dict[str, Any], environment: dict[str, str]
+) -> subprocess.CompletedProcess[bytes]:
+    """A command that has run, with success or with findings."""
+    done = subprocess.run(
+        [sys.executable, "-m", "krl", *(word.format(**places) for word in words.split())],
+        cwd=REPOSITORY,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode in (0, 1), done.stderr.decode()
+    return done
 
 
 def _content(path: Path, folder: str) -> Any:
@@ -156,10 +187,12 @@ def _timeless(value: Any) -> Any:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_same_record(command: str, tmp_path: Path) -> None:
     """All runs of the command write the same."""
-    first, *others = _runs(command, tmp_path)
-    for run, other in enumerate(others, 1):
-        assert {name: other[name] for name in other if other[name] != first.get(name)} == {}, run
-        assert first.keys() == other.keys()
+    known: dict[str, Any] = {}
+    for run, written in enumerate(_runs(command, tmp_path)):
+        assert {} == {
+            name: value for name, value in written.items() if known.setdefault(name, value) != value
+        }, run
+        assert [] == sorted(known.keys() - written.keys() - {_PRINTED.format(w) for w in WIDTHS})
 
 
 def _runs(command: str, tmp_path: Path) -> Iterator[dict[str, Any]]:
