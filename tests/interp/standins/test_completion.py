@@ -104,6 +104,25 @@ def test_limits_of_bas() -> None:
     assert [True] * 3 == [event.fields["value"] for event in run.events if event.kind == "out"]
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_programs_of_a_cell(executor: str) -> None:
+    """The PLC selects one program after another, begins again behind the last, and takes a while.
+
+    What only initialises the handshake selects none.
+    """
+    body = (
+        "P00 (#INIT_EXT,#PGNO_GET,DMY[],0 )\nWHILE $TIMER[1]<1000\n"
+        "P00 (#EXT_PGNO,#PGNO_GET,DMY[],0 )\nSWITCH PGNO\n"
+        "CASE 1\nP00 (#EXT_PGNO,#PGNO_ACKN,DMY[],0 )\nPULSE ($OUT[1],TRUE,0.1)\n"
+        "CASE 2\nP00 (#EXT_PGNO,#PGNO_ACKN,DMY[],0 )\nPULSE ($OUT[2],TRUE,0.1)\n"
+        "DEFAULT\nP00 (#EXT_PGNO,#PGNO_FAULT,DMY[],0 )\nENDSWITCH\nENDWHILE\n"
+    )
+    run = _run(_main(f"$TIMER[1]=0\n$TIMER_STOP[1]=FALSE\n{body}"), executor)
+    outs = [e.fields["number"] for e in run.events if e.kind == "out" and e.fields["value"]]
+    assert ("end", [1, 2, 1, 2]) == (run.outcome.ending, outs[:4])
+    assert len(outs) in (6, 7)
+
+
 @pytest.mark.parametrize("name", ["I", "J"])
 def test_names_of_the_controller(name: str) -> None:
     """A counter is one, though a $config.dat has an array or a structure of its name."""
