@@ -10,12 +10,12 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
 from threading import current_thread, main_thread
-from typing import TYPE_CHECKING, Annotated, Any, TextIO
+from typing import TYPE_CHECKING, Annotated, Any, BinaryIO
 
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
-from krl.running.run_notes import refused, run_notes
+from krl.running.run_notes import NOTED, refused, run_notes
 from krl.running.run_options import (
     FileArgument,
     Robot,
@@ -52,6 +52,10 @@ def run(
     trace_level: Annotated[
         Level, typer.Option(help="full also records every line and assignment.")
     ] = Level.WORLD,
+    max_trace: Annotated[
+        int,
+        typer.Option(metavar="MB", min=1, help="End the trace at this size; the run goes on."),
+    ] = 1000,
     path: Annotated[
         Path | None,
         typer.Option(metavar="FILE.parquet", help="Write set-points; also .csv."),
@@ -93,7 +97,8 @@ def run(
             is_full=is_watched and trace_level is Level.FULL,
             is_traced=is_watched,
         )
-        done = _performed(program, setup, trace)
+        is_shown = html is not None or video is not None or png is not None
+        done = _performed(program, setup, trace, max_trace * 1_000_000, keeps_all=is_shown)
         _write(done, program, setup, path, html)
         if video is not None or png is not None:
             from krl.running.run_pictures import write_run_film, write_run_picture
@@ -138,20 +143,27 @@ def _check_targets(path: Path | None, video: Path | None, png: Path | None, robo
             check(target, suffixes)
 
 
-def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None) -> "RunResult":
-    """Run a program with a progress bar and write the trace meanwhile; return the result."""
+def _performed(
+    program: "CheckedProgram", setup: "RunSetup", trace: Path | None, most: int, *, keeps_all: bool
+) -> "RunResult":
+    """Run a program with a progress bar and write the trace meanwhile; return the result.
+
+    The trace has at most ``most`` bytes. Without ``keeps_all`` the result has only the events that
+    the notes of a run look at: those of a long run are larger than memory.
+    """
     from interp.executors import Prepared
     from interp.session import run_program
 
     prepared = Prepared(program, setup.routine, [setup.submit], is_kept=True)
-    with progress_bar("running, virtual seconds", None) as bar, _tracing(trace) as stream:
+    with progress_bar("running, virtual seconds", None) as bar, _tracing(trace, most) as writer:
         kept: list[TraceEvent] = []
         shown = 0
 
         def take(event: "TraceEvent") -> None:
-            kept.append(event)
-            if stream is not None:
-                stream.write(event.line() + "\n")
+            if keeps_all or event.kind in NOTED:
+                kept.append(event)
+            if writer is not None:
+                writer.write(event)
 
         def on_time(now: int) -> None:
             nonlocal shown
@@ -161,12 +173,38 @@ def _performed(program: "CheckedProgram", setup: "RunSetup", trace: Path | None)
         done = run_program(prepared, setup, take=take, on_time=on_time)
     for note in prepared.notes:
         typer.echo(one_line(note), err=True)
+    if writer is not None and writer.ended is not None:
+        at = f"{writer.ended / 1e6:g} s, at {most // 1_000_000:,} MB"
+        typer.echo(f"trace: it ends at {at}; --max-trace allows more", err=True)
     return replace(done, events=kept)
 
 
+class _TraceWriter:
+    """Writes events as lines of at most ``left`` bytes in all.
+
+    ``ended`` is the time of the first event that is not written, in µs.
+    """
+
+    def __init__(self, stream: BinaryIO, left: int) -> None:
+        self._stream = stream
+        self._left = left
+        self.ended: int | None = None
+
+    def write(self, event: "TraceEvent") -> None:
+        """Write an event, unless the trace has ended."""
+        if self.ended is not None:
+            return
+        line = f"{event.line()}\n".encode()
+        self._left -= len(line)
+        if self._left < 0:
+            self.ended = event.time
+        else:
+            self._stream.write(line)
+
+
 @contextmanager
-def _tracing(file: Path | None) -> Iterator[TextIO | None]:
-    """Yield the file of the trace, a temporary one that is moved to its path once complete.
+def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
+    """Yield what writes the trace, to a temporary file that is moved to its path once complete.
 
     A process that receives SIGTERM leaves no part of it.
     """
@@ -179,8 +217,8 @@ def _tracing(file: Path | None) -> Iterator[TextIO | None]:
     if is_ours:
         signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     try:
-        with atomic_path(file) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
-            yield stream
+        with atomic_path(file) as part, part.open("wb") as stream:
+            yield _TraceWriter(stream, most)
     finally:
         if is_ours:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)

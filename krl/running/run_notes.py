@@ -57,6 +57,10 @@ def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:
         yield f"waited for: {text}; --io auto fulfils waits, --io SCRIPT sets inputs"
 
 
+#: The kinds of events that notes look at.
+NOTED = frozenset(("fault", "message"))
+
+
 def refused(done: "RunResult") -> Iterator["TraceEvent"]:
     """Yield events that a real controller refuses, although they did not end the run.
 

@@ -1,6 +1,7 @@
 """`krl run` from the outside: what it prints and writes, exit status, one line for bad input."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -385,6 +386,19 @@ def test_trace(run: Run, tmp_path: Path) -> None:
     assert {**out, "signal": "$OUT", "number": 3, "value": True} == events(world)[0]
     assert ["out", "return", "end"] == [one["kind"] for one in events(world)]
     assert "line" in [one["kind"] for one in events(full)]
+
+
+def test_a_trace_has_a_largest_size(run: Run, tmp_path: Path) -> None:
+    """Then it ends with a whole line, and the run goes on to its end."""
+    trace = tmp_path / "trace.jsonl"
+    body = "DECL INT I\nFOR I=1 TO 12000\nIF I>0 THEN\n$OUT[1]=NOT $OUT[1]\nENDIF\nENDFOR\n"
+    status, out, err = run(body, "--trace", str(trace), "--max-trace", "1")
+    seen = events(trace)
+    assert status == 0
+    assert 999_000 < trace.stat().st_size <= 1_000_000
+    (at,) = re.findall(r"trace: it ends at ([0-9.]+) s, at 1 MB; --max-trace allows more", err)
+    assert 0 <= float(at) - seen[-1]["t"] / 1e6 <= 0.1
+    assert "end after" in out
 
 
 def test_trace_is_the_same_everywhere(run: Run, tmp_path: Path) -> None:

@@ -204,6 +204,7 @@ def _limits() -> Iterator[tuple[str, str]]:
     yield "a TOML text", f"{untrusted.MOST_TOML:,} characters, {untrusted.MOST_DOTS} dots a line"
     yield "nesting of JSON and TOML", "what Python reads without a deeper stack, some hundreds"
     yield "a run", "`--max-time` of virtual time, and a budget of statements that pass none"
+    yield "a trace", "`--max-trace`; the run goes on"
     yield "a step of a nightly run", "its share of `--minutes`"
 
 
