@@ -58,5 +58,9 @@ CLOSERS: Mapping[str, tuple[str, ...]] = {
 BRANCHES: Mapping[str, str] = {
     branch: block.opener for block in BLOCKS.values() for branch in block.branches
 }
+#: The words that open a block that lies in no other one.
+OUTERMOST = frozenset({"DEF", "DEFFCT", "DEFDAT"})
+#: The words of lines that declare a routine with its parameters.
+SIGNATURES = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 #: What may stand before the word that opens a block.
 PREFIXES = frozenset({"GLOBAL"})

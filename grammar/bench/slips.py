@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from grammar.blocks import BLOCKS, CLOSERS
+from grammar.blocks import BLOCKS, CLOSERS, SIGNATURES
 from grammar.parser.lexer import Lexer
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
@@ -46,8 +46,6 @@ Exchange = tuple[int, int, str]
 _DECLARING = frozenset("DECL GLOBAL CONST STRUC ENUM CHAR INT REAL BOOL SIGNAL".split())
 _CLOSING = CLOSERS.keys() - {"ENDDAT"}
 _OPENING = BLOCKS.keys() - {"DEFDAT"}
-#: Words of lines that declare parameters, where a call would have arguments.
-_HEADS = frozenset(("DEF", "DEFFCT", "EXT", "EXTFCT"))
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 _LITERALS = {"INT": ("TRUE", '"x"'), "REAL": ("TRUE", '"x"'), "BOOL": ("1.5", '"x"')}
 
@@ -157,8 +155,8 @@ def _misspelt(words: Sequence[Token], chance: random.Random) -> Exchange | None:
 def _arguments(tokens: Sequence[Token], chance: random.Random, *, is_more: bool) -> Exchange | None:
     """Return a call with one more argument at its end, or without its last one."""
     calls = []
-    is_head = any(token.text.upper() in _HEADS for token in tokens[:2])
-    for index, token in enumerate(() if is_head else tokens[:-1]):
+    declares = any(token.text.upper() in SIGNATURES for token in tokens[:2])
+    for index, token in enumerate(() if declares else tokens[:-1]):
         if token.kind == "NAME" and tokens[index + 1].text == "(":
             depth = 0
             start = tokens[index + 1].end

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, OUTERMOST
 from grammar.diagnostics.expected_tokens import is_in_place_of_name
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
 from grammar.diagnostics.typos import Series, Typos
@@ -27,7 +27,6 @@ from support.lazy_dataclass import dataclass
 # Every line that is blanked out costs a parse of the whole text.
 _MOST_ROUNDS = 60
 _LARGEST = 2_000_000
-_ROUTINES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 #: A first line for a routine, by its closing word.
 _HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
 #: Replacements for the first or last line of a block, with which its body runs once.
@@ -224,9 +223,9 @@ class _Recovery:
             return False
         words = _NAME.findall(self._written.line(line))
         later = (lead(text) for text in self._written.lines[line:])
-        closer = next((word for word in later if word in _HEADS or word in _ROUTINES), "")
+        closer = next((word for word in later if word in _HEADS or word in OUTERMOST), "")
         head = _HEADS.get(closer, "")
-        names = [word for word in words[1:] if word.upper() not in _ROUTINES] or words
+        names = [word for word in words[1:] if word.upper() not in OUTERMOST] or words
         if not head or not names:
             return False
         return self._write(line, head.format(names[0])) or self._write(line, head.format("A"))
@@ -239,7 +238,7 @@ class _Recovery:
             return self._close_all(cause)
         if any(self._write(free, cause.closer) for free in self._free_lines(cause.line + 1, line)):
             return True
-        if cause.word in _ROUTINES:
+        if cause.word in OUTERMOST:
             return False
         self._exchanged.pop(cause.line, None)  # the line may have been replaced before
         return self._write(cause.line, "")
@@ -253,7 +252,7 @@ class _Recovery:
         if self._is_open_ended:
             last = len(self._written.lines) - 1
             word = lead(self._written.line(last))
-            if word in _ROUTINES:
+            if word in OUTERMOST:
                 return False
             if word not in BLOCKS and word not in BRANCHES and word not in CLOSERS:
                 text = self._written.line(last)
@@ -314,7 +313,7 @@ def _unclosed(line: str, token: str, block: OpenBlock | None) -> OpenBlock | Non
         return block  # the end of the file
     if word != token.upper():
         return None
-    if word in _ROUTINES:
+    if word in OUTERMOST:
         return block
     openers = CLOSERS.get(word, (BRANCHES[word],) if word in BRANCHES else ())
     if not openers or block.word in openers or innermost(block, openers) is None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, OUTERMOST
 from grammar.diagnostics.did_you_mean import nearest
 from grammar.diagnostics.error_site import ErrorSite
 from grammar.diagnostics.open_blocks import innermost, lead
@@ -134,7 +134,7 @@ def _edited(site: ErrorSite, edit: LineEdit) -> str:
 def _programs(site: ErrorSite, line: str) -> Iterator[str]:
     """Yield the shortest files in which the line can stand."""
     word = lead(line)
-    if word in ("DEF", "DEFFCT", "DEFDAT"):
+    if word in OUTERMOST:
         yield _lines(line, BLOCKS[word].closer)
     elif word in ("END", "ENDFCT", "ENDDAT"):
         yield _lines(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from grammar.blocks import BRANCHES, CLOSERS
+from grammar.blocks import BRANCHES, CLOSERS, OUTERMOST
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
 from grammar.diagnostics.did_you_mean import nearest, one_of
 from grammar.diagnostics.error_site import ErrorSite
@@ -36,7 +36,6 @@ _LONGEST_TOKEN = 60
 _FARTHEST = 20_000
 # A line that begins with this many words, none of them KRL, is taken for prose.
 _PROSE = 3
-_HEADS = ("DEF", "DEFFCT", "DEFDAT")
 _TYPES = frozenset("INT REAL BOOL CHAR AXIS E6AXIS FRAME POS E6POS".split())
 _BEGINNING = re.compile(r"[$A-Z_]")
 _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
@@ -63,7 +62,7 @@ def _is_same_gap(before: SyntaxFailure, failure: SyntaxFailure, source: Source) 
     """Return whether two lines are outside all routines because of the same missing first line."""
     lines = source.lines[before.line - 1 : failure.line]
     is_outside = before.rule == failure.rule == "module"
-    return is_outside and not any(lead(line) in _HEADS for line in lines)
+    return is_outside and not any(lead(line) in OUTERMOST for line in lines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +194,7 @@ def _blocks(site: ErrorSite) -> _Mistake | None:
         return None
     if word == "END" and (two := _end_in_two_words(site)):
         return two
-    if word in _HEADS and site.block is not None:
+    if word in OUTERMOST and site.block is not None:
         return _not_closed(site, site.block)
     openers = CLOSERS.get(word, (BRANCHES[word],) if word in BRANCHES else ())
     if not openers or site.block is None:
@@ -229,7 +228,7 @@ def _outermost(block: OpenBlock) -> OpenBlock:
 def _not_closed(site: ErrorSite, block: OpenBlock) -> _Mistake:
     end, region = site.failure.line, None
     before = site.text.split()[0] if site.text else "the end"
-    if block.word not in _HEADS:
+    if block.word not in OUTERMOST:
         block, line = most_likely(site.source, block, end)
         if line != end:
             shown = site.source.line(line)

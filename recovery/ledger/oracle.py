@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
+from grammar.blocks import OUTERMOST
 from recovery.ledger.construct import ACCEPTED, REJECTED, Construct
 from recovery.negatives.tokens import SourceLine, lines
 
-_HEADS = frozenset({"DEF", "DEFFCT", "DEFDAT"})
 _LONGEST_MESSAGE = 200
 
 
@@ -125,7 +125,7 @@ def programs_of(construct: Construct) -> tuple[ExampleProgram, ...]:
 def _renamed(text: str, name: str) -> str:
     """Return the program with its first routine or data list renamed, and its references too."""
     found = lines(text)
-    head = next((line for line in found if line.lead in _HEADS), None)
+    head = next((line for line in found if line.lead in OUTERMOST), None)
     old = _name_in(head) if head else ""
     if not old:
         return text
@@ -137,7 +137,7 @@ def _name_in(head: SourceLine) -> str:
     kinds = head.kinds
     end = kinds.index("(") if "(" in kinds else len(kinds)
     names = [token.word for token in head.tokens[:end] if token.kind == "name"]
-    names = [word for word in names if word not in _HEADS and word != "GLOBAL"]
+    names = [word for word in names if word not in OUTERMOST and word != "GLOBAL"]
     if not names:
         return ""
     return names[0] if head.lead == "DEFDAT" else names[-1]

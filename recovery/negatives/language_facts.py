@@ -18,7 +18,7 @@ from functools import cache, lru_cache
 from importlib import resources
 from itertools import pairwise
 
-from grammar.blocks import BLOCKS, CLOSERS
+from grammar.blocks import BLOCKS, CLOSERS, OUTERMOST
 from grammar.motion_kinds import MOTIONS, PLAIN_MOTIONS
 from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
@@ -284,8 +284,6 @@ def _behind_variable(kinds: Sequence[str]) -> int:
 
 # -------------------------------------------------------------------------------------- blocks
 
-_MODULES = frozenset({"DEF", "DEFFCT", "DEFDAT"})
-
 
 @dataclass(slots=True)
 class _Block:
@@ -349,7 +347,7 @@ def _block_word(line: SourceLine) -> str:
 
 def _enter(lead: str, open_blocks: list[_Block]) -> str | None:
     """Process the first word of a line; return the fact it breaks, or ``None``."""
-    if not open_blocks and lead not in _MODULES:
+    if not open_blocks and lead not in OUTERMOST:
         return "nothing stands outside of routines and data lists"
     block = open_blocks[-1] if open_blocks else _Block("")
     if block.opener == "SWITCH" and not block.branched and lead not in ("CASE", "DEFAULT"):
@@ -372,7 +370,7 @@ def _enter(lead: str, open_blocks: list[_Block]) -> str | None:
 
 
 def _open(lead: str, block: _Block, open_blocks: list[_Block]) -> str | None:
-    if block.opener and lead in _MODULES:
+    if block.opener and lead in OUTERMOST:
         return f"{BLOCKS[block.opener].closer} closes its block before the next {lead}"
     if block.opener == "DEFDAT":
         return "a data list has no statements"

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
-from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, PREFIXES
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, PREFIXES, SIGNATURES
 from grammar.parser.lexer import EOF, Lexer
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Speller
@@ -25,8 +25,6 @@ _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _FORMS = ("{letter}", "{number}", "{number}.0", '"{letter}"', "#{letter}")
 _UNKNOWN = "?!@^~`|\\"
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
-# First words of lines with parameters, whose mode is written as in ``DEF A(B :IN)``.
-_DECLARING = frozenset({"DEF", "DEFFCT", "EXT", "EXTFCT"})
 _INDENT = "  "
 
 
@@ -151,7 +149,8 @@ class TokenRenderer:
     def _spaced(self, tokens: Sequence[AbstractToken], texts: Sequence[str]) -> Iterator[str]:
         """Yield the texts of a line with blanks between them, as people put them."""
         inside: list[str] = []  # open brackets
-        declares = not _DECLARING.isdisjoint(texts[:2])
+        # the mode of a parameter is written as in ``DEF A(B :IN)``
+        declares = not SIGNATURES.isdisjoint(texts[:2])
         signed = False  # after a sign that belongs to the number behind it
         for i, text in enumerate(texts):
             last = texts[i - 1] if i else ""
