@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 _MOST_LISTED = 3
 _START_REFUSED = 1443
+#: The kinds of events that notes look at.
+NOTED = frozenset({"fault", "message"})
 
 
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
@@ -49,16 +51,11 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
 def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:
     """Yield the WAIT FOR at which a run without automatic inputs ended."""
     at = outcome.at
-    unit = None if at is None else program.unit_of(at.file)
-    if at is None or unit is None:
+    if at is None or (unit := program.unit_of(at.file)) is None:
         return
     text = unit.source.line(at.line).strip()
     if re.match(r"WAIT\s+FOR\b", text, re.IGNORECASE):
         yield f"waited for: {text}; --io auto fulfils waits, --io SCRIPT sets inputs"
-
-
-#: The kinds of events that notes look at.
-NOTED = frozenset(("fault", "message"))
 
 
 def refused(done: "RunResult") -> Iterator["TraceEvent"]:

@@ -401,6 +401,24 @@ def test_a_trace_has_a_largest_size(run: Run, tmp_path: Path) -> None:
     assert "end after" in out
 
 
+@pytest.mark.parametrize(
+    ("option", "kept"), [("--trace", set()), ("--html", {"return", "out", "end"})]
+)
+def test_what_is_kept_of_a_run(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, option: str, kept: set[str]
+) -> None:
+    """All events for a page; for a trace only those that notes look at, because there are many."""
+    kinds: set[str] = set()
+
+    def noted(done: RunResult, *_: object) -> list[str]:
+        kinds.update(event.kind for event in done.events)
+        return []
+
+    monkeypatch.setattr("krl.commands.run.run_notes", noted)
+    run("$OUT[3]=TRUE\n", option, str(tmp_path / "out"))
+    assert kept == kinds
+
+
 def test_trace_is_the_same_everywhere(run: Run, tmp_path: Path) -> None:
     """Executors and robots do not show in the trace."""
     texts = set()
