@@ -49,11 +49,11 @@ def rebased(edit: Edit, whole: Grammar, other: Grammar) -> Edit:
         alike.append(lambda found: found[1:] == (chosen, behind))
     if before or chosen:
         alike.append(lambda found: found[:2] == (before, chosen))
+    candidates = [(address, _texts(now, sequence)) for address, sequence in sequences(now)]
     for is_same in alike:
         # of several alternatives the one that has most in common with the old one
         shared: dict[Address, int] = {}
-        for address, sequence in sequences(now):
-            others = _texts(now, sequence)
+        for address, others in candidates:
             for first in range(1, len(others) - count):
                 if is_same(_context(others, first, count)):
                     shared[(*address, first)] = len(set(texts).intersection(others))

@@ -1,8 +1,8 @@
 """Calls: the number and types of arguments, and whether there is a result.
 
 An :IN argument is converted if that loses at most a fraction; a variable passed :OUT must have the
-type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; functions of the
-controller and of option packages are known to need them.
+type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; functions
+of the controller and of option packages are known to need them.
 """
 
 from __future__ import annotations
@@ -96,9 +96,8 @@ def _check_missing(
 
     KUKA's own programs leave some arguments empty, but never end a list early.
     """
-    needed = [parameter.name for parameter in symbol.parameters if not parameter.is_optional]
-    missing = [parameter.name for parameter in symbol.parameters[len(node.arguments) :]]
-    missing = [name for name in missing if name in needed]
+    needed = [one for one in symbol.parameters if not one.is_optional]
+    missing = [one.name for one in symbol.parameters[len(node.arguments) :] if one in needed]
     if missing:
         message = f"{symbol.name} needs {_counted(len(needed))}"
         reason = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
