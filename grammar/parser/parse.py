@@ -22,7 +22,7 @@ from grammar.parser.tree import Outline, Tree
 from support.lazy_dataclass import dataclass
 
 # The caches of lines and outlines are bounded, and enormous lines are not cached at all.
-_MOST_REMEMBERED = 20_000
+_MOST_REMEMBERED = 5_000
 _LONGEST_REMEMBERED = 1_000
 
 

@@ -26,7 +26,7 @@ from grammar.syntax.statement_rules import CHAINS, RULES
 from support.lazy_dataclass import dataclass
 
 # The cache of plans is bounded; a plan takes some kilobytes.
-_MOST_REMEMBERED = 20_000
+_MOST_REMEMBERED = 4_000
 _WIDEST_REMEMBERED = 1_000
 
 
