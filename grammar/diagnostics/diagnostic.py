@@ -128,9 +128,9 @@ def _key(diagnostic: Diagnostic) -> tuple[str, Region, str, str]:
     return diagnostic.path, diagnostic.region, diagnostic.code, diagnostic.message
 
 
-def records(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
-    """Return what ``krl check --format json`` prints, in order."""
-    return [_record(diagnostic) for diagnostic in in_order(diagnostics)]
+def records(diagnostics: Iterable[Diagnostic]) -> Iterator[dict[str, Any]]:
+    """Yield what ``krl check --format json`` prints, in order."""
+    return map(_record, in_order(diagnostics))
 
 
 def _record(diagnostic: Diagnostic) -> dict[str, Any]:

@@ -54,6 +54,15 @@ def json_pieces(record: Any, indent: int | None = None) -> Iterator[str]:
         yield _NOT_ASCII.sub(_escaped, piece)
 
 
+def json_list_pieces(records: Iterable[Any]) -> Iterator[str]:
+    """Yield what `json_pieces` gives for a list of records with an indent of 1, one by one."""
+    before = "[\n "
+    for record in records:
+        yield from (before, *(piece.replace("\n", "\n ") for piece in json_pieces(record, 1)))
+        before = ",\n "
+    yield "[]" if before.startswith("[") else "\n]"
+
+
 def write_pieces(target: Path, pieces: Iterable[str]) -> None:
     """Write a text that comes in pieces as UTF-8, atomically."""
     with atomic_path(target) as part, part.open("w", encoding="utf-8", newline="") as file:

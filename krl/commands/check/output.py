@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from krl.errors import one_line
-from krl.terminal.output_files import json_pieces, write_pieces
+from krl.terminal.output_files import json_list_pieces, json_pieces, write_pieces
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -69,7 +69,7 @@ def _written(
         case Format.TEXT:
             yield from (f"{line}\n" for line in _lines(kept, report, is_verbose))
         case Format.JSON:
-            yield from chain(json_pieces(records(kept), indent=1), "\n")
+            yield from chain(json_list_pieces(records(kept)), "\n")
         case Format.SARIF:
             log = sarif(kept, metadata.version("krl-workbench"))
             yield from chain(json_pieces(log, indent=1), "\n")

@@ -90,7 +90,7 @@ def test_records_have_the_fields_that_were_agreed() -> None:
     """JSON has place, severity, code and message; more besides, nothing without a value."""
     edit = Fix("did you mean #CONSTANT?", Region(2, 15, 2, 21), "#CONSTANT")
     found = diagnose("no-such-constant", "a.src", Region(2, 15, 2, 21), "wrong", fix=edit)
-    (record,) = json.loads(json.dumps(records([found])))
+    (record,) = json.loads(json.dumps([*records([found])]))
     expected = {
         "path": "a.src",
         "line": 2,
@@ -105,7 +105,7 @@ def test_records_have_the_fields_that_were_agreed() -> None:
         "fix": {"text": "did you mean #CONSTANT?", "replacement": "#CONSTANT"},
     }
     assert expected == record
-    assert records([finding()])[0]["fix"] is None
+    assert next(records([finding()]))["fix"] is None
     assert not Fix("write it otherwise").is_edit
 
 
