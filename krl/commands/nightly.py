@@ -76,7 +76,8 @@ def nightly(
     or case that fails is tried once more. DIR/DATE/summary.md is a summary for an issue or an
     e-mail, DIR/index.html leads to the last run. Pages of the last 30 runs are kept, records for a
     year, cached results of the last run only. On a terminal each step shows its progress. Exit
-    status 1 if a step or a case fails, a law is broken, or executors diverge.
+    status 1 if a step or a case fails, a law is broken, executors diverge, or a bench is far worse
+    than before: a share by 0.1, or a ratio by a factor of 2.
     """
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():

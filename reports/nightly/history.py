@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,10 @@ Json = dict[str, Any]
 
 #: A figure of a bench is reported if it is worse by this factor. Smaller changes may be noise.
 _WORSE = 1.25
+#: A run fails if a ratio is worse by this factor, or a share is lower by this difference. Times do
+#: not fail it, as they depend on what else the machine does.
+_FAR_WORSE = 2.0
+_LOST = 0.1
 #: Events whose times are compared between nightly runs.
 _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
@@ -130,13 +135,18 @@ def nightly_record(date: str, made: Mapping[str, Record], steps: Mapping[str, Js
     ):
         if name in made:
             run[name] = section(made[name])
-    run["bench"] = {
+    run["bench"] = bench_figures(made)
+    return run
+
+
+def bench_figures(made: Mapping[str, Record]) -> dict[str, float]:
+    """Return the figures of all benches by the names of bench and figure, from their records."""
+    return {
         f"{name.removeprefix('bench-')}.{figure}": value
         for name, record in sorted(made.items())
         if name.startswith("bench-")
         for figure, value in _figures(record)
     }
-    return run
 
 
 def _surveyed(record: Record) -> Json:
@@ -228,7 +238,8 @@ def changes(
         )
     if before.get("fuzz") and now.get("fuzz"):
         reported += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
-    return [*reported, *_speeds(nested(before, "bench"), nested(now, "bench"))]
+    figures = worse_figures(nested(before, "bench"), nested(now, "bench"))
+    return [*reported, *(f"worse: {figure}" for figure in figures)]
 
 
 def _steps(before: Record, now: Record) -> Iterator[str]:
@@ -325,12 +336,40 @@ _COSTS = (
 )
 
 
-def _speeds(before: Record, now: Record) -> Iterator[str]:
+#: Parts of the names of figures that are shares, and of ratios that are measured in one run.
+_SHARES = ("share", "_top1", "_top5", "detected")
+_RATIOS = ("_vs_", "exponent", "_growth", "clusters_per_cause")
+
+
+@dataclass(frozen=True, slots=True)
+class WorseFigure:
+    """A figure of a bench that is worse than before, by a factor that is at least 1.25.
+
+    If it ``is_far`` worse, the run fails.
+    """
+
+    name: str
+    was: float
+    became: float
+    factor: float
+    is_far: bool
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.was:.4g} → {self.became:.4g} ({self.factor:.2f} times worse)"
+
+
+def worse_figures(before: Record, now: Record) -> Iterator[WorseFigure]:
+    """Yield the figures that are worse than before; both are figures by name."""
     for name, value in now.items():
         if not isinstance(before.get(name), int | float) or not isinstance(value, int | float):
             continue
         was, became = number(before, name), number(now, name)
-        is_cost = any(part in name for part in _COSTS)
+        is_cost, is_share, is_ratio = (
+            any(part in name for part in parts) for parts in (_COSTS, _SHARES, _RATIOS)
+        )
         worse, better = (became, was) if is_cost else (was, became)
-        if better > 0 and worse / better >= _WORSE:
-            yield f"slower: {name} {was:.4g} → {became:.4g} ({worse / better:.2f} times worse)"
+        factor = worse / better if better > 0 else math.inf if worse > better else 1.0
+        is_lost = is_share and round(worse - better, 6) >= _LOST
+        is_far = is_lost or (is_ratio and factor >= _FAR_WORSE)
+        if factor >= _WORSE or is_far:
+            yield WorseFigure(name, was, became, factor, is_far)

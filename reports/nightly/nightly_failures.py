@@ -2,7 +2,7 @@
 
 A failure is: a step that did not end; a case that fails on any executor and robot; a case of an
 unsure rule that passed in the previous run; a violated law; executors that diverge on a random
-program; a planted fault that no case notices.
+program; a planted fault that no case notices; a figure of a bench that is far worse than before.
 """
 
 import shlex
@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import NotRequired, TypedDict
 from urllib.parse import urlencode
 
+from reports.nightly.history import bench_figures, worse_figures
 from reports.rendering.number_format import counted
 from reports.rendering.record_fields import Record, nested, records, text
 from reports.rendering.sanitizing import shown
@@ -52,6 +53,7 @@ def failures(
         *_laws(nested(made.get("conform-laws", {}), "metamorphic")),
         *_programs(made.get("fuzz", {})),
         *_unnoticed(made.get("bench-conform", {})),
+        *_fallen(nested(before or {}, "bench"), bench_figures(made)),
     ]
 
 
@@ -67,6 +69,14 @@ def _unnoticed(bench: Record) -> Iterator[Failure]:
         fault = shown(text(one, "fault"), _LONGEST)
         what = f"no case notices the planted fault: {text(one, 'group')}: {fault}"
         yield Failure(what=what, page="", command=f"krl conform --fault {shlex.quote(fault)}")
+
+
+def _fallen(before: Record, now: Record) -> Iterator[Failure]:
+    for figure in worse_figures(before, now):
+        if figure.is_far:
+            bench = figure.name.partition(".")[0]
+            command = f"krl nightly --only {shlex.quote(f'bench-{bench}')}"
+            yield Failure(what=f"figure {figure}", page="", command=command)
 
 
 def failed_cases(step: str, record: Record) -> list[str]:

@@ -56,8 +56,8 @@ def test_a_slower_bench_is_reported_by_its_ratio() -> None:
     before = _run("1", conform, native_vs_tree=300.0, crossing_us=2.0, vm_vs_tree=6.0)
     after = _run("2", conform, native_vs_tree=200.0, crossing_us=3.0, vm_vs_tree=5.5)
     assert [
-        "slower: vm.native_vs_tree 300 → 200 (1.50 times worse)",
-        "slower: vm.crossing_us 2 → 3 (1.50 times worse)",
+        "worse: vm.native_vs_tree 300 → 200 (1.50 times worse)",
+        "worse: vm.crossing_us 2 → 3 (1.50 times worse)",
     ] == changes(before, after)
 
 
@@ -79,7 +79,7 @@ def test_a_night_of_some_steps_hides_none_before_it() -> None:
     told = changes(known, _run("3", _conform(_case("a/x", "fail")), ratio=1.0))
     assert [
         "new failure: a/x: pass → fail",
-        "slower: vm.ratio 2 → 1 (2.00 times worse)",
+        "worse: vm.ratio 2 → 1 (2.00 times worse)",
     ] == told
 
 

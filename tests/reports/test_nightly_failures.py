@@ -122,3 +122,28 @@ def test_the_page_leads_to_failed_cases(tmp_path: Path) -> None:
     assert "<code>krl conform io/pulse --executor vm --robot mujoco</code>" in text
     assert "javascript:alert" not in text
     assert "&lt;b&gt;" in text
+
+
+@pytest.mark.parametrize(
+    ("figure", "was", "became", "is_failure"),
+    [
+        ("rule_top1", 0.8, 0.71, False),
+        ("rule_top1", 0.8, 0.7, True),
+        ("rule_top1", 0.7, 0.8, False),
+        ("share", 1.0, 0.9, True),
+        ("native_vs_tree", 300.0, 151.0, False),
+        ("native_vs_tree", 300.0, 150.0, True),
+        ("native_vs_tree", 300.0, 0.0, True),
+        ("native_vs_tree", 0.0, 0.0, False),
+        ("check_exponent", 1.0, 2.0, True),
+        ("check_exponent", 2.0, 1.0, False),
+        ("s_per_mb", 1.0, 9.0, False),
+    ],
+)
+def test_a_figure_far_worse_than_before_is_a_failure(
+    figure: str, was: float, became: float, is_failure: bool
+) -> None:
+    """A share that is lower by a tenth of all, or a ratio twice as bad; times are noisy."""
+    before = nightly_record("2026-01-01", {"bench-vm": {figure: was}}, {})
+    found = failures({"bench-vm": {figure: became}}, {}, before)
+    assert [one["command"] for one in found] == ["krl nightly --only bench-vm"] * is_failure
