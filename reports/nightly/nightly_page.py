@@ -16,7 +16,7 @@ from support.files.atomic_write import write_atomic
 
 _MAX_RUNS = 400
 _MAX_CHANGES = 300
-_BAD = ("new failure", "case vanished", "slower", "step ", "survey: new cluster", "fuzz:")
+_BAD = ("new failure", "case vanished", "worse", "step ", "survey: new cluster", "fuzz:")
 _FINE = ("ok", "findings")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d")
 #: The number of earlier runs that are linked.

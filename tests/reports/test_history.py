@@ -61,6 +61,14 @@ def test_a_slower_bench_is_reported_by_its_ratio() -> None:
     ] == changes(before, after)
 
 
+def test_changes_for_the_worse_are_marked_on_the_page(tmp_path: Path) -> None:
+    """A figure that is worse, and a case that failed for the first time."""
+    before = _run("1", _conform(_case("a/x", "pass")), native_vs_tree=300.0)
+    after = _run("2", _conform(_case("a/x", "fail")), native_vs_tree=100.0)
+    page = write_nightly_page({**after, "changes": changes(before, after)}, tmp_path)
+    assert page.read_text(encoding="utf-8").count('<li class="bad">') == 2
+
+
 def test_what_a_night_did_not_do_has_not_changed() -> None:
     """A step without a record tells nothing: no case vanished, no file is gone."""
     whole = _run("1", _conform(_case("a/x", "pass")), ratio=2.0)
