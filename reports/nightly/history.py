@@ -343,10 +343,7 @@ _RATIOS = ("_vs_", "exponent", "_growth", "clusters_per_cause")
 
 @dataclass(frozen=True, slots=True)
 class WorseFigure:
-    """A figure of a bench that is worse than before, by a factor that is at least 1.25.
-
-    If it ``is_far`` worse, the run fails.
-    """
+    """A figure of a bench that is worse by a factor; if it ``is_far`` worse, the run fails."""
 
     name: str
     was: float
@@ -359,7 +356,7 @@ class WorseFigure:
 
 
 def worse_figures(before: Record, now: Record) -> Iterator[WorseFigure]:
-    """Yield the figures that are worse than before; both are figures by name."""
+    """Yield the figures that are worse than before by more than noise; both are by name."""
     for name, value in now.items():
         if not isinstance(before.get(name), int | float) or not isinstance(value, int | float):
             continue

@@ -70,6 +70,7 @@ class _View:
         self._option = mujoco.MjvOption()
         for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
             self._scene.flags[flag] = 0
+        model.geom_group[model.geom_group == _BACKGROUND] -= 1  # hidden there, too
         floor = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, GROUND[0])
         if floor >= 0:
             model.geom_group[floor] = _BACKGROUND

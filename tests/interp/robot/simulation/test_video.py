@@ -1,6 +1,8 @@
 """A moving picture of the arm, where there is something to draw it with."""
 
+import os
 import subprocess
+import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -78,6 +80,47 @@ def test_a_picture_of_the_arm(tmp_path: Path) -> None:
     assert 0 < columns.min() < columns.max() < 799
     assert np.ptp(rows) > 300
     assert 100 < np.nonzero(is_pedestal)[0].max() < 290
+
+
+_BOTH_WAYS = """
+import sys, mujoco, numpy as np
+from interp.robot.simulation.video_frames import _View
+model, again = (mujoco.MjModel.from_xml_path(sys.argv[1]) for _ in range(2))
+for one in (model, again):
+    one.vis.quality.offsamples = 0
+data = mujoco.MjData(model)
+mujoco.mj_forward(model, data)
+camera = mujoco.MjvCamera()
+camera.lookat, camera.distance = (0.3, 0.0, 0.6), 4.0
+with mujoco.Renderer(again, 120, 160) as renderer:
+    for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
+        renderer.scene.flags[flag] = 0
+    renderer.update_scene(data, camera)
+    whole = renderer.render().astype(int)
+seen = _View(model, data, camera, 160, 120).frame(()).astype(int)
+print(np.abs(seen - whole).max(), np.ptp(whole))
+"""
+
+
+def test_a_frame_is_what_is_rendered_at_once(tmp_path: Path) -> None:
+    """Arm before sky and floor, which are rendered once; a hidden part of a model stays hidden."""
+    hidden = '<worldbody><geom type="sphere" size="0.5" pos="0.5 0 1" group="5" mass="0"/>'
+    model = tmp_path / "model.xml"
+    model.write_text(Cell(default_machine()).xml().replace("<worldbody>", hidden, 1))
+    for renderer in ("egl", "osmesa"):
+        done = subprocess.run(
+            [sys.executable, "-c", _BOTH_WAYS, str(model)],
+            check=False,
+            capture_output=True,
+            text=True,
+            env={**os.environ, "MUJOCO_GL": renderer},
+        )
+        if done.returncode == 0:
+            difference, contrast = map(int, done.stdout.split())
+            assert difference <= 1
+            assert contrast > 100
+            return
+    pytest.skip(done.stderr[-200:])
 
 
 def test_no_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
