@@ -1,8 +1,8 @@
 """Calls: the number and types of arguments, and whether there is a result.
 
 An :IN argument is converted if that loses at most a fraction; a variable passed :OUT must have the
-type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; functions
-of the controller and of option packages are known to need them.
+type of its parameter [ARI-04, SCO-06]. Arguments may be left out [SCO-13]; functions of the
+controller and of option packages are known to need them.
 """
 
 from __future__ import annotations
