@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from krl.errors import InputError
-from krl.terminal.output_files import check_files, write_json
+from krl.terminal.output_files import check_files, json_list_pieces, json_pieces, write_json
 
 
 def test_names_that_are_no_text(tmp_path: Path) -> None:
@@ -25,6 +25,14 @@ def test_what_fails_leaves_no_half(tmp_path: Path) -> None:
         write_json({"new": float("nan")}, target)
     assert {"old": 1} == json.loads(target.read_text(encoding="utf-8"))
     assert [target] == list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "records", [[], [{}], [{"a": "two\nlines", "b": [1, {"c": None}]}, {"path": "a\udcff"}, []]]
+)
+def test_records_one_by_one_are_the_same_json(records: list[object]) -> None:
+    """To the character, so that it does not matter which of both writes a list."""
+    assert "".join(json_list_pieces(iter(records))) == "".join(json_pieces(records, 1))
 
 
 def test_places_where_no_file_can_be(tmp_path: Path) -> None:

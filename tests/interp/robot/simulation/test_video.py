@@ -65,7 +65,7 @@ def test_a_video_as_mp4(tmp_path: Path) -> None:
 
 
 def test_a_picture_of_the_arm(tmp_path: Path) -> None:
-    """The arm and its foot are wholly in it, and fill more than half of its height."""
+    """The arm and its foot are wholly in it, with its path, and fill half of its height."""
     path = tmp_path / "arm.png"
     try:
         write_picture(path, Cell(default_machine()), TIMES, AXES)
@@ -73,6 +73,7 @@ def test_a_picture_of_the_arm(tmp_path: Path) -> None:
         pytest.skip(str(error))
     with image.open(path) as picture:
         pixels = np.asarray(picture.convert("RGB"), dtype=np.int16)
+    assert (pixels[..., 2] - pixels[..., 0] > 80).sum() > 50
     is_pedestal = (pixels[300:].max(axis=-1) < 70).any(axis=-1)
     rows, columns = np.nonzero(pixels[..., 0] - pixels[..., 2] > 80)
     assert (600, 800) == pixels.shape[:2]
