@@ -190,7 +190,7 @@ def run_program(
     if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
         machine, torque_note = _with_torques(machine, program)
     start = setup.start or _home(values, machine, _BENT if is_incomplete else _UPRIGHT)
-    arm = _arm(machine, start)
+    arm = _arm(machine, start, setup.robot_file)
     if setup.make_robot is not None:
         robot = setup.make_robot(machine, profile.cycle)
     else:
@@ -252,13 +252,21 @@ def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
     return system_values(program)
 
 
-def _arm(machine: MachineData, start: Sequence[float]) -> DeferredArm:
-    """Return the arm; raises `LinkError` if its start position is impossible."""
+def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -> DeferredArm:
+    """Return the arm; raises `LinkError` if its start position is impossible.
+
+    The masses of a robot from a ``file`` are known, so that its torques limit its motions.
+    """
 
     def made() -> PlannedArm:
         from interp.robot.planning.planned_arm import PlannedArm
 
-        return PlannedArm(machine, start)
+        if file is None or not machine.torques:
+            return PlannedArm(machine, start)
+        from interp.robot.simulation.cell import Cell
+        from interp.robot.simulation.inverse_dynamics import InverseDynamics
+
+        return PlannedArm(machine, start, InverseDynamics(Cell(machine, robot=file)))
 
     arm = DeferredArm(made)
     every = zip((*machine.axes, *machine.externals), machine.standing(start), strict=True)

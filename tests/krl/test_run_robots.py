@@ -104,6 +104,23 @@ def test_loads_bring_an_arm_beyond_its_torques(run: Run) -> None:
     assert " and bears 20, " in err
 
 
+def test_an_arm_is_only_as_fast_as_its_torques_allow(run: Run, tmp_path: Path) -> None:
+    """The plan stays within the torques of a file, whoever follows it, and takes longer."""
+    load = "$LOAD={M 15,CM {X 0,Y 0,Z 100,A 0,B 0,C 0},J {X 0,Y 0,Z 0}}"
+    moves = "PTP {A1 -100,A2 0,A3 -80,A4 0,A5 0,A6 0}\nPTP {A1 100}"
+    program = f"DEF main()\n{load}\n{moves}\nEND\n"
+    times = []
+    for effort in (165.0, 2000.0):
+        traces = set()
+        for robot in ("kinematic", "mujoco"):
+            options = "--robot", robot, "--urdf", "@r.urdf", "--trace", "@t.jsonl"
+            assert (0, "") == run(*options, main_src=program, r_urdf=_urdf(effort))[::2]
+            traces.add((tmp_path / "t.jsonl").read_bytes())
+        (trace,) = traces
+        times.append(json.loads(trace.splitlines()[-1])["t"])
+    assert times[0] > 1.2 * times[1]
+
+
 def test_torques_by_assumed_masses_are_estimates(run: Run, tmp_path: Path) -> None:
     """With machine data one line has the worst, and it is no finding."""
     lengths = {12: 400, 13: 25, 14: 455, 15: 35, 17: 420, 18: 80}

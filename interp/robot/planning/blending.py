@@ -33,6 +33,7 @@ from interp.robot.planning.profile import Bounds, ramp
 from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
 from interp.robot.planning.straight_run import StraightPart, StraightRun, extended, straight_through
 from interp.robot.planning.tracks import Piece, Track, reduced_paths
+from interp.values.faults import Fault
 
 _HALF = 0.5
 _SMALLEST = 1e-6
@@ -165,6 +166,7 @@ def blend_of(
     in_t1 = reduced_paths(curve, machine, *settings)
     slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
     ceiling = _ceiling(first, second, transition, (x, y, z), machine, slowest)
+    ceiling = ceiling.within(first.axis_limits.torques, curve)
     return Joint(zone, curve, ceiling, *_gears(transition))
 
 
@@ -270,6 +272,7 @@ def _soonest(
         blend = BlendedAxes(one.curve, other.curve, transition)
         rates = blend.rates(blend.grid)
         ceiling = _ceiling(first, second, transition, rates, machine)
+        ceiling = ceiling.within(first.axis_limits.torques, blend)
         return _duration(one, other, transition, ceiling)
 
     times = [duration(transition) for transition in choices]
@@ -287,6 +290,9 @@ def _soonest(
         if not overlap.is_even or min(times) > most:
             choices.append(overlap.evened())
             times.append(duration(choices[-1]))
+        if first.axis_limits.torques is not None and min(times) > exact:
+            text = "the blend would need more torque than its motions with a stop between them"
+            raise Fault("torque", text, number=1155, rules=("BLD-11",))
     most = max(min(most, min(times) / _SOONER), min(times))
     return choices[next(place for place, time in enumerate(times) if time <= most)]
 

@@ -3,22 +3,25 @@
 For u(t) along a curve q(u), an axis has the speed ``q'·u̇`` and the acceleration ``q''·u̇² +
 q'·ü``. If ``|q''|·v² + |q'|·a`` is below the limit of every axis, every profile with speeds up to v
 and accelerations up to a respects the limits. So each stretch of a curve gets one v and one a,
-computed from samples; a curve whose samples differ much is divided into several stretches.
+computed from samples; a curve whose samples differ much is divided into several stretches. The
+torques of an arm with known masses lower both (`interp.robot.planning.torque_limits`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from interp.robot.arm import Load
 from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, Rates
 from interp.robot.planning.profile import Bounds
+from interp.robot.planning.torque_limits import TorqueLimits, TorqueRoom
 
 _MARGIN = 0.97
 """Share of a limit that is used, because limits are checked at samples only."""
@@ -43,16 +46,27 @@ _LINEAR = Dynamics(1000.0, 2500.0, 25000.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AxisLimits:
-    """Speed, acceleration and jerk of all axes, each ``(axes,)``, in deg or mm and seconds."""
+    """Speed, acceleration and jerk of all axes, each ``(axes,)``, in deg or mm and seconds.
+
+    ``torques`` are the limits of an arm whose masses are known.
+    """
 
     velocity: Array
     acceleration: Array
     jerk: Array
+    torques: TorqueLimits | None = None
 
     def equals(self, other: AxisLimits) -> bool:
         """Return whether all limits are equal."""
         names = ("velocity", "acceleration", "jerk")
-        return all(np.array_equal(getattr(self, n), getattr(other, n)) for n in names)
+        are_equal = all(np.array_equal(getattr(self, n), getattr(other, n)) for n in names)
+        return are_equal and self.torques == other.torques
+
+    def carrying(self, loads: Mapping[str, Load]) -> AxisLimits:
+        """Return the limits of the arm with these loads."""
+        if self.torques is None:
+            return self
+        return replace(self, torques=self.torques.carrying(loads))
 
     def scaled(
         self, velocity: Sequence[float], acceleration: Sequence[float], jerk: Sequence[float]
@@ -63,14 +77,16 @@ class AxisLimits:
             self.velocity * _shares(velocity, count),
             self.acceleration * _shares(acceleration, count),
             self.jerk * _shares(jerk, count),
+            self.torques,
         )
 
     def merged(self, other: AxisLimits, choose: Callable[[Array, Array], Array]) -> AxisLimits:
-        """Return the lower or the higher limit for each axis."""
+        """Return the lower or the higher limit for each axis; torques are those of the first."""
         return AxisLimits(
             choose(self.velocity, other.velocity),
             choose(self.acceleration, other.acceleration),
             choose(self.jerk, other.jerk),
+            self.torques,
         )
 
 
@@ -121,6 +137,19 @@ class Stretch:
         """Return the bounds of a blend at constant speed."""
         return Bounds(min(self.even, self.programmed * override), self.hardest, self.sharpest)
 
+    def within(self, room: TorqueRoom) -> Stretch:
+        """Return the stretch with bounds at which no torque exceeds what is free of it."""
+        velocity, even = min(self.velocity, room.fastest), min(self.even, room.fastest)
+        left = room.left(min(velocity, self.programmed))
+        left_even = room.left(min(even, self.programmed)) if even else left
+        return replace(
+            self,
+            velocity=velocity,
+            acceleration=min(self.acceleration, left),
+            hardest=min(self.hardest, left_even),
+            even=even,
+        )
+
     def between(self, start: float, end: float) -> Stretch:
         """Return the part between two parameters."""
         if start <= self.start and end >= self.end:
@@ -141,6 +170,15 @@ class Ceiling:
 
     stretches: tuple[Stretch, ...]
 
+    def within(self, torques: TorqueLimits | None, curve: Curve) -> Ceiling:
+        """Return the stretches with bounds at which no torque of the arm is exceeded."""
+        if torques is None:
+            return self
+        room = torques.along(curve)
+        return Ceiling(
+            tuple(each.within(room.between(each.start, each.end)) for each in self.stretches)
+        )
+
     def between(self, start: float, end: float) -> tuple[Stretch, ...]:
         """Return the stretches of a part of the curve, cut at its ends."""
         parts = (
@@ -156,13 +194,14 @@ class Ceiling:
         return Ceiling(tuple(each.part(start, share) for each in self.between(start, end)))
 
 
-def axis_limits(machine: MachineData) -> AxisLimits:
-    """Return the limits in the machine data [MOT-05, MOT-06]."""
+def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> AxisLimits:
+    """Return the limits in the machine data [MOT-05, MOT-06], with those of its torques."""
     known = [_dynamics(axis) for axis in (*machine.axes, *machine.externals)]
     return AxisLimits(
         np.array([one.velocity for one in known]),
         np.array([one.acceleration for one in known]),
         np.array([one.jerk for one in known]),
+        torques,
     )
 
 
@@ -212,7 +251,8 @@ def ceiling_of(
     columns = np.stack((velocity, slowest, acceleration, smooth, hardest, sharpest), axis=1)
     columns *= _ROUNDING
     cuts = _cuts(used, 0, len(grid) - 1)
-    return Ceiling(tuple(_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts)))
+    stretches = (_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts))
+    return Ceiling(tuple(stretches)).within(programmed.torques, curve)
 
 
 def even_ceiling(

@@ -34,6 +34,7 @@ from interp.robot.planning.timeline import (
     Timeline,
     micros,
 )
+from interp.robot.planning.torque_limits import Dynamics, TorqueLimits
 from interp.robot.planning.tracks import Track, Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -69,12 +70,16 @@ class _Mark:
 class PlannedArm:
     """An `interp.robot.arm.Arm` of set-points only, which every robot follows.
 
-    ``start`` are the axes as `MachineData.standing` takes them. Raises `Fault` 1447 for a start
-    beyond a software limit switch.
+    ``start`` are the axes as `MachineData.standing` takes them. With ``dynamics``, the masses of
+    the arm, no motion needs more than the torques in the machine data. Raises `Fault` 1447 for a
+    start beyond a software limit switch.
     """
 
-    def __init__(self, machine: MachineData, start: Sequence[float]) -> None:
-        self._tracks = Tracks(machine)
+    def __init__(
+        self, machine: MachineData, start: Sequence[float], dynamics: Dynamics | None = None
+    ) -> None:
+        torques = None if dynamics is None else TorqueLimits(dynamics, machine.torques)
+        self._tracks = Tracks(machine, torques)
         axes = np.array(machine.standing(start))
         axes[:ROBOT_AXES] = self._tracks.arm.coupled(axes[:ROBOT_AXES])
         check_limits((*machine.axes, *machine.externals), axes.tolist())

@@ -28,6 +28,7 @@ from interp.robot.path.pose_path import Arc, PosePath, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.path.wrist import WristCurve
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
+from interp.robot.planning.torque_limits import TorqueLimits
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
@@ -97,10 +98,10 @@ class Track:
 class Tracks:
     """Creates the tracks of one arm."""
 
-    def __init__(self, machine: MachineData) -> None:
+    def __init__(self, machine: MachineData, torques: TorqueLimits | None = None) -> None:
         self.machine = machine
         self.arm = kinematics_of(machine)
-        self.limits = axis_limits(machine)
+        self.limits = axis_limits(machine, torques)
         self.every = (*machine.axes, *machine.externals)
 
     def track(
@@ -178,7 +179,7 @@ class Tracks:
             return track, before.reached(before.axes, point, settings.placement)
         others = InStep(before.axes[ROBOT_AXES:], externals)
         piece = self.along(pose_path, before.axes[:ROBOT_AXES], others, motion.kind, settings)
-        track = Track(motion, (piece,), self.limits)
+        track = Track(motion, (piece,), self.limits.carrying(settings.loads))
         axes = piece.curve.end
         reached = point if motion.angle is None else None
         return track, before.reached(axes, reached, settings.placement)
@@ -187,17 +188,18 @@ class Tracks:
         self, pose_path: PosePath, start: Array, others: Others, kind: str, settings: Settings
     ) -> Piece:
         """Return the piece for a path, from the axes of the robot at its start. Raises `Fault`."""
+        limits = self.limits.carrying(settings.loads)
         curve: Curve
         if settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE:
             curve = WristCurve(self.arm, settings.placement, pose_path, start, others)
             paths = self.paths(settings, pose_path.length, 0.0, 0.0, is_spline=kind[0] == "S")
             self.check_speed(settings, curve, paths)
-            return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
+            return Piece(curve, ceiling_of(curve, limits, limits, paths), paths)
         curve = PosePathCurve(self.arm, settings.placement, pose_path, start, others)
         swivel, rotation = (math.degrees(angle) for angle in pose_path.angles)
         paths = self.paths(settings, pose_path.length, swivel, rotation, is_spline=kind[0] == "S")
         self.check_speed(settings, curve, paths)
-        return Piece(curve, ceiling_of(curve, self.limits, self.limits, paths), paths)
+        return Piece(curve, ceiling_of(curve, limits, limits, paths), paths)
 
     def still(self, axes: Array, settings: Settings) -> Piece:
         """Return a piece of length zero."""
@@ -216,7 +218,8 @@ class Tracks:
         if settings.is_reduced:
             share = self.machine.t1_reduction
             percent = tuple((p if 0.0 < p <= 100.0 else 100.0) * share for p in percent)
-        return self.limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
+        limits = self.limits.carrying(settings.loads)
+        return limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
 
     def paths(
         self,

@@ -21,6 +21,7 @@ from mujoco import rollout
 
 from interp.robot.arm import Load, Samples
 from interp.robot.simulation.cell import Cell, put_loads
+from interp.robot.simulation.inverse_dynamics import InverseDynamics
 from interp.robot.simulation.robot import Measured, RobotFault, check_samples
 
 Array = npt.NDArray[np.float64]
@@ -36,12 +37,6 @@ _STILL = 1e-9  # rad or m, and per second: below this a joint is at rest without
 
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _NO_CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-_NO_FORCES = int(
-    mujoco.mjtDisableBit.mjDSBL_CONTACT
-    | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-    | mujoco.mjtDisableBit.mjDSBL_ACTUATION
-    | mujoco.mjtDisableBit.mjDSBL_SENSOR
-)
 
 
 class MujocoRobot:
@@ -56,13 +51,11 @@ class MujocoRobot:
     def __init__(self, cell: Cell) -> None:
         _be_quiet()
         self._machine = cell.machine
-        self._model, self._free = cell.model(), cell.model()
+        self._model = cell.model()
         self._data = mujoco.MjData(self._model)
         self._model.opt.disableflags |= _NO_CONTACT
-        self._free.opt.disableflags |= _NO_FORCES
-        self._free.dof_damping[:] = 0.0
-        self._free_data = mujoco.MjData(self._free)
-        self._columns, self._units = cell.columns(self._model)
+        self._dynamics = InverseDynamics(cell)
+        self._columns, self._units = self._dynamics.columns, self._dynamics.units
         self._count = len(cell.machine.axes) + len(cell.machine.externals)
         self._rest = np.zeros(self._count)
         self._stopped: RobotFault | None = None
@@ -86,8 +79,8 @@ class MujocoRobot:
 
     def carry(self, loads: Mapping[str, Load]) -> None:
         """See `interp.robot.simulation.robot.Robot.carry`."""
-        for model in (self._model, self._free):
-            put_loads(model, self._machine, loads)
+        put_loads(self._model, self._machine, loads)
+        self._dynamics.carry(loads)
 
     def follow(self, samples: Samples) -> Measured:
         """Follow set-points 1 ms apart; the torques are those that the set-points require.
@@ -126,46 +119,25 @@ class MujocoRobot:
 
     def _resting(self, count: int) -> Measured:
         """Return so many steps at rest, with the torques that hold what is carried."""
-        data = self._free_data
-        data.qpos[:], data.qvel[:], data.qacc[:] = self._set_point, 0.0, 0.0
-        mujoco.mj_inverse(self._free, data)
+        rest = np.zeros_like(self._set_point)[None]
         torques = np.zeros(self._count)
-        torques[self._columns] = data.qfrc_inverse
+        torques[self._columns] = self._dynamics.of_joints(self._set_point[None], rest, rest)[0]
         return Measured(np.tile(self.axes, (count, 1)), np.tile(torques, (count, 1)))
 
     def _control(self, targets: Array) -> tuple[Array, Array]:
         """Return torques and actuator inputs for steps that end at ``targets`` (n, joints)."""
-        data = self._free_data
         before = np.vstack((self._set_point, targets[:-1]))
         speeds = (targets - before) / (_STEP * 1e-6)
         earlier = np.vstack((self._speed, speeds[:-1]))
         pushes = (speeds - earlier) / (_STEP * 1e-6)
-        torques = np.empty_like(targets)
-        qpos, qvel, qacc, found = data.qpos, data.qvel, data.qacc, data.qfrc_inverse
-        for place in range(len(targets)):
-            qpos[:], qvel[:], qacc[:] = before[place], earlier[place], pushes[place]
-            mujoco.mj_inverse(self._free, data)
-            torques[place] = found
-        inertia = self._inertia()
+        torques = self._dynamics.of_joints(before, earlier, pushes)
+        inertia = self._dynamics.inertia()
         spring, damper = inertia * _STIFFNESS**2, inertia * _STIFFNESS * 2.0
         self._model.actuator_biasprm[:, 1] = -spring
         self._model.actuator_biasprm[:, 2] = -damper
         self._set_point, self._speed = targets[-1].copy(), speeds[-1].copy()
         control: Array = torques + spring * before + damper * earlier
         return torques, control
-
-    def _inertia(self) -> Array:
-        """Return the inertia of each joint in kg m² or kg at the last set-point.
-
-        The other joints are free to move. This is the smallest inertia that a spring may act on;
-        with the other joints locked it would be larger.
-        """
-        free, data = self._free, self._free_data
-        mujoco.mj_makeM(free, data)
-        inertia = np.empty((free.nv, free.nv))
-        mujoco.mj_fullM(free, data, inertia)
-        found: Array = 1.0 / np.diag(np.linalg.inv(inertia))
-        return found
 
     # --------------------------------------------------------------------------------- what fails
 

@@ -17,6 +17,7 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
+from interp.robot.planning.torque_limits import Dynamics
 
 _HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
 _STEP = 1000  # µs
@@ -117,10 +118,15 @@ def exact(program: Sequence[Motion]) -> list[Motion]:
     return [replace(motion, criteria=()) for motion in program]
 
 
-def travel(program: Sequence[Motion], override: float = 100.0) -> tuple[Travelled, PlannedArm]:
+def travel(
+    program: Sequence[Motion],
+    override: float = 100.0,
+    machine: MachineData | None = None,
+    dynamics: Dynamics | None = None,
+) -> tuple[Travelled, PlannedArm]:
     """A program travelled from home. Raises `Fault` where a motion is refused."""
-    machine = default_machine()
-    arm = PlannedArm(machine, _HOME)
+    machine = machine or default_machine()
+    arm = PlannedArm(machine, _HOME, dynamics)
     first, *others = program
     arm.plan(0, first)
     now = 0
