@@ -82,6 +82,31 @@ def test_inline_forms(executor: str) -> None:
     assert (("end", ""), ["PTP", "PTP", "LIN"]) == (_outcome(run), moved)
 
 
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_outputs_of_inline_forms(executor: str) -> None:
+    """#CONT_ switches ahead of the arm, #STOP_ behind it; a command ignores the other's modes."""
+    body = f"BAS (#INITMOV,0 )\n{HOME}ODAT_ACT=ODEFAULT\nLIN_REL {{X -50.0}}\n"
+    for number, (command, mode) in enumerate(
+        (
+            ("OUT_SYNC", "TRIGGER_"),
+            ("OUT_SYNC", "STOP_"),
+            ("OUT_ASYNC", "TRIGGER_"),
+            ("OUT_ASYNC", "CONT_"),
+            ("OUT_ASYNC", "STOP_"),
+        ),
+        start=1,
+    ):
+        body += f"ODAT_ACT.OUT_NO={number}\nODAT_ACT.OUT_MODE=#{mode}\nBAS (#{command},0 )\n"
+    body += "ODAT_ACT.OUT_NO=6\nODAT_ACT.PULSE_TIME=0.2\nBAS (#OUT_ASYNC,0 )\nWAIT SEC 1.0\n"
+    run = _run(_main(body), executor)
+    outs = [e for e in run.events if e.kind == "out"]
+    (arrived,) = (e.time for e in run.events if e.kind == "motion_end" and e.fields["motion"] == 2)
+    assert "end" == run.outcome.ending
+    assert [1, 4, 5, 6, 6] == [one.fields["number"] for one in outs]
+    assert [False, False, True, True, True] == [one.time >= arrived for one in outs]
+    assert 200_000 <= outs[4].time - outs[3].time < 212_000  # at the next tick
+
+
 def test_bas_takes_data_of_older_releases() -> None:
     """What such data leaves out stays as it is."""
     data = "DECL PDAT P={VEL 100.0}\nDECL LDAT L={ACC 50.0}\nDECL FDAT F={TOOL_NO 0}\n"
