@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from grammar.notation.edits import Edit, Insert, Replace
 from grammar.notation.model import Element, Reference, walk
-from recovery.induction.forms import samples_of, split_at_commas
+from recovery.induction.forms.lists import split_at_commas
+from recovery.induction.forms.samples import samples_of
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.steps import Inferred

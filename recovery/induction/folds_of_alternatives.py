@@ -15,7 +15,8 @@ from grammar.notation.edits import (
     Replace,
 )
 from grammar.notation.model import Literal, Reference, walk
-from recovery.induction.forms import LONG_LIST, samples_of
+from recovery.induction.forms.lists import LONG_LIST
+from recovery.induction.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import Inferred
 from recovery.induction.symbols import Operand, Symbol

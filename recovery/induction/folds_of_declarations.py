@@ -9,7 +9,7 @@ from itertools import pairwise, takewhile
 from grammar.notation.addresses import Address, sequences
 from grammar.notation.edits import AddAlternative, Insert, Replace
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule
-from recovery.induction.forms import samples_of
+from recovery.induction.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.steps import Inferred
 from recovery.induction.symbols import BRACKETS, bracket_pairs

@@ -61,7 +61,7 @@ def trailing(view: GrammarView) -> Iterator[Inferred]:
 
 def headers(view: GrammarView) -> Iterator[Inferred]:
     """Any operand where a variable is all that opens a block, if most others open with any."""
-    widest, end, variable = view.rules.widest, view.profile.line_end, view.writer.variable
+    widest, end, variable = view.rules.widest, view.profile.line_end, view.writer.cover.variable
     alone: list[tuple[str, int]] = []
     others = 0
     for name in view.rules.reaches:
@@ -135,7 +135,7 @@ def variables(view: GrammarView) -> Iterator[Inferred]:
 
     What one form of a statement reads its other forms read.
     """
-    matcher, variable, lexer = view.rules.matcher, view.writer.variable, view.lexer
+    matcher, variable, lexer = view.rules.matcher, view.writer.cover.variable, view.lexer
     if variable is None:
         return
     of_names, widest = matcher.rules_for((lexer.name_kind,)), view.rules.widest

@@ -13,7 +13,8 @@ from itertools import zip_longest
 
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.forms import FormWriter, is_loose
+from recovery.induction.forms.loose import is_loose
+from recovery.induction.forms.writer import FormWriter
 from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
 from recovery.proposals.grammar_profile import GrammarProfile
 

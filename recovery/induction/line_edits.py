@@ -9,7 +9,7 @@ from itertools import pairwise
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Insert, MakeOptional, Replace
 from grammar.notation.model import Element, Repeat
-from recovery.induction.forms import samples_of
+from recovery.induction.forms.samples import samples_of
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.steps import Inferred

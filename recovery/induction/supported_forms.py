@@ -9,9 +9,10 @@ from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.notation.model import Element, Reference, walk
-from recovery.induction.forms import FormWriter, is_loose, texts_of
+from recovery.induction.forms.loose import is_loose
+from recovery.induction.forms.writer import FormWriter
 from recovery.induction.line_symbols import WORD, LineSymbols
-from recovery.induction.symbols import BRACKETS, UNKNOWN, Symbol, operands_of
+from recovery.induction.symbols import BRACKETS, UNKNOWN, Symbol, all_texts, operands_of
 from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
 
@@ -43,7 +44,7 @@ class SupportedForms:
         least = min(least, len(frozenset[str]().union(*having.values())))
         known = self.supported(having, old, max(least, self._least))
         # what has a character that begins no token has no form
-        shapes = {shape: shapes[shape] for shape in known if UNKNOWN not in texts_of(shape)}
+        shapes = {shape: shapes[shape] for shape in known if UNKNOWN not in all_texts(shape)}
         lines = Counter(text for shape in shapes for text in {symbol.text for symbol in shape})
         choices = [
             [shape for shape, numbers in shapes.items() if len(numbers) >= least]

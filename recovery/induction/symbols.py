@@ -20,6 +20,10 @@ from recovery.proposals.rule_matcher import RuleMatcher
 
 #: Signs that come in pairs.
 BRACKETS: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
+#: The same as a rule writes them.
+CLOSERS: Mapping[str, str] = {
+    f"'{opening}'": f"'{closing}'" for opening, closing in BRACKETS.items()
+}
 #: The text of what is no token.
 UNKNOWN = "?"
 # Signs behind a name at the head of a line.
@@ -295,17 +299,27 @@ def _is_optional(element: Element) -> bool:
     return isinstance(element, Repeat) and element.operator != "+"
 
 
+def texts(line: Iterable[Symbol]) -> tuple[str, ...]:
+    """Return the texts of a line's symbols, in order."""
+    return tuple(symbol.text for symbol in line)
+
+
+def all_texts(line: Iterable[Symbol]) -> frozenset[str]:
+    """Return the texts of a line's symbols, including those in brackets."""
+    return frozenset(texts(_walk(line)))
+
+
+def _walk(line: Iterable[Symbol]) -> Iterator[Symbol]:
+    """Yield the symbols of a line, each group before the symbols in it."""
+    for symbol in line:
+        yield symbol
+        yield from _walk(symbol.inside or ())
+
+
 def operands_of(lines: Iterable[tuple[Symbol, ...]]) -> list[tuple[int, ...]]:
     """Return the distinct operands of lines and of their groups, as kinds of token."""
-    found: dict[tuple[int, ...], None] = {}
-    todo = list(lines)
-    for symbols in todo:
-        for symbol in symbols:
-            if symbol.operand is not None:
-                found[symbol.operand.kinds] = None
-            elif symbol.inside:
-                todo.append(symbol.inside)
-    return list(found)
+    operands = (symbol.operand for line in lines for symbol in _walk(line))
+    return list(dict.fromkeys(operand.kinds for operand in operands if operand))
 
 
 def bracket_pairs(sequence: Alternative) -> list[tuple[str, int, int]]:

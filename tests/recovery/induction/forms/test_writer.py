@@ -5,7 +5,9 @@ import pytest
 from grammar.notation.g4 import read, read_rule
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.forms import FormWriter, is_loose, samples_of
+from recovery.induction.forms.loose import is_loose
+from recovery.induction.forms.samples import samples_of
+from recovery.induction.forms.writer import FormWriter
 from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
 
 _GRAMMAR = """grammar Toy;
