@@ -36,6 +36,11 @@ class Region:
     end_column: int
 
     @staticmethod
+    def empty(line: int, column: int) -> Region:
+        """Return an empty region before a column."""
+        return Region(line, column, line, column)
+
+    @staticmethod
     def of(text: Places, span: tuple[int, int]) -> Region:
         """Return the region of a span, which is a start offset and an exclusive end offset."""
         return Region(*text.place(span[0]), *text.place(span[1]))

@@ -16,7 +16,7 @@ from itertools import chain
 from grammar.check.analysis.context import placed
 from grammar.check.analysis.spelling import spelling_of
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
-from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.semantics.link import File, Project, extended, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found, Module, Scope

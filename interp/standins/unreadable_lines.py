@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.diagnostics.error_recovery import recover
-from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source

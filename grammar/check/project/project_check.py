@@ -23,7 +23,7 @@ from grammar.check.project.framework import Findings, check_module, check_projec
 from grammar.check.project.suppression_comments import SuppressionComment, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.diagnostics.error_recovery import recover
-from grammar.diagnostics.syntax_errors import syntax_findings
+from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.semantics.link import File, Project, link, words_of
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import REST, Module

@@ -8,7 +8,7 @@ from grammar.check.project.project_check import read_source
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.expected_tokens import in_words
 from grammar.diagnostics.open_blocks import lead, open_blocks
-from grammar.diagnostics.syntax_errors import MOST_LISTED, syntax_findings
+from grammar.diagnostics.syntax_errors.findings import MOST_LISTED, syntax_findings
 from grammar.notation.generate import GRAMMAR
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source

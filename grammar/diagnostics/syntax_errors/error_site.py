@@ -1,4 +1,4 @@
-"""The site of a syntax error: the tokens of its line, its block, and edits of the line."""
+"""The site of a syntax error, with the tokens and the block of its line, and the mistake there."""
 
 from __future__ import annotations
 
@@ -6,14 +6,34 @@ import re
 from functools import cached_property
 
 from grammar.diagnostics.diagnostic import Fix, Region
-from grammar.diagnostics.open_blocks import OpenBlock
+from grammar.diagnostics.expected_tokens import is_reserved
+from grammar.diagnostics.open_blocks import OpenBlock, innermost
 from grammar.syntax.build import SyntaxFailure
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
+#: Characters of a token that a message shows.
+LONGEST_TOKEN = 60
 # Of a longer line only the part up to this many characters after the failure is examined.
 _LONGEST_LINE = 2_000
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _TOKEN = re.compile(r'"[^"]*"|[$#]?\w+|:=|==|<>|!=|<=|>=|=<|=>|&&|\|\||//|\S')
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """A recognised mistake: its message, and its region if that is not the offending token.
+
+    ``is_unconfirmed`` marks code that occurs in real programs; that proves neither that it is KRL
+    nor that it is not.
+    """
+
+    message: str
+    fix: Fix | None = None
+    reason: str = ""
+    slug: str = "syntax"
+    region: Region | None = None
+    is_unconfirmed: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,9 +76,31 @@ class ErrorSite:
         """The offending token in upper case."""
         return self.word(self.place)
 
+    @property
+    def shown(self) -> str:
+        """The offending token as a message shows it, cut if it is long."""
+        text = self.failure.text.strip()
+        cut = f"{text[:LONGEST_TOKEN]}…" if len(text) > LONGEST_TOKEN else text
+        return cut if cut[:1].isalnum() or cut[:1] in '"$#_' else f'"{cut}"'
+
     def word(self, place: int) -> str:
         """Return a token of the line in upper case; empty if there is none with this index."""
         return self.words[place] if 0 <= place < len(self.words) else ""
+
+    @property
+    def is_word(self) -> bool:
+        """Whether the offending token is a name, a keyword or a system variable."""
+        return re.match(r"[$A-Z_]", self.text) is not None
+
+    def is_name(self, place: int) -> bool:
+        """Return whether a token of the line can be a name."""
+        word = self.word(place)
+        return _WORD.fullmatch(word) is not None and not is_reserved(word)
+
+    @property
+    def is_in_data_list(self) -> bool:
+        """Whether the line is in a data list."""
+        return innermost(self.block, ("DEFDAT",)) is not None
 
     @property
     def is_at_end(self) -> bool:
@@ -76,6 +118,11 @@ class ErrorSite:
         end = self.tokens[first if last is None else last].end()
         return Region(line, start + 1, line, end + 1)
 
+    def gap(self, place: int) -> Region:
+        """Return the empty region ahead of a token: at the end of the one before it, if any."""
+        at = self.tokens[place - 1].end() if place else self.tokens[0].start()
+        return Region.empty(self.failure.line, at + 1)
+
     def swap(self, replacement: str, first: int, last: int | None = None) -> Fix:
         """Return a fix that replaces some tokens."""
         region = self.region(first, last)
@@ -87,5 +134,5 @@ class ErrorSite:
 
     def append(self, replacement: str) -> Fix:
         """Return a fix that appends a text to the line."""
-        line, column = self.failure.line, len(self.code) + 1
-        return Fix(f"write {replacement.strip()}", Region(line, column, line, column), replacement)
+        end = Region.empty(self.failure.line, len(self.code) + 1)
+        return Fix(f"write {replacement.strip()}", end, replacement)

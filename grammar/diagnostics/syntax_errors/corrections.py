@@ -1,7 +1,6 @@
-"""The smallest edit with which a failing line becomes valid: what was probably meant.
+"""One token that is misspelt, repeated or missing, found by parsing the line without the mistake.
 
-One token of the line is replaced, removed or inserted, and the line is parsed alone in a routine or
-data list that is otherwise valid. The first edit with which it can be parsed is reported.
+The line is parsed alone, in a routine or data list that is otherwise valid.
 """
 
 from __future__ import annotations
@@ -10,12 +9,12 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, OUTERMOST
+from grammar.diagnostics.diagnostic import Fix
 from grammar.diagnostics.did_you_mean import nearest
-from grammar.diagnostics.error_site import ErrorSite
-from grammar.diagnostics.open_blocks import innermost, lead
+from grammar.diagnostics.open_blocks import lead
+from grammar.diagnostics.syntax_errors.error_site import ErrorSite, Mistake
 from grammar.parser.tree import Tree
 from grammar.syntax.build import builder
-from support.lazy_dataclass import dataclass
 
 # Longer lines are data, and every attempt parses the whole line.
 _LONGEST = 1_000
@@ -23,20 +22,13 @@ _LONGEST = 1_000
 BRACKETS = {")": "(", "]": "[", "}": "{"}
 #: Signs to insert before the failure, the likeliest first.
 _SIGNS = ("=", ",", ".", "(", "[")
+#: Signs that are written without blanks around them.
+_CLOSE = ")]}.,([{"
 _SHORTEST_WORD = 3
 
 
-@dataclass(frozen=True, slots=True)
-class LineEdit:
-    """An edit of a line: ``text`` replaces its tokens from ``first`` up to before ``stop``."""
-
-    first: int
-    stop: int
-    text: str
-
-
-def keyword(site: ErrorSite) -> LineEdit | None:
-    """Return the edit that corrects one misspelt keyword near the failure, or ``None``."""
+def misspelt_keyword(site: ErrorSite) -> Mistake | None:
+    """Return the mistake of one misspelt keyword near the failure."""
     closer = site.block.closer if site.block else ""
     for place in (site.place, site.place - 1, site.place - 2, 0):
         word = site.word(place)
@@ -44,51 +36,58 @@ def keyword(site: ErrorSite) -> LineEdit | None:
         if len(word) < shortest or not word.isidentifier() or word in _keywords():
             continue
         for meant in dict.fromkeys((closer, *nearest(word, _keywords()))):
-            if is_one_slip(word, meant) and _reads(site, LineEdit(place, place + 1, meant)):
-                return LineEdit(place, place + 1, meant)
+            if is_one_slip(word, meant) and _reads(site, meant, place, place + 1):
+                wrong, region = site.tokens[place][0], site.region(place)
+                fix = Fix(f"did you mean {meant}?", region, meant)
+                return Mistake(f"{wrong} is not a word of KRL", fix, region=region)
     return None
 
 
-def doubled(site: ErrorSite) -> LineEdit | None:
-    """Return the edit that removes a token repeated near the failure, or ``None``."""
+def repeated_token(site: ErrorSite) -> Mistake | None:
+    """Return the mistake of a token that is repeated near the failure."""
     for place in (site.place, site.place - 1):
-        if place > 0 and site.word(place) and site.word(place) == site.word(place - 1):
-            edit = LineEdit(place, place + 1, "")
-            if _reads(site, edit):
-                return edit
+        is_repeated = place > 0 and site.word(place) == site.word(place - 1) != ""
+        if is_repeated and _reads(site, "", place, place + 1):
+            message = f"{site.tokens[place][0]} stands twice"
+            return Mistake(message, site.swap("", place), region=site.region(place))
     return None
 
 
-def bracket(site: ErrorSite) -> LineEdit | None:
-    """Return the edit that inserts a missing closing bracket, or ``None``."""
-    missing = [
-        closer
-        for closer, opener in BRACKETS.items()
-        if site.words.count(opener) > site.words.count(closer)
-    ]
+def missing_bracket(site: ErrorSite) -> Mistake | None:
+    """Return the mistake of a missing closing bracket."""
     end = len(site.words)
     places = dict.fromkeys([*range(site.place, min(end, site.place + 4)), end])
-    for closer in missing:
-        for place in places:
-            edit = LineEdit(place, place, closer)
-            if _reads(site, edit):
-                return edit
+    for closer, opener in BRACKETS.items():
+        if site.words.count(opener) > site.words.count(closer):
+            for place in places:
+                if _reads(site, closer, place):
+                    return _missing(site, closer, place)
     return None
 
 
-def left_out(site: ErrorSite) -> LineEdit | None:
-    """Return the edit that inserts a missing sign before the failure, or ``None``."""
+def missing_sign(site: ErrorSite) -> Mistake | None:
+    """Return the mistake of a missing sign before the failure."""
     if site.is_at_end:
         return None
-    tokens = site.tokens
-    is_apart = site.place > 0 and tokens[site.place - 1].end() < tokens[site.place].start()
+    tokens, place = site.tokens, site.place
+    is_apart = place > 0 and tokens[place - 1].end() < tokens[place].start()
     for sign in _SIGNS:
         if sign == "." and is_apart:  # two separate words lack an operator, not a dot
             continue
-        edit = LineEdit(site.place, site.place, sign)
-        if _reads(site, edit):
-            return edit
+        if _reads(site, sign, place):
+            return _missing(site, sign, place)
     return None
+
+
+def _missing(site: ErrorSite, sign: str, place: int) -> Mistake:
+    """Return the mistake of a missing sign, inserted before a token or at the end of the line."""
+    message = f"{sign} is missing"
+    if place >= len(site.tokens):
+        return Mistake(message, site.append(sign))
+    gap = site.gap(place)
+    text = sign if sign in _CLOSE else f" {sign} "
+    fix = Fix(f"write {sign} before {site.tokens[place][0]}", gap, text)
+    return Mistake(message, fix, region=gap)
 
 
 def is_one_slip(word: str, meant: str) -> bool:
@@ -113,22 +112,17 @@ def _keywords() -> tuple[str, ...]:
     return tuple(word for word in words if len(word) > 1)
 
 
-# ----------------------------------------------------------------------------------- the trial
+def _reads(site: ErrorSite, text: str, first: int, stop: int = 0) -> bool:
+    """Return whether the line can be parsed with a text for its tokens from ``first`` to ``stop``.
 
-
-def _reads(site: ErrorSite, edit: LineEdit) -> bool:
-    """Return whether the line can be parsed after the edit."""
+    Without ``stop`` the text is inserted.
+    """
     if len(site.code) > _LONGEST:
         return False
-    line = _edited(site, edit)
-    return any(isinstance(builder().parser.parse(text), Tree) for text in _programs(site, line))
-
-
-def _edited(site: ErrorSite, edit: LineEdit) -> str:
-    tokens = site.tokens
-    start = tokens[edit.first].start() if edit.first < len(tokens) else len(site.code)
-    end = tokens[edit.stop - 1].end() if edit.stop > edit.first else start
-    return f"{site.code[:start]} {edit.text} {site.code[end:]}"
+    start = site.tokens[first].start() if first < len(site.tokens) else len(site.code)
+    end = site.tokens[stop - 1].end() if stop else start
+    line = f"{site.code[:start]} {text} {site.code[end:]}"
+    return any(isinstance(builder().parser.parse(p), Tree) for p in _programs(site, line))
 
 
 def _programs(site: ErrorSite, line: str) -> Iterator[str]:
@@ -136,11 +130,9 @@ def _programs(site: ErrorSite, line: str) -> Iterator[str]:
     word = lead(line)
     if word in OUTERMOST:
         yield _lines(line, BLOCKS[word].closer)
-    elif word in ("END", "ENDFCT", "ENDDAT"):
-        yield _lines(
-            {"END": "DEF A()", "ENDFCT": "DEFFCT INT A()", "ENDDAT": "DEFDAT A"}[word], line
-        )
-    elif innermost(site.block, ("DEFDAT",)) is not None:
+    elif word in _MODULES:
+        yield _lines(_MODULES[word], line)
+    elif site.is_in_data_list:
         yield _lines("DEFDAT A PUBLIC", line, "ENDDAT")
     else:
         yield _lines("DEF A()", *_block(word, line), "END")
@@ -155,6 +147,7 @@ def _block(word: str, line: str) -> Sequence[str]:
     return (line, *_TAILS.get(word, ()))
 
 
+_MODULES = {"END": "DEF A()", "ENDFCT": "DEFFCT INT A()", "ENDDAT": "DEFDAT A"}
 _HEADS = {
     "IF": ("IF TRUE THEN",),
     "FOR": ("FOR I = 1 TO 2",),
