@@ -30,6 +30,7 @@ from interp.standins.library import Datum, load_library
 from interp.standins.signatures import Signatures
 from interp.standins.unreadable_lines import COUNT, UNREADABLE
 from interp.standins.unset_data import unset_data, with_values
+from interp.standins.use_reader import read_uses
 from interp.standins.uses import FOLDER, DataUse, Uses
 from support.lazy_dataclass import dataclass
 
@@ -295,15 +296,11 @@ class _Making:
         """Return the uses of names that neither a file nor the library declares."""
         library, wanted = load_library(), self._wanted
         uses = Uses(
-            self.project,
             [name for name in wanted.data if name not in library.data],
             [name for name in wanted.routines if name not in library.routines],
             types,
-            is_apart,
         )
-        for one in checked:
-            uses.read(one)
-        uses.settle()
+        read_uses(uses, self.project, checked, is_apart)
         return uses
 
     def _has_no_list(self, module: Module, _name: str) -> bool:
