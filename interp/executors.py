@@ -41,7 +41,7 @@ def is_available(name: str) -> bool:
 
     if name != COMPILED or not AVAILABLE:
         return name in available()
-    from interp.native.c_backend.compiled import compiler
+    from interp.native.c_backend.shared_objects import compiler
 
     return compiler() is not None
 
