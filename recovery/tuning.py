@@ -23,18 +23,18 @@ LONGEST_LINE = 1_000
 DEEPEST_STACK = 150
 
 # ------------------------------------------------------------------- words that a line means
-# `recovery.survey.signature`: when a name on failing lines is meant as a keyword.
+# `recovery.survey.suspected_keywords`: when a name on failing lines may be meant as a keyword.
 
 #: Files in which a name has to stand where no name can. Not measured.
-KEYWORD_FILES = 2
+SUSPECTED_FILES = 2
 #: Different words on one side of it, so that it is no declared name beside its type. Not measured.
-KEYWORD_NEIGHBOURS = 3
+SUSPECTED_NEIGHBOURS = 3
 #: Uses with no operand on either side that count as much as neighbours. Not measured.
-KEYWORD_ALONE = 6
+SUSPECTED_ALONE = 6
 #: Different names that may come in a place for it to be a place of keywords. Not measured.
-KEYWORD_CHOICE = 2
+SUSPECTED_CHOICE = 2
 #: The least share of its uses on failing lines where it stands so. Revised: 0.02.
-KEYWORD_SHARE = 0.8
+SUSPECTED_SHARE = 0.8
 # `recovery.survey.unreserved_keywords`: when a name in files that parse is taken for a keyword.
 #: Files that read the name. Not measured.
 UNRESERVED_FILES = 3
@@ -263,20 +263,20 @@ MOST_LISTED = 3
 # ----------------------------------------------------------------------------- growing a grammar
 # `recovery.induction`.
 
-#: Different words up to which surroundings are those of keywords; where names may be too, fewer.
-#: Not measured.
+#: Different words up to which a context is one of keywords; where names may be too, fewer. Not
+#: measured.
 FEW_WORDS = 8
 FEWER_WORDS = 3
 #: Origins and files that a word needs which is to be a keyword. Not measured.
-WOULD_BE_ORIGINS = 2
-WOULD_BE_FILES = 3
+INFERRED_ORIGINS = 2
+INFERRED_FILES = 3
 #: Files that it needs in a single origin, where there are others; and what else recurs in a
 #: single origin. Not measured.
-WOULD_BE_FILES_ALONE = 5
+INFERRED_FILES_ALONE = 5
 LEAST_FILES_ALONE = 2
-#: The least share of its uses in such surroundings; the share of files with uses as a name, and
+#: The least share of its uses in such contexts; the share of files with uses as a name, and
 #: the lines with one, from which on it stays a name. Not measured.
-WOULD_BE_SHARE = 0.8
+INFERRED_SHARE = 0.8
 NAME_SHARE = 0.02
 NAMED_LINES = 3
 #: Origins with a keyword by which a single one that has it as a name is outvoted. Not measured.

@@ -139,6 +139,7 @@ class Lexer:
         self._keywords = frozenset(
             self.kind_of[name] for name, text in texts.items() if text[0].isalpha()
         )
+        self._signs = frozenset(map(self.kind_of.__getitem__, texts)) - self._keywords
         literals = {
             text: self._ranked(grammar.by_name[name])
             for text, name in grammar.literal_tokens.items()
@@ -210,6 +211,10 @@ class Lexer:
     def is_keyword(self, kind: int) -> bool:
         """Return whether the kind is a reserved word."""
         return kind in self._keywords
+
+    def is_sign(self, kind: int) -> bool:
+        """Return whether the tokens of the kind have one text, which is no word."""
+        return kind in self._signs
 
     @cached_property
     def line_kind(self) -> int:

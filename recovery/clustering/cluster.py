@@ -18,9 +18,10 @@ from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.title import TitleWriter
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import FailingLine
-from recovery.survey.signature import Signature, SignatureBuilder
+from recovery.survey.signature import Signature, signature_of
 from recovery.survey.survey import Survey
 from recovery.survey.surveyed_files import SurveyedFile
+from recovery.survey.suspected_keywords import SuspectedKeywords
 from support.parallel.progress import Progress, no_progress
 
 
@@ -129,8 +130,9 @@ class _FailingLines:
             for index, failed in enumerate(file.failures)
             if not failed.follows
         ]
-        self.signature_builder = SignatureBuilder(
-            self.recognizer.lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
+        lexer = self.recognizer.lexer
+        suspected = SuspectedKeywords(
+            lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
         )
         numbers: dict[LinePattern, int] = {}
         signatures: list[Signature] = []
@@ -139,12 +141,11 @@ class _FailingLines:
         files: dict[int, dict[str, int]] = defaultdict(dict)
         for file, index, failed in direct:
             form = found.forms[failed.form]
-            line = LinePattern(form, self.signature_builder.keywords(failed, form))
+            line = LinePattern(form, suspected.of_line(failed, form))
             number = numbers.setdefault(line, len(numbers))
             if number == len(signatures):
-                signatures.append(
-                    self.signature_builder.signature(failed, form, self.contexts[failed.form])
-                )
+                context = self.contexts[failed.form]
+                signatures.append(signature_of(lexer, form, line.keywords, context))
                 self.specimens.append(Member(file, failed))
             elif len(failed.source) < len(self.specimens[number].failed.source):
                 self.specimens[number] = Member(file, failed)

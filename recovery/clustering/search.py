@@ -205,7 +205,7 @@ class CauseSearch:
         ]
 
     def lead(self, line: LinePattern) -> str:
-        """Return the keyword or would-be keyword with which a line begins, or an empty text."""
+        """Return the keyword or suspected keyword with which a line begins, or an empty text."""
         kind, keyword = line.words()[0]
         lexer = self.finder.recognizer.lexer
         return keyword or (lexer.display[kind] if lexer.is_keyword(kind) else "")

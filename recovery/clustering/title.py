@@ -166,7 +166,7 @@ class TitleWriter:
         return found[0] if len(found) == 1 else ""
 
     def _keyword(self, line: LinePattern, place: int) -> str:
-        """Return the keyword or would-be keyword at a place of a line; empty if there is none."""
+        """Return the keyword or suspected keyword at a place of a line; empty if there is none."""
         kind = line.form.kinds[place] if place < len(line.form.kinds) else ERROR
         known = self._lexer.display[kind] if self._lexer.is_keyword(kind) else ""
         return dict(line.keywords).get(place, known)

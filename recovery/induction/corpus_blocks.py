@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
-from recovery.induction.would_be_keywords import WouldBeKeywords
+from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
 from recovery.proposals.keywords import Vocabulary
 from recovery.tuning import BALANCED_FILES
@@ -12,7 +12,7 @@ from recovery.tuning import BALANCED_FILES
 
 def blocks_of(
     corpus: CorpusLines,
-    keywords: WouldBeKeywords,
+    keywords: InferredKeywords,
     recognizer: Recognizer,
     prefixes: frozenset[str],
 ) -> list[BlockLines]:

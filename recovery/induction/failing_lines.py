@@ -10,9 +10,9 @@ from itertools import islice
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.failures import Failure
 from grammar.parser.recognizer import Recognizer, State
+from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.steps import Evidence
 from recovery.induction.symbols import BRACKETS
-from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.language import CorpusFile
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN
@@ -42,7 +42,7 @@ class FailingLines:
         self,
         files: Sequence[CorpusFile],
         failures: Sequence[Sequence[Failure]],
-        keywords: WouldBeKeywords,
+        keywords: InferredKeywords,
     ) -> None:
         found: dict[LinePattern, Occurrences] = {}
         for place, of_file in enumerate(failures):

@@ -33,6 +33,7 @@ from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import folds_of, size
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.inference import Inference
+from recovery.induction.inferred_keywords import InferredKeywords, names_read
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
@@ -49,7 +50,6 @@ from recovery.induction.steps import (
     joined,
 )
 from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
-from recovery.induction.would_be_keywords import WouldBeKeywords, names_read
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern
@@ -103,7 +103,7 @@ class Induction:
         self.least_origins = min(origins, len({o for f in shown for o in f.origins}))
         self.is_finished = False
         self._corpus: CorpusLines | None = None
-        self._keywords: WouldBeKeywords | None = None
+        self._keywords: InferredKeywords | None = None
         self._names: str | None = None
         self._prefixes: frozenset[str] = frozenset()
         self._tried: set[Edit] = set()
@@ -216,7 +216,7 @@ class Induction:
 
     def _words(
         self, recognizer: Recognizer, failures: Failures, least: tuple[int, int]
-    ) -> WouldBeKeywords:
+    ) -> InferredKeywords:
         """Return the keywords of the files; computed again for another lexer."""
         lexer = recognizer.lexer
         if self._corpus is None:
@@ -225,7 +225,7 @@ class Induction:
         if known is None or (known.lexer.names, known.least) != (lexer.names, least):
             types = OperandRules(recognizer).type_words
             read = names_read(self.shown.files, failures, lexer)
-            known = self._keywords = WouldBeKeywords(self._corpus, lexer, read, types, *least)
+            known = self._keywords = InferredKeywords(self._corpus, lexer, read, types, *least)
         return known
 
     def _block_gain(

@@ -398,9 +398,8 @@ class SymbolReader:
         """Return what a rule writes for a token."""
         if kind <= 0:
             return UNKNOWN
-        shown = self.lexer.display[kind]
-        is_sign = shown != self.lexer.names[kind] and not self.lexer.is_keyword(kind)
-        return f"'{shown}'" if is_sign else self.lexer.names[kind]
+        is_sign = self.lexer.is_sign(kind)
+        return f"'{self.lexer.display[kind]}'" if is_sign else self.lexer.names[kind]
 
     def _operand(
         self, tokens: Sequence[Token], at: int, before: Sequence[Symbol], *, atoms: bool

@@ -272,9 +272,7 @@ class Phraser:
     def spelled(self, kind: int) -> str:
         """Return a token as it is written in a rule: by name, or quoted if it is a sign."""
         lexer = self.recognizer.lexer
-        if lexer.is_keyword(kind) or lexer.display[kind] == lexer.names[kind]:
-            return lexer.names[kind]
-        return f"'{lexer.display[kind]}'"
+        return f"'{lexer.display[kind]}'" if lexer.is_sign(kind) else lexer.names[kind]
 
 
 def _as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:

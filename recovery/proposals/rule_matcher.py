@@ -99,7 +99,5 @@ class RuleMatcher:
 
     def is_operand(self, kind: int) -> bool:
         """Return whether a token carries a value: a name, a number, a string."""
-        display = self.recognizer.lexer.display[kind]
-        return display == self.recognizer.lexer.names[kind] and not (
-            self.recognizer.lexer.is_keyword(kind)
-        )
+        lexer = self.recognizer.lexer
+        return not (lexer.is_sign(kind) or lexer.is_keyword(kind))

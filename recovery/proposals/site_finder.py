@@ -65,7 +65,7 @@ class EditSiteFinder:
         self._resumed.clear()
         before = recognizer.restore(form.before)
         starts = {form.index}
-        # a would-be keyword was read as a name, so the line failed later than it should have
+        # a suspected keyword was read as a name, so the line failed later than it should have
         starts |= {i for i, _ in line.keywords if i < form.index}
         for start in sorted(starts):
             state, _ = recognizer.run(before, form.kinds[:start])
@@ -88,7 +88,7 @@ class EditSiteFinder:
             yield from self._lines.after_line_end(form, words)
 
     def reserved(self, words: Sequence[Word]) -> tuple[Edit, ...]:
-        """Return the edits that reserve the would-be keywords among the words."""
+        """Return the edits that reserve the suspected keywords among the words."""
         return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
 
     def block_rules(self, line: LinePattern) -> list[str]:

@@ -8,8 +8,9 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.reason import Reason, ReasonFinder
 from recovery.proposals.edit_site import LinePattern
-from recovery.survey.signature import SignatureBuilder
+from recovery.survey.signature import signature_of
 from recovery.survey.survey import survey_texts
+from recovery.survey.suspected_keywords import SuspectedKeywords
 
 _START = read_file(GRAMMAR.with_name("preliminary.g4"))
 _RECOGNIZER = Recognizer(_START)
@@ -19,7 +20,7 @@ def reasons(*texts: str) -> list[Reason]:
     """The reason of the first failure of each program."""
     found = survey_texts([(f"{n}.src", text) for n, text in enumerate(texts)], _START)
     failed = [(file.digest, file.failures[0]) for file in found.files]
-    builder = SignatureBuilder(
+    suspected = SuspectedKeywords(
         _RECOGNIZER.lexer, [(digest, line, found.forms[line.form]) for digest, line in failed]
     )
     reason, finder = ReasonFinder(_RECOGNIZER).reason, FailureFinder(_RECOGNIZER)
@@ -29,8 +30,9 @@ def reasons(*texts: str) -> list[Reason]:
         before = _RECOGNIZER.restore(form.before)
         state = _RECOGNIZER.run(before, form.kinds[: form.index])[0]
         context = finder.context(state)
-        pattern = LinePattern(form, builder.keywords(line, form))
-        out.append(reason(pattern, builder.signature(line, form, context), context))
+        pattern = LinePattern(form, suspected.of_line(line, form))
+        signature = signature_of(_RECOGNIZER.lexer, form, pattern.keywords, context)
+        out.append(reason(pattern, signature, context))
     return out
 
 

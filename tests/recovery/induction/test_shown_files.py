@@ -7,9 +7,9 @@ from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
+from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.shown_files import ShownFiles
 from recovery.induction.steps import Evidence, Taken
-from recovery.induction.would_be_keywords import WouldBeKeywords
 from recovery.language import CorpusFile
 
 
@@ -40,7 +40,7 @@ def test_a_stray_sign_moves_no_word(toy: Grammar) -> None:
     """A sign that the lexer does not know stands where it stands in the line."""
     files = tuple(CorpusFile(o, f"\r MOVE (A{o})\nMOVE 1\nMOVE 2\n", frozenset({o})) for o in "ABC")
     lexer = Recognizer(toy).lexer
-    keywords = WouldBeKeywords(CorpusLines(files, lexer), lexer, {}, ())
+    keywords = InferredKeywords(CorpusLines(files, lexer), lexer, {}, ())
     failures = ShownFiles(files).failures(toy)[1]
     patterns = FailingLines(files, failures, keywords).patterns
     shown = {lexer.names[p.form.kinds[place]] for p in patterns for place, _ in p.keywords}

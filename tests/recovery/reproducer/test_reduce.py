@@ -46,7 +46,7 @@ class Bench:
         edits: Sequence[Edit] = (),
         words: int = 24,
     ) -> Reproducer:
-        """The reproducer of the first failure; the words given are would-be keywords."""
+        """The reproducer of the first failure; the words given are suspected keywords."""
         failure = self.first(text)
         lexemes = [lexeme.upper() for lexeme in failure.lexemes]
         line = LinePattern(failure.form, tuple((i, w) for i, w in enumerate(lexemes) if w in meant))
@@ -137,14 +137,14 @@ def test_kinds_stay(bench: Bench, text: str, expected: str) -> None:
 
 
 def test_words_that_are_meant_stay(bench: Bench) -> None:
-    """Would-be keywords are written as they were; without them the failure is another."""
+    """Suspected keywords are written as they were; without them the failure is another."""
     text = body("SWITCH MODE")
     assert bench.reduce(text, "SWITCH").text == "DEF A()\n  SWITCH B\nEND"
     assert bench.reduce(text).text == "DEF A()\n  B C\nEND"
 
 
 def test_a_meant_word_before_the_failure_stays(bench: Bench) -> None:
-    """A line that fails behind a would-be keyword fails because of it."""
+    """A line that fails behind a suspected keyword fails because of it."""
     text = body("X = A OR B_NOT C")
     assert bench.reduce(text, "B_NOT").text == "DEF A()\n  B = B_NOT C\nEND"
 

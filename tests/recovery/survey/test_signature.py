@@ -8,8 +8,9 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
-from recovery.survey.signature import Signature, SignatureBuilder
+from recovery.survey.signature import Signature, signature_of
 from recovery.survey.survey import survey_texts
+from recovery.survey.suspected_keywords import SuspectedKeywords
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
@@ -29,11 +30,12 @@ def signatures(*programs: str) -> list[list[Signature]]:
         for failed in file.failures
         if not failed.follows
     ]
-    signature_builder = SignatureBuilder(RECOGNIZER.lexer, failures)
+    suspected = SuspectedKeywords(RECOGNIZER.lexer, failures)
     out: dict[str, list[Signature]] = {file.digest: [] for file in found.files}
     for digest, failed, form in failures:
         state, _ = RECOGNIZER.run(RECOGNIZER.restore(form.before), form.kinds[: form.index])
-        out[digest].append(signature_builder.signature(failed, form, finder.context(state)))
+        meant = suspected.of_line(failed, form)
+        out[digest].append(signature_of(RECOGNIZER.lexer, form, meant, finder.context(state)))
     return list(out.values())
 
 
@@ -103,7 +105,7 @@ def test_names_numbers_and_place_do_not_matter() -> None:
     assert 1 == len({signature for found in signatures(*programs) for signature in found})
 
 
-# -------------------------------------------------------------------- would-be keywords
+# -------------------------------------------------------------------- suspected keywords
 
 
 def test_a_word_between_operands_of_many_kinds_is_a_keyword() -> None:
@@ -136,14 +138,14 @@ def test_a_word_behind_many_names_is_a_keyword() -> None:
 
 
 def test_keywords_in_the_middle_of_a_line_are_reported_with_their_places() -> None:
-    """All would-be keywords of a line are found, not only the one it fails at."""
+    """All suspected keywords of a line are found, not only the one it fails at."""
     lines = ("FOR I=1 TO 9 STEP 2", "FOR I=1 TO N STEP K", "FOR I=1 TO 4 STEP M", "HALT 1 STEP 3")
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, f.failures[0], found.forms[f.failures[0].form]) for f in found.files]
-    signature_builder = SignatureBuilder(RECOGNIZER.lexer, failures)
+    suspected = SuspectedKeywords(RECOGNIZER.lexer, failures)
     assert [((6, "STEP"),)] * 3 + [((2, "STEP"),)] == [
-        signature_builder.keywords(failed, form) for _, failed, form in failures
+        suspected.of_line(failed, form) for _, failed, form in failures
     ]
 
 
@@ -152,10 +154,8 @@ def only_names(lines: Sequence[str], word: str) -> bool:
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, x, found.forms[x.form]) for f in found.files for x in f.failures]
-    signature_builder = SignatureBuilder(RECOGNIZER.lexer, failures)
-    meant = {
-        said for _, failed, form in failures for _, said in signature_builder.keywords(failed, form)
-    }
+    suspected = SuspectedKeywords(RECOGNIZER.lexer, failures)
+    meant = {said for _, failed, form in failures for _, said in suspected.of_line(failed, form)}
     return word not in meant and not any(word in t.split() for t in signature_texts(*each(*lines)))
 
 

@@ -5,14 +5,14 @@ import pytest
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
-from recovery.induction.would_be_keywords import WouldBeKeywords
+from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.language import CorpusFile
 
 
-def _keywords(toy: Grammar, files: dict[str, str], types: tuple[str, ...] = ()) -> WouldBeKeywords:
+def _keywords(toy: Grammar, files: dict[str, str], types: tuple[str, ...] = ()) -> InferredKeywords:
     lexer = Recognizer(toy).lexer
     shown = [CorpusFile(o, text, frozenset({o})) for o, text in files.items()]
-    return WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, types)
+    return InferredKeywords(CorpusLines(shown, lexer), lexer, {}, types)
 
 
 @pytest.mark.parametrize(("origins", "soft"), [("abc", False), ("ab", True)])
@@ -38,7 +38,7 @@ def test_a_word_of_one_origin(toy: Grammar, least: int, found: bool) -> None:
     lexer = Recognizer(toy).lexer
     one = frozenset({"a"})
     shown = [CorpusFile(f"a/{n}", f"MOVE A{n}\nX := {n}\n", one) for n in range(2)]
-    keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, (), least)
+    keywords = InferredKeywords(CorpusLines(shown, lexer), lexer, {}, (), least)
     assert found == ("MOVE" in keywords.words)
 
 
@@ -70,7 +70,7 @@ def test_one_line_does_not_outvote_others(toy: Grammar, uses: int, soft: bool) -
     files = {"a": "MOVE A\nMOVE 1\nMOVE 2\n" + "".join(f"X := MOVE + {n}\n" for n in range(uses))}
     lexer = Recognizer(toy).lexer
     shown = [CorpusFile(o, text, frozenset({"a"})) for o, text in files.items()]
-    keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, (), 1)
+    keywords = InferredKeywords(CorpusLines(shown, lexer), lexer, {}, (), 1)
     assert ("MOVE" in keywords.words, soft) == (True, "MOVE" in keywords.soft)
 
 
@@ -85,5 +85,5 @@ def test_names_of_types_in_one_origin(
     lexer = Recognizer(toy).lexer
     text = f"MOVE HALT A\nMOVE KIND B\n{more}"
     shown = [CorpusFile(f"a/{n}", f"{text}X := {n}\n", frozenset({"a"})) for n in range(2)]
-    keywords = WouldBeKeywords(CorpusLines(shown, lexer), lexer, {}, types, 1)
+    keywords = InferredKeywords(CorpusLines(shown, lexer), lexer, {}, types, 1)
     assert ("MOVE" in keywords.words, found) == (True, "KIND" in keywords.words)

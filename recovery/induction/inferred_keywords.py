@@ -5,23 +5,33 @@ operand, or alone on a line; or beside an operand without a sign between. The la
 that one of the two is a keyword. Keywords and names are distinguished by their context: in one
 context a language has few keywords, but any number of names. So only contexts with few different
 words count, and nearly all uses of a word must be in such contexts, in several origins.
+
+A word that is reserved by mistake makes programs unreadable in which it is a name. So this asks
+more than `recovery.survey.suspected_keywords`, which serves a survey: lines that can be read count
+too, and origins vote. On failing lines alone contexts with few words say little.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import NamedTuple
 
 from grammar.parser.failures import Failure
 from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.language import CorpusFile
 from recovery.survey.failing_line import source_lines
+from recovery.survey.suspected_keywords import names_of_line
 from recovery.tuning import (
     FEW_WORDS,
     FEWER_WORDS,
+    INFERRED_FILES,
+    INFERRED_FILES_ALONE,
+    INFERRED_ORIGINS,
+    INFERRED_SHARE,
     LEAST_FILES_ALONE,
     LINES_OF_ONE_FILE,
     NAME_SHARE,
@@ -29,10 +39,6 @@ from recovery.tuning import (
     OUTVOTING_ORIGINS,
     PREFIX_SHARE,
     PREFIX_TOKENS,
-    WOULD_BE_FILES,
-    WOULD_BE_FILES_ALONE,
-    WOULD_BE_ORIGINS,
-    WOULD_BE_SHARE,
 )
 
 # Signs behind a name that is called, indexed or has members.
@@ -41,25 +47,54 @@ _BEHIND_NAMES = frozenset("([.")
 # Signs with which an operand may begin.
 _OPENING = frozenset("(+-")
 
-#: The head of the line, what is ahead, what is behind.
-_Surroundings = tuple[str, str, str]
 _OPERAND = "an operand"
 _END = "end"
 _TYPE = "a type"
+
+
+class _Context(NamedTuple):
+    """What surrounds a name: the first token of the line, and the tokens ahead and behind.
+
+    All operands are equal, and all types.
+    """
+
+    head: str
+    ahead: str
+    behind: str
+
+    @property
+    def is_of_types(self) -> bool:
+        """Whether it is a word and an operand with the name of a type between."""
+        is_word = self.ahead not in ("", _OPERAND) and self.ahead.isidentifier()
+        return is_word and self.behind == _OPERAND
+
+    @property
+    def most_words(self) -> int:
+        """The number of different words up to which they are keywords."""
+        no_name = _OPERAND in (self.ahead, self.behind) or self == ("", "", _END)
+        return FEW_WORDS if no_name else FEWER_WORDS
+
+
 # Where a name is nothing but a name.
-_PLAIN: _Surroundings = ("", "", "")
+_PLAIN = _Context("", "", "")
 # Where it may be either.
-_OPEN: _Surroundings = ("", "", "(")
+_OPEN = _Context("", "", "(")
 # No name begins a line with an operand behind it.
-_HEAD: _Surroundings = ("", "", _OPERAND)
+_HEAD = _Context("", "", _OPERAND)
 
 
-@dataclass(frozen=True, slots=True)
-class _Use:
-    place: int
-    word: str
-    surroundings: _Surroundings
-    is_beside: bool
+@dataclass(slots=True)
+class _Uses:
+    """Uses of a word in some contexts: the origins, and the files of each different line.
+
+    ``operators`` are the files with the word between operands of an expression, ``followed`` those
+    with the word ahead of two operands, as a type of two names would be.
+    """
+
+    origins: set[str] = field(default_factory=set)
+    files: int = 0
+    operators: int = 0
+    followed: int = 0
 
 
 def names_read(
@@ -83,8 +118,11 @@ def names_read(
     return {word: origins[word] for word, count in found.items() if count >= NAMED_LINES}
 
 
-class WouldBeKeywords:
-    """The words that the lines of a corpus use as keywords, under one lexer."""
+class InferredKeywords:
+    """The words that the lines of a corpus use as keywords, under one lexer.
+
+    ``words`` are all of them, ``soft`` those that are used as names besides.
+    """
 
     def __init__(
         self,
@@ -92,7 +130,7 @@ class WouldBeKeywords:
         lexer: Lexer,
         read: Mapping[str, Collection[str]],
         types: Collection[str],
-        least: int = WOULD_BE_ORIGINS,
+        least: int = INFERRED_ORIGINS,
         least_files: int = LEAST_FILES_ALONE,
     ) -> None:
         """``read`` are names in lines that the grammar reads, with the origins that use them so.
@@ -104,88 +142,77 @@ class WouldBeKeywords:
         self.corpus = corpus
         self.lexer = lexer
         self.least = least, least_files
-        alone = WOULD_BE_FILES_ALONE if least > 1 else LEAST_FILES_ALONE
         self._types = frozenset(types)
-        self._name = lexer.name_kind
         self._values = frozenset(
             kind
-            for kind, shown in enumerate(lexer.display)
-            if kind and shown == lexer.names[kind] and not lexer.is_keyword(kind)
+            for kind in range(1, len(lexer.names))
+            if not (lexer.is_sign(kind) or lexer.is_keyword(kind))
         ) - {lexer.line_kind}
-        fillers: dict[_Surroundings, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
-        files: Counter[tuple[_Surroundings, str]] = Counter()
-        uses: Counter[str] = Counter()
-        operators: Counter[str] = Counter()
-        beside: set[_Surroundings] = set()
-        followed: Counter[str] = Counter()
-        for number, line in enumerate(corpus.lines):
-            for use in self._uses(line):
-                fillers[use.surroundings][use.word] |= corpus.origins[number]
-                if use.surroundings == _OPEN:
-                    continue
-                files[use.surroundings, use.word] += corpus.counts[number]
-                uses[use.word] += corpus.counts[number]
-                if _is_of_types(use.surroundings) and self._is_beside(line, use.place + 1):
-                    followed[use.word] += corpus.counts[number]
-                if use.surroundings[1:] == (_OPERAND, _OPERAND) and _in_expression(line, use.place):
-                    operators[use.word] += corpus.counts[number]
-                if use.is_beside:
-                    beside.add(use.surroundings)
-        self._closed: set[_Surroundings] = set()
-        meant: Counter[str] = Counter()
-        heads: Counter[str] = Counter()
-        places: dict[str, set[str]] = defaultdict(set)
-        for surroundings, words in fillers.items():
-            is_head = surroundings == _HEAD or (
-                surroundings[2] == _TYPE and len(words) <= FEWER_WORDS
-            )
-            if surroundings in (_PLAIN, _OPEN):
-                continue
-            if is_head or len(words) <= (FEW_WORDS if surroundings in beside else FEWER_WORDS):
-                self._closed.add(surroundings)
-                for word in words:
-                    meant[word] += files[surroundings, word]
-                    heads[word] += files[surroundings, word] * is_head
-                    places[word] |= words[word]
-        typing = self._of_types() if least == 1 else frozenset()
+        contexts = self._contexts()
+        # where words are keywords however often they are names elsewhere
+        heads = {
+            context
+            for context, words in contexts.items()
+            if context == _HEAD or (context.behind == _TYPE and len(words) <= FEWER_WORDS)
+        }
+        few = {context for context, words in contexts.items() if len(words) <= context.most_words}
+        self._closed = (heads | few) - {_PLAIN}
+        every, closed = _total(contexts.values()), _total(contexts[c] for c in self._closed)
+        head = _total(contexts[c] for c in heads)
+        alone = INFERRED_FILES_ALONE if least > 1 else LEAST_FILES_ALONE
+        type_names = self._type_names() if least == 1 else frozenset()
         self.words = frozenset(
             word
-            for word, count in meant.items()
-            if word not in typing
-            if (len(places[word]) >= WOULD_BE_ORIGINS and count >= WOULD_BE_FILES)
-            or count >= alone
-            or (least_files == 1 and operators[word] == uses[word])
-            if heads[word] >= WOULD_BE_FILES or count >= WOULD_BE_SHARE * uses[word]
+            for word, uses in closed.items()
+            if word not in type_names
+            if (len(uses.origins) >= INFERRED_ORIGINS and uses.files >= INFERRED_FILES)
+            or uses.files >= alone
+            or (least_files == 1 and every[word].operators == every[word].files)
+            if head[word].files >= INFERRED_FILES
+            or uses.files >= INFERRED_SHARE * every[word].files
         )
-        typed = {
+        # what a word behind a reserved one declares, as types do, ends there, or a sign goes on
+        declaring = {
             word
-            for surroundings, words in fillers.items()
-            if _is_of_types(surroundings) and surroundings[1] in lexer.kind_of
-            for word, origins in words.items()
-            # what a type declares ends there, or a sign goes on
-            if len(origins) >= WOULD_BE_ORIGINS and 2 * followed[word] <= files[surroundings, word]
+            for context, words in contexts.items()
+            if context.is_of_types and context.ahead in lexer.kind_of
+            for word, uses in words.items()
+            if len(uses.origins) >= INFERRED_ORIGINS and 2 * every[word].followed <= uses.files
         }
-        ahead = {w for s in self._closed if s[2] == _TYPE for w in fillers[s]}
-        #: Those that are used as names besides.
-        self.soft = frozenset(
-            word
-            for word in self.words
-            if word in typed - ahead
-            or (
-                (files[_PLAIN, word] > NAME_SHARE * uses[word] or word in read)
-                # one origin that uses it as a name does not outvote several that do not, nor one
-                # line those that the word begins
-                and (
-                    len(fillers[_PLAIN][word].union(read.get(word, ()))) > 1
-                    or not (
-                        len(places[word]) >= OUTVOTING_ORIGINS
-                        or heads[word] >= LINES_OF_ONE_FILE > 1 >= files[_PLAIN, word]
-                    )
-                )
-            )
-        )
+        declaring -= {word for c in self._closed if c.behind == _TYPE for word in contexts[c]}
 
-    def _of_types(self) -> frozenset[str]:
+        def is_name_too(word: str) -> bool:
+            plain = contexts[_PLAIN][word]
+            if plain.files <= NAME_SHARE * every[word].files and word not in read:
+                return False
+            # one origin that uses it as a name does not outvote several that do not, nor one line
+            # those that the word begins
+            is_outvoted = (
+                len(closed[word].origins) >= OUTVOTING_ORIGINS
+                or head[word].files >= LINES_OF_ONE_FILE > 1 >= plain.files
+            )
+            return len(plain.origins.union(read.get(word, ()))) > 1 or not is_outvoted
+
+        self.soft = frozenset(w for w in self.words if w in declaring or is_name_too(w))
+
+    def _contexts(self) -> dict[_Context, dict[str, _Uses]]:
+        """Return the words of the corpus by context, without those that may be called."""
+        found: dict[_Context, dict[str, _Uses]] = defaultdict(lambda: defaultdict(_Uses))
+        corpus = self.corpus
+        for line, count, origins in zip(corpus.lines, corpus.counts, corpus.origins, strict=True):
+            for place, word, context in self._uses(line):
+                if context == _OPEN:
+                    continue
+                uses = found[context][word]
+                uses.origins |= origins
+                uses.files += count
+                if context.is_of_types and self._is_beside(line, place + 1):
+                    uses.followed += count
+                if context[1:] == (_OPERAND, _OPERAND) and _in_expression(line, place):
+                    uses.operators += count
+        return found
+
+    def _type_names(self) -> frozenset[str]:
         """Return names of types: between a word and a last operand, where others have a type.
 
         They begin no line and do not precede two operands. The names after them are returned, too.
@@ -200,7 +227,7 @@ class WouldBeKeywords:
             for place in range(1, len(line) - 1):
                 if is_value[place + 1] and line[place] in self._types:
                     typed.add((line[0], line[place - 1]))
-                elif is_value[place + 1] and kinds[place] == self._name:
+                elif is_value[place + 1] and kinds[place] == self.lexer.name_kind:
                     if self._is_beside(line, place + 1):
                         others.add(line[place])
                     else:
@@ -217,10 +244,7 @@ class WouldBeKeywords:
         lines, kinds = self.corpus.lines, self.lexer.kinds
 
         def begun(line: Sequence[str]) -> tuple[object, ...]:
-            words = line[:PREFIX_TOKENS]
-            return tuple(
-                w if kinds[w] == self._name and w in self.words else kinds[w] for w in words
-            )
+            return tuple(w if w in self.words else kinds[w] for w in line[:PREFIX_TOKENS])
 
         beginnings = {begun(line) for line in lines}
         whole: Counter[str] = Counter()
@@ -242,47 +266,31 @@ class WouldBeKeywords:
         return lexeme in self.words or self.lexer.is_keyword(self.lexer.kinds[lexeme])
 
     def in_line(self, line: Sequence[str]) -> tuple[tuple[int, str], ...]:
-        """Yield the places of a line where a keyword is meant, with the words."""
+        """Return the places of a line where a keyword is meant, with the words."""
         return tuple(
-            (use.place, use.word)
-            for use in self._uses(line)
-            if use.word in self.words
+            (place, word)
+            for place, word, context in self._uses(line)
+            if word in self.words
             and (
-                use.word not in self.soft
-                or (use.surroundings in self._closed and not _is_of_types(use.surroundings))
-                or use.surroundings == _OPEN
+                word not in self.soft
+                or (context in self._closed and not context.is_of_types)
+                or context == _OPEN
             )
         )
 
-    def _uses(self, line: Sequence[str]) -> Iterator[_Use]:
-        """Yield the names of a line; those in braces are skipped, as values are beside them."""
+    def _uses(self, line: Sequence[str]) -> Iterator[tuple[int, str, _Context]]:
+        """Yield the names of a line: index, word and context."""
         kinds = [self.lexer.kinds[lexeme] for lexeme in line]
-        depth = 0
         is_headed = self.lexer.is_keyword(kinds[0]) or (
             len(kinds) > 1 and (kinds[1] in self._values or self.lexer.is_keyword(kinds[1]))
         )
-        for place, (word, kind) in enumerate(zip(line, kinds, strict=True)):
-            depth += (word == "{") - (word == "}")
-            if kind != self._name or depth or word.startswith("$"):
-                continue
+        for place, word in names_of_line(line, kinds, self.lexer):
             behind = self._class(line, kinds, place + 1, ("{",))
             if not place:
-                if len(kinds) > 1 and self.lexer.is_keyword(kinds[1]):
-                    behind = _OPERAND
-                if behind in (_OPERAND, _END):
-                    yield _Use(place, word, ("", "", behind), True)
-                elif behind in _OPENING:  # a call, or a word with an operand behind it
-                    yield _Use(place, word, _OPEN, False)
-                elif behind not in _BEHIND_NAMES and self._is_headed_oddly(line, kinds):
-                    yield _Use(place, word, ("", "", behind), False)
-                else:
-                    yield _Use(place, word, _PLAIN, False)
+                yield 0, word, self._context_of_first(line, kinds, behind)
                 continue
             ahead = self._class(line, kinds, place - 1, (")", "]", "}"))
-            surroundings = (line[0], ahead, behind)
-            if _OPERAND in (ahead, behind):
-                yield _Use(place, word, surroundings, True)
-            elif (
+            is_odd = _OPERAND in (ahead, behind) or (
                 is_headed
                 and behind not in _BEHIND_NAMES
                 and not (place == 1 and behind == "=")
@@ -291,10 +299,17 @@ class WouldBeKeywords:
                     or ahead == ":"
                     or self.lexer.is_keyword(kinds[place - 1])
                 )
-            ):
-                yield _Use(place, word, surroundings, False)
-            else:
-                yield _Use(place, word, _PLAIN, False)
+            )
+            yield place, word, _Context(line[0], ahead, behind) if is_odd else _PLAIN
+
+    def _context_of_first(self, line: Sequence[str], kinds: Sequence[int], behind: str) -> _Context:
+        """Return the context of a name that begins a line."""
+        if len(kinds) > 1 and self.lexer.is_keyword(kinds[1]):
+            return _HEAD
+        if behind in _OPENING:  # a call, or a word with an operand behind it
+            return _OPEN
+        is_odd = behind not in _BEHIND_NAMES and self._is_headed_oddly(line, kinds)
+        return _Context("", "", behind) if is_odd or behind in (_OPERAND, _END) else _PLAIN
 
     def _is_headed_oddly(self, line: Sequence[str], kinds: Sequence[int]) -> bool:
         """Return whether two operands are adjacent, so that a word of the line is a keyword."""
@@ -317,10 +332,17 @@ class WouldBeKeywords:
         return _TYPE if line[place] in self._types else line[place]
 
 
-def _is_of_types(surroundings: _Surroundings) -> bool:
-    """Return whether a context is a word and an operand with the name of a type between."""
-    _, ahead, behind = surroundings
-    return behind == _OPERAND and ahead not in ("", _OPERAND) and ahead.isidentifier()
+def _total(contexts: Iterable[Mapping[str, _Uses]]) -> defaultdict[str, _Uses]:
+    """Return the uses of each word in some contexts together."""
+    found: defaultdict[str, _Uses] = defaultdict(_Uses)
+    for words in contexts:
+        for word, uses in words.items():
+            total = found[word]
+            total.origins |= uses.origins
+            total.files += uses.files
+            total.operators += uses.operators
+            total.followed += uses.followed
+    return found
 
 
 def _in_expression(line: Sequence[str], place: int) -> bool:

@@ -1,0 +1,170 @@
+"""Names on failing lines that may be meant as keywords.
+
+A word that the grammar does not know is a name to its lexer. That it is meant as a keyword shows in
+its neighbours: different operands without a sign between, in several files, and rarely as a plain
+name.
+
+A suspicion costs little if it is wrong, because the edits that reserve the word are tried; a missed
+one splits a cause. So few uses suffice, and the failing lines of a survey are all that is read. An
+automatic recovery, which reserves words for good, asks more of them: see
+`recovery.induction.inferred_keywords`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from grammar.parser.failures import Form
+from grammar.parser.lexer import ERROR, Lexer
+from recovery.survey.failing_line import FailingLine
+from recovery.tuning import (
+    SUSPECTED_ALONE,
+    SUSPECTED_CHOICE,
+    SUSPECTED_FILES,
+    SUSPECTED_NEIGHBOURS,
+    SUSPECTED_SHARE,
+)
+
+_Failure = tuple[str, FailingLine, Form]
+# Signs that can follow a keyword, but no plain name at the beginning of a line.
+_BEGINS_OPERAND = frozenset("{-+")
+_ENDS_OPERAND = frozenset("])}")
+
+
+def names_of_line(
+    words: Sequence[str], kinds: Sequence[int], lexer: Lexer
+) -> Iterator[tuple[int, str]]:
+    """Yield the names of a line that may be keywords, with their indices.
+
+    Names in braces have values beside them anyway, and no keyword begins with a dollar sign.
+    """
+    depth = 0
+    for place, (word, kind) in enumerate(zip(words, kinds, strict=False)):
+        depth += (word == "{") - (word == "}")
+        if kind == lexer.name_kind and not depth and not word.startswith("$"):
+            yield place, word
+
+
+@dataclass(slots=True)
+class _Uses:
+    """How failing lines use a name: as names are used, or where no name can stand.
+
+    The latter are counted in ``odd``, those of them without an operand beside in ``alone``.
+    ``files`` are digests; those in ``led`` have lines that begin with the name and an operand.
+    """
+
+    plain: int = 0
+    odd: int = 0
+    alone: int = 0
+    files: set[str] = field(default_factory=set)
+    led: set[str] = field(default_factory=set)
+    before: set[str] = field(default_factory=set)
+    after: set[str] = field(default_factory=set)
+
+    def are_of_a_keyword(self, *, is_sole: bool) -> bool:
+        """Return whether the name is taken for a keyword; ``is_sole`` counts as many neighbours."""
+        return (
+            len(self.files) >= SUSPECTED_FILES
+            and self.odd >= SUSPECTED_SHARE * (self.odd + self.plain)
+            and (
+                is_sole
+                or self.alone >= SUSPECTED_ALONE
+                or max(len(self.before), len(self.after)) >= SUSPECTED_NEIGHBOURS
+                or (len(self.led) >= SUSPECTED_FILES and len(self.after) > 1)
+            )
+        )
+
+
+class SuspectedKeywords:
+    """The names that failing lines under one grammar show to be keywords."""
+
+    def __init__(self, lexer: Lexer, failures: Iterable[_Failure]) -> None:
+        """``failures`` are all of a survey, with the digests of their files."""
+        self.lexer = lexer
+        failures = list(failures)
+        self._sole = self._sole_words(failures)
+        found: dict[str, _Uses] = defaultdict(_Uses)
+        for digest, failed, form in failures:
+            for place, word in names_of_line(failed.words, form.kinds, lexer):
+                if self._stands_out(form, place, word):
+                    self._count(found[word], digest, failed.words, form.kinds, place)
+                else:
+                    found[word].plain += 1
+        self._words = frozenset(
+            word
+            for word, uses in found.items()
+            if uses.are_of_a_keyword(is_sole=word in self._sole)
+        )
+
+    def of_line(self, failed: FailingLine, form: Form) -> tuple[tuple[int, str], ...]:
+        """Return the suspected keywords on a failing line, with their indices."""
+        return tuple(
+            (place, word)
+            for place, word in names_of_line(failed.words, form.kinds, self.lexer)
+            if word in self._words and self._stands_out(form, place, word)
+        )
+
+    def _sole_words(self, failures: Iterable[_Failure]) -> frozenset[str]:
+        """Return words at which lines fail behind a keyword, and hardly at any other word."""
+        places: dict[tuple[int, ...], Counter[str]] = defaultdict(Counter)
+        for _, failed, form in failures:
+            if not 0 < form.index < len(failed.words):
+                continue
+            before, kind = form.kinds[form.index - 1 : form.index + 1]
+            if kind == self.lexer.name_kind and self.lexer.is_keyword(before):
+                places[form.kinds[: form.index]][failed.words[form.index]] += 1
+        return frozenset(
+            word
+            for words in places.values()
+            if len(words) <= SUSPECTED_CHOICE
+            for word, count in words.items()
+            if count >= SUSPECTED_NEIGHBOURS
+        )
+
+    def _count(
+        self, uses: _Uses, digest: str, words: Sequence[str], kinds: Sequence[int], place: int
+    ) -> None:
+        is_behind = place > 0 and self._is_operand(kinds, place - 1)
+        is_ahead = self._is_operand(kinds, place + 1)
+        uses.odd += 1
+        uses.files.add(digest)
+        uses.alone += not (is_behind or is_ahead)
+        if is_behind:
+            uses.before.add(words[place - 1])
+        if is_ahead:
+            uses.after.update(words[place + 1 : place + 2])
+            if place == 0:
+                uses.led.add(digest)
+
+    def _stands_out(self, form: Form, place: int, word: str) -> bool:
+        """Return whether a name is used like a keyword.
+
+        It lacks the sign that a name in an expression has beside it, or stands where other lines
+        never have a different name. A plain name begins a line only before a sign; elsewhere it
+        follows a sign or a keyword. A name directly before or after an operand is one word too
+        many.
+        """
+        if place == form.index and word in self._sole:
+            return True
+        if place == 0:
+            sign = self._sign(form.kinds, 1)
+            return not sign or sign in _BEGINS_OPERAND
+        return (
+            self._is_operand(form.kinds, place - 1)
+            or self._is_operand(form.kinds, place + 1)
+            or self._sign(form.kinds, place - 1) == ":"
+        )
+
+    def _sign(self, kinds: Sequence[int], place: int) -> str:
+        """Return the sign at an index; empty if there is none."""
+        kind = kinds[place] if place < len(kinds) else ERROR
+        return self.lexer.display[kind] if self.lexer.is_sign(kind) else ""
+
+    def _is_operand(self, kinds: Sequence[int], place: int) -> bool:
+        """Return whether an operand begins or ends at an index."""
+        kind = kinds[place] if place < len(kinds) else ERROR
+        if kind <= 0 or kind == self.lexer.line_kind or self.lexer.is_keyword(kind):
+            return False
+        return not self.lexer.is_sign(kind) or self.lexer.display[kind] in _ENDS_OPERAND
