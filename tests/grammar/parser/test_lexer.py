@@ -281,6 +281,15 @@ def test_which_tokens_are_keywords(preliminary: Grammar) -> None:
 # ------------------------------------------------------------------------------- sharing
 
 
+def test_which_tokens_are_signs(preliminary: Grammar) -> None:
+    """A sign has one text that is no word, unlike names, values, words and the end of the file."""
+    lexer = lexer_of(preliminary)
+    kinds = {text: lexer.kinds[text] for text in (":", "==", "(", "A", "1", '"A"', "FOR", "TRUE")}
+    assert {":", "==", "("} == {text for text, kind in kinds.items() if lexer.is_sign(kind)}
+    assert not lexer.is_sign(EOF)
+    assert not lexer.is_sign(ERROR)
+
+
 @pytest.mark.parametrize(
     ("rules", "name", "line_end"),
     [

@@ -181,6 +181,12 @@ def test_names_with_a_sign_between(writer: FormWriter) -> None:
     assert "PAIR NAME '+' NAME" == writer.form([_symbols(writer, "PAIR A + B")])
 
 
+def test_a_list_that_a_line_lacks(writer: FormWriter) -> None:
+    """A list is missing where a line has none."""
+    lines = ("LIST", "LIST A, B")
+    assert "LIST (NAME (',' NAME)*)?" == writer.form([_symbols(writer, line) for line in lines])
+
+
 def test_an_item_that_is_set_to_nothing(writer: FormWriter) -> None:
     """It is an item where the items of other lists are set to something."""
     lines = ("LIST A = 1, B = 2", "LIST INSIDE ON A")
