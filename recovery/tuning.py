@@ -24,6 +24,9 @@ DEEPEST_STACK = 150
 
 # ------------------------------------------------------------------- words that a line means
 # `recovery.survey.suspected_keywords`: when a name on failing lines may be meant as a keyword.
+# Measured: with the rules of `recovery.induction.inferred_keywords` fewer of the words are wrong (2
+# of 39 instead of 63 of 94, on the public corpus under preliminary.g4), but the survey has 57
+# clusters instead of 53, and of 48 mutants (seed 778) 32 are repaired first instead of 34.
 
 #: Files in which a name has to stand where no name can. Not measured.
 SUSPECTED_FILES = 2

@@ -13,7 +13,7 @@ from recovery import tuning
 
 FOLDER = Path(recovery.__file__).parent
 HEURISTIC = [
-    *(FOLDER / "survey" / name for name in ("signature.py", "unreserved_keywords.py")),
+    *(FOLDER / "survey" / name for name in ("suspected_keywords.py", "unreserved_keywords.py")),
     *(
         path
         for folder in ("proposals", "clustering", "reproducer", "induction")
