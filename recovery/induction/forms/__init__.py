@@ -1,5 +1,8 @@
 """Forms: the text of a rule that reads all lines, or all contents of brackets, of one kind.
 
-`writer` writes them from lines of symbols. Its steps are `operand_splits`, `lists`, `marks`,
-`chain`, `operand_cover` and `chain_text`, in this order. `samples` turns a rule into such lines.
+``PAIR A``, ``PAIR A LEFT B`` and ``PAIR ON`` have the form ``PAIR (NAME (LEFT NAME)? | ON)``.
+
+`writer` writes a form from lines of symbols. Its steps are `operand_splits`, `lists`, `marks`,
+`recovery.induction.chain`, `operand_cover` and `chain_text`, in this order. `samples` gives lines
+that a rule reads, so that a form can extend it; `loose` tells which forms are too wide.
 """

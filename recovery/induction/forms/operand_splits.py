@@ -11,10 +11,11 @@ from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolRead
 def split_operands(
     reader: SymbolReader, lines: Sequence[tuple[Symbol, ...]]
 ) -> list[tuple[Symbol, ...]]:
-    """Return the lines with what is a call or an index in some lines, and not in others, divided.
+    """Return the lines with operands divided that are a call, or a name with an index.
 
-    ``F(X)`` in ``DEFFCT INT F(X)`` is no call if another line is ``DEFFCT INT F(X:IN)``. A name is
-    separated from its index if others have an index after a type: ``EXT F(NAMED[]:IN, INT[]:IN)``.
+    That is done if other lines show that the brackets are none of an operand: ``F(X)`` in
+    ``DEFFCT INT F(X)`` is no call if another line is ``DEFFCT INT F(X:IN)``, and an index may also
+    follow a type in ``EXT F(NAMED[]:IN, INT[]:IN)``.
     """
     rules = reader.rules
     behind = [right for line in lines for left, right in pairwise(line) if left.is_operand]
