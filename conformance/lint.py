@@ -55,6 +55,9 @@ _CLAUSE_WORDS: Final = {
     "resume": "RESUME",
     "halt": "HALT",
 }
+#: A line that asks for the number of the last error, and one after which that number is another.
+_ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
+_CLEARED: Final = re.compile(r"\s*(ERR_CLEAR\b|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE)
 #: An expectation of a message number, and the syntax of numbers in rules, as in "3214 to 3217".
 _MESSAGE: Final = re.compile(r"(?:fault|message|error KSS|warning KSS) ?(\d{2,})")
 _NUMBERS: Final = re.compile(r"\d{2,}(?: to \d{2,})?")
@@ -137,6 +140,7 @@ def _defects(case: Case) -> Iterator[str]:
     yield from _text_defects(case)
     yield from _expectation_defects(case)
     yield from _clause_defects(case)
+    yield from _error_defects(case)
 
 
 def _text_defects(case: Case) -> Iterator[str]:
@@ -208,6 +212,19 @@ def _numbers_of(case: Case) -> set[int]:
             first, _, last = text.partition(" to ")
             found.update(range(int(first), int(last or first) + 1))
     return found
+
+
+def _error_defects(case: Case) -> Iterator[str]:
+    """Yield expectations of $ERR.NUMBER that an earlier fault has met already: it stays set."""
+    for source in case.sources:
+        asked = 0
+        for number, line in enumerate(source.text.splitlines(), start=1):
+            if _CLEARED.match(line):
+                asked = 0
+            elif _ASKED.search(line):
+                if asked and ";>" in line:
+                    yield f"line {number}: line {asked} has not cleared $ERR: ERR_CLEAR($ERR)"
+                asked = number
 
 
 def _duplicate_titles(cases: Sequence[Case]) -> Iterator[str]:

@@ -58,6 +58,11 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ("control/good.src", "runs 1", "halted", "no expectation 'halted'"),
         ("control/good.src", "DEF", ";> never\nDEF", "beside no line"),
         ("control/good.src", "runs 1", "path line 0 0 0 to 1 1 1", "CTL-01 says nothing of"),
+        (
+            *("control/good.src", "HALT ;> runs 1"),
+            "N = $ERR.NUMBER ;> value N 5\n  N = $ERR.NUMBER ;> value N 5",
+            "line 6: line 5 has not cleared $ERR",
+        ),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
         ("control/good.src", "runs 1", "fault 1444", "no rule of the case says that 1444"),
         (
