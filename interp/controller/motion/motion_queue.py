@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
-from grammar.motion_kinds import AXIS_MOTIONS, WITHOUT_PATH
+from grammar.motion_kinds import AXIS_MOTIONS, SPLINE_MOTIONS, WITHOUT_PATH
 from interp.controller.motion.motions import MotionBuilder, PlannedMotion
 from interp.controller.motion.output_switch import OutputSwitch
 from interp.controller.motion.positions import FramesInForce, Positions
@@ -152,12 +152,13 @@ class MotionQueue:
     def plan(self, task: Task, request: Move | MoveSpline, *, is_replaced: bool = False) -> None:
         """Plan a motion with the triggers before it. Raises `Fault`; then nothing is planned.
 
-        With ``is_replaced``, plan a PTP to the same point with any Status instead.
+        No spline motion is planned for an interrupt routine [SPL-11]. With ``is_replaced``, plan a
+        PTP to the same point with any Status instead.
         """
         triggers, task.triggers = task.triggers, []
+        if task.levels and (isinstance(request, MoveSpline) or request.kind in SPLINE_MOTIONS):
+            raise own_fault("spline_place")
         if isinstance(request, MoveSpline):
-            if task.levels:
-                raise own_fault("spline_place")
             for item in request.items:
                 if isinstance(item, SetTrigger):
                     self._check_trigger(item)
