@@ -108,6 +108,7 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
         ),
         (
             "interp.robot.api.batch",
+            "interp.robot.api.commands.Transaction.check",
             "interp.robot.api.motions",
             *(
                 f"interp.robot.api.control_core.ControlCore.{name}"
@@ -122,6 +123,9 @@ PACKAGES: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
             "interp.robot.kinematics.dynamics_data",
             "interp.robot.kinematics.machine_data",
             "interp.robot.planning.deferred_arm.DeferredArm.rewind",
+            "interp.robot.planning.limits.AxisLimits.carrying",
+            "interp.robot.planning.limits.*.within",
+            "interp.robot.planning.torque_limits",
             "interp.robot.planning.planned_arm.PlannedArm.mark",
             "interp.robot.planning.planned_arm.PlannedArm.rewind",
             "interp.robot.planning.timeline.Timeline.restore",
