@@ -11,7 +11,8 @@ from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms
-from recovery.induction.symbols import Symbol, Token
+from recovery.induction.symbol_reader import Token
+from recovery.induction.symbols import Symbol
 from recovery.proposals.blocks import BlockLines
 
 

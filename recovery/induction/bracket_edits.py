@@ -11,9 +11,10 @@ from recovery.induction.forms.lists import split_at_commas
 from recovery.induction.forms.samples import samples_of
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
+from recovery.induction.operand_rules import bracket_pairs
 from recovery.induction.steps import Inferred
 from recovery.induction.supported_forms import SupportedForms, optional
-from recovery.induction.symbols import BRACKETS, Symbol, bracket_pairs
+from recovery.induction.symbols import BRACKETS, Symbol
 from recovery.tuning import BRACKET_ORIGINS, MISSING_RUN
 
 

@@ -11,8 +11,9 @@ from grammar.notation.edits import AddAlternative, Insert, Replace
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule
 from recovery.induction.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.operand_rules import bracket_pairs
 from recovery.induction.steps import Inferred
-from recovery.induction.symbols import BRACKETS, bracket_pairs
+from recovery.induction.symbols import BRACKETS
 from recovery.tuning import FOLDING_SYMBOLS
 
 

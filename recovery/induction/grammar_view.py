@@ -15,7 +15,9 @@ from grammar.notation.model import Alternative, Element, Group, Literal, Referen
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.forms.loose import is_loose
 from recovery.induction.forms.writer import FormWriter
-from recovery.induction.symbols import OperandRules, Symbol, SymbolReader
+from recovery.induction.operand_rules import OperandRules
+from recovery.induction.symbol_reader import SymbolReader
+from recovery.induction.symbols import Symbol
 from recovery.proposals.grammar_profile import GrammarProfile
 
 

@@ -38,6 +38,7 @@ from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
 from recovery.induction.objections import EditReview
+from recovery.induction.operand_rules import OperandRules
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
     Evidence,
@@ -49,7 +50,8 @@ from recovery.induction.steps import (
     described,
     joined,
 )
-from recovery.induction.symbols import OperandRules, SymbolReader, operands_of
+from recovery.induction.symbol_reader import SymbolReader
+from recovery.induction.symbols import operands_of
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern

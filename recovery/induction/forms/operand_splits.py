@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 from itertools import pairwise
 
-from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
+from recovery.induction.operand_rules import OperandRules
+from recovery.induction.symbol_reader import SymbolReader
+from recovery.induction.symbols import Operand, Symbol
 
 
 def split_operands(

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from recovery.induction.forms.lists import LONG_LIST
-from recovery.induction.symbols import CLOSERS, Operand, OperandRules, Symbol
+from recovery.induction.operand_rules import OperandRules
+from recovery.induction.symbols import CLOSERS, Operand, Symbol
 from recovery.tuning import MOST_SAMPLES
 
 

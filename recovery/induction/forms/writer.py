@@ -11,7 +11,8 @@ from recovery.induction.forms.lists import COMMA, LIST, FoldedLists, fold_lists
 from recovery.induction.forms.marks import Mark, MarkedLine, marked
 from recovery.induction.forms.operand_cover import NoRuleError, OperandCover
 from recovery.induction.forms.operand_splits import split_operands
-from recovery.induction.symbols import CLOSERS, Operand, Symbol, SymbolReader, texts
+from recovery.induction.symbol_reader import SymbolReader
+from recovery.induction.symbols import CLOSERS, Operand, Symbol, texts
 from recovery.tuning import MANY_LISTS
 
 

@@ -8,7 +8,9 @@ from grammar.parser.recognizer import Recognizer
 from recovery.induction.forms.loose import is_loose
 from recovery.induction.forms.samples import samples_of
 from recovery.induction.forms.writer import FormWriter
-from recovery.induction.symbols import Operand, OperandRules, Symbol, SymbolReader
+from recovery.induction.operand_rules import OperandRules
+from recovery.induction.symbol_reader import SymbolReader
+from recovery.induction.symbols import Operand, Symbol
 
 _GRAMMAR = """grammar Toy;
 
