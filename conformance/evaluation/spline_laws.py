@@ -34,8 +34,11 @@ _SAMPLES: Final = 150
 #: mm of a segment below which the tool may only turn, and the difference of tangents at a corner.
 _SHORT: Final = 1.0
 _BEND: Final = 1e-6
-#: mm or degrees by which the nearest place on a path may lie off the expected one.
+#: mm by which a place may lie ahead of the expected one, or behind the last one; and by which
+#: distances differ that count as equal: where a path leads back over itself, the first is taken.
 _AHEAD: Final = 2.0
+_BACK: Final = 0.02
+_EQUAL: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -246,7 +249,7 @@ def _quintic(points: Array, slopes: Array, bends: Array, span: float) -> Array:
 def _along(lines: Array, rows: Array) -> tuple[Array, Array]:
     """Return for each row the length along a polyline up to its nearest place, and the distance.
 
-    Rows are in the order of the polyline, which may cross itself.
+    Rows are in the order of the polyline, which may cross itself or lead back.
     """
     steps = np.diff(lines, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
@@ -255,13 +258,15 @@ def _along(lines: Array, rows: Array) -> tuple[Array, Array]:
     at, before = 0.0, rows[0]
     for number, row in enumerate(rows):
         ahead = at + 2.0 * float(np.linalg.norm(row - before)) + _AHEAD
-        first, last = np.searchsorted(sums, [at - _AHEAD, ahead])
+        first, last = np.searchsorted(sums, [at - _BACK, ahead])
         own = slice(max(first - 1, 0), max(min(last, len(steps)), first))
-        squares = np.maximum(lengths[own] ** 2, 1e-18)
-        shares = np.clip(((row - lines[:-1][own]) * steps[own]).sum(axis=1) / squares, 0.0, 1.0)
+        sizes = np.maximum(lengths[own], 1e-9)
+        shares = ((row - lines[:-1][own]) * steps[own]).sum(axis=1) / sizes**2
+        least = np.clip((at - _BACK - sums[:-1][own]) / sizes, 0.0, 1.0)
+        shares = np.clip(shares, least, 1.0)
         feet = lines[:-1][own] + shares[:, None] * steps[own]
         distances = np.linalg.norm(feet - row, axis=1)
-        best = int(np.argmin(distances))
+        best = int(np.argmax(distances <= distances.min() + _EQUAL))
         at, before = float(sums[own][best] + shares[best] * lengths[own][best]), row
         places[number], off[number] = at, distances[best]
     return places, off
