@@ -1,11 +1,12 @@
-/* Runs damaged images: none may do harm, however it is damaged.
+/* Fuzzer of images: no image may do harm, however it is damaged.
  *
- * An image is damaged word by word, its header is made right again, and if it is still accepted all
- * of its code objects are run for some statements. The world is played by numbers drawn from the
- * image. Wherever a run stops, every cell of the data lists and of the frame must hold a value of its
- * own type: what leads to a wrong cell is found even where sanitizers see nothing.
+ * Damages words of an image, repairs its header and, if the image is still accepted, runs each of
+ * its code objects for some statements. Replies to requests are pseudo-random, seeded by the
+ * checksum of the image. At every stop, the cells of variables must hold values of their types:
+ * this finds wrong stores that sanitizers cannot see.
  *
- * With KRL_LIBFUZZER this is a target of libFuzzer, else a program: krl_fuzz SECONDS SEED IMAGE...
+ * With KRL_LIBFUZZER this is a target of libFuzzer, otherwise a program:
+ * krl_fuzz SECONDS SEED IMAGE...
  */
 #include "image/reader.h"
 #include "load.h"
@@ -19,7 +20,7 @@ enum { STATEMENTS = 300, PER_SLICE = 40, STOPS = 400, DEPTH = 8, MOST_BREAKS = 6
 
 static uint64_t images, accepted, runs, stops, faults;
 
-/* ---------------------------------------------------------------------------- chance */
+/* ---------------------------------------------------------------------------- random numbers */
 
 static uint32_t state = 1;
 
@@ -57,11 +58,11 @@ static void draw_cells(struct krl_machine *machine, int32_t address, int32_t typ
         machine->cells[address + i] = drawn_cell(&machine->program, krl_kind_at(&machine->program, type, i));
 }
 
-/* ---------------------------------------------------------------------------- what must hold */
+/* ---------------------------------------------------------------------------- invariants */
 
 static void check_variable(const struct krl_machine *machine, int32_t address, int32_t type)
 {
-    /* Of a large variable some cells are looked at. */
+    /* At most 64 cells of a variable are checked, evenly spaced. */
     int32_t size = machine->program.types[type].size, stride = 1 + size / 64;
     for (int32_t i = 0; i < size; i += stride) {
         krl_cell cell = machine->cells[address + i];
@@ -86,9 +87,10 @@ static void check_cells(const struct krl_machine *machine)
             check_variable(machine, machine->fp + code->slots[i].offset, code->slots[i].handed.type);
 }
 
-/* ---------------------------------------------------------------------------- the world */
+/* ---------------------------------------------------------------------------- requests and interrupts */
 
-/* Answers a request, as the world would: inputs are taken, what is referred to may change. */
+/* Replies to a request or a call of a predefined function: pops its inputs, stores a random result,
+ * and sometimes changes the variables that it has references to. */
 static void answer(struct krl_machine *machine, const struct krl_entry *entry)
 {
     int is_large = entry->result >= 0 && !krl_is_plain(&machine->program, entry->result);
@@ -107,7 +109,8 @@ static void answer(struct krl_machine *machine, const struct krl_entry *entry)
     machine->top = (int32_t)(top - machine->cells);
 }
 
-/* An action or a condition of the code object that runs, or -1. */
+/* Returns a random action or condition of the current code object, or -1 if the number that is
+ * drawn is none. */
 static int32_t owned(const struct krl_machine *machine)
 {
     int32_t number = (int32_t)draw((uint32_t)machine->program.code_count);
@@ -116,7 +119,8 @@ static int32_t owned(const struct krl_machine *machine)
 
 static void run(struct krl_machine *machine, int32_t step, int depth, int *statements);
 
-/* Enters an action or evaluates a condition, which goes back to the frame that runs now. */
+/* Runs an action or a condition in a frame of its own, which is closed afterwards. At most three
+ * are nested. */
 static void interrupt(struct krl_machine *machine, int depth, int *statements)
 {
     int32_t number = depth < 3 ? owned(machine) : -1, open = machine->open, top = machine->top;
@@ -127,10 +131,11 @@ static void interrupt(struct krl_machine *machine, int depth, int *statements)
     while (machine->open > open)
         krl_close(machine);
     machine->most_calls--;
-    machine->top = top; /* what a condition has left is looked at and forgotten */
+    machine->top = top; /* drops the result of a condition */
 }
 
-/* The step behind the statement that began last; -1 where none has. */
+/* Returns the step where the routine continues if the current statement ends early; -1 if no
+ * statement has begun. */
 static int32_t behind(const struct krl_machine *machine)
 {
     const struct krl_code *code = &machine->program.codes[machine->code];
@@ -139,7 +144,8 @@ static int32_t behind(const struct krl_machine *machine)
     return machine->routines[machine->code].steps[code->body[machine->statement].operands[1]];
 }
 
-/* Runs on until the end, a fault, or the budget; `depth` frames have interrupted one another. */
+/* Runs from a step until the code object ends, a fault is not handled, the budget of statements is
+ * used up, or it has stopped STOPS times. `depth` counts nested interrupts. */
 static void run(struct krl_machine *machine, int32_t step, int depth, int *statements)
 {
     int is_begun = 0, open = machine->open;
@@ -149,7 +155,7 @@ static void run(struct krl_machine *machine, int32_t step, int depth, int *state
         struct krl_stopped stopped = krl_run(machine, step, is_begun);
         is_begun = 0;
         stops++;
-        if (stopped.why == KRL_STOP_LEFT) /* the frame of a condition has gone: what called it goes on */
+        if (stopped.why == KRL_STOP_LEFT) /* the frame of a condition has ended; its caller continues */
             return;
         check_cells(machine);
         switch (stopped.why) {
@@ -165,7 +171,7 @@ static void run(struct krl_machine *machine, int32_t step, int depth, int *state
             break;
         case KRL_STOP_FAULT:
             faults++;
-            /* As ON_ERROR_PROCEED would. */
+            /* Half of the faults are handled, as by ON_ERROR_PROCEED. */
             step = draw(2) && machine->open >= open ? behind(machine) : -1;
             if (step < 0)
                 return;
@@ -207,7 +213,7 @@ static void put_word(uint8_t *bytes, uint32_t word)
         bytes[i] = (uint8_t)(word >> 8 * i);
 }
 
-/* Makes the header fit what follows it. */
+/* Makes the header valid: magic, format, length and checksum. */
 static void seal(uint8_t *image, size_t length)
 {
     memcpy(image, KRL_IMAGE_MAGIC, 4);
@@ -216,12 +222,12 @@ static void seal(uint8_t *image, size_t length)
     put_word(image + 12, krl_checksum(image + 16, length - 16));
 }
 
-/* Changes some words. */
+/* Changes up to four words behind the first five, which `seal` writes or the reader compares. */
 static void damage(uint8_t *image, size_t length)
 {
     uint32_t words = (uint32_t)(length / 4), changes = draw(3) ? 1 : 1 + draw(4);
     for (uint32_t i = 0; i < changes && words > 5; i++) {
-        /* Half of them among the last words, where the instructions are. */
+        /* Half of the changes are in the second half of the image, which has the instructions. */
         uint32_t from = draw(2) ? words - (words - 5) / 2 - 1 : 5;
         uint8_t *place = image + 4 * (from + draw(words - from));
         switch (draw(8)) {

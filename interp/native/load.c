@@ -1,4 +1,4 @@
-/* From an image to a machine: read, verified and translated. */
+/* Loads an image into a machine: reads, verifies and translates it. */
 #include "load.h"
 
 #include "image/reader.h"

@@ -3,7 +3,10 @@
 
 #include "vm/machine.h"
 
-/* Loads an image. 0 where it is refused. */
+/* Reads, verifies and translates an image, of which nothing is referred to later. `traced` is a set
+ * of `enum krl_traced`. Returns 0, with the reason in `why` and nothing allocated, if the image is
+ * refused. Before it runs, the machine needs memory: see krl_give_memory. Release it with
+ * krl_unload. */
 int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int traced,
                    struct krl_refusal *why);
 

@@ -1,7 +1,8 @@
 /* The machine as a Python type, for interp/native/machine.py only.
  *
- * `Core` gives what runs, its frames and its cells. It checks every number it is given that leads
- * into memory, so that no caller can do harm; the caller knows what the numbers mean.
+ * `Core` gives access to the current frame, the open calls and all cells. Methods raise IndexError
+ * for an index out of range. The attribute `top` and the addresses in cells are not checked: the
+ * caller has to keep them valid.
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
@@ -23,7 +24,7 @@ struct core {
     struct krl_machine machine;
 };
 
-/* The type, for the one interpreter that this module is loaded into. */
+/* The type. A static variable, as the module is loaded into one interpreter only. */
 static PyTypeObject *core_type;
 
 static int is_ready(struct core *core)
@@ -99,7 +100,8 @@ static PyObject *object_of(krl_cell cell)
     Py_RETURN_NONE;
 }
 
-/* 0 where an object is nothing that a cell holds. */
+/* Converts None, a bool, a float or an int to a cell. Returns 0 with an exception for any other
+ * object and for an int of more than 32 bits. */
 static int cell_of(PyObject *object, krl_cell *cell)
 {
     if (object == Py_None)
@@ -121,7 +123,7 @@ static int cell_of(PyObject *object, krl_cell *cell)
     return 1;
 }
 
-/* The cell of an index; -1 where there is none. */
+/* Returns the cell that an index names; -1 with an exception if there is none. */
 static Py_ssize_t place_of(struct core *core, PyObject *key)
 {
     Py_ssize_t place = PyNumber_AsSsize_t(key, PyExc_IndexError);
@@ -134,7 +136,8 @@ static Py_ssize_t place_of(struct core *core, PyObject *key)
     return place;
 }
 
-/* The first cell and the number of cells of a slice; 0 where its step is not 1. */
+/* Sets the first cell and the number of cells of a slice. Returns 0 with an exception if its step
+ * is not 1. */
 static int range_of(struct core *core, PyObject *key, Py_ssize_t *start, Py_ssize_t *count)
 {
     Py_ssize_t stop, step;
@@ -286,7 +289,8 @@ static PyObject *core_close(PyObject *self, PyObject *Py_UNUSED(ignored))
     Py_RETURN_NONE;
 }
 
-/* Of an open call, the outermost being 0: the code object, first cell, statement, serial number. */
+/* Returns code object, first cell, statement and serial number of the frame that an open call
+ * returns to. The outermost call is 0. */
 static PyObject *core_call(PyObject *self, PyObject *arguments)
 {
     const struct krl_machine *machine = &((struct core *)self)->machine;
@@ -301,7 +305,7 @@ static PyObject *core_call(PyObject *self, PyObject *arguments)
     return Py_BuildValue("iiii", (int)call->code, (int)call->fp, (int)call->statement, (int)call->serial);
 }
 
-/* The first cell of the frame of a serial number; None where its routine has ended. */
+/* Returns the first cell of the frame with a serial number, or None if its routine has ended. */
 static PyObject *core_frame_of(PyObject *self, PyObject *arguments)
 {
     const struct krl_machine *machine = &((struct core *)self)->machine;
@@ -316,14 +320,15 @@ static PyObject *core_frame_of(PyObject *self, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
-/* The first place on the stack of operands of the frame that runs. */
+/* Returns the first cell of the current frame's operand stack. */
 static PyObject *core_floor(PyObject *self, void *Py_UNUSED(closure))
 {
     const struct krl_machine *machine = &((struct core *)self)->machine;
     return PyLong_FromLong(machine->fp + machine->routines[machine->code].frame);
 }
 
-/* All that a machine goes on from: the frame that runs, the open calls, the cells of the data lists and of its frames. */
+/* Returns a snapshot of all that determines how the run continues: the current frame, the open
+ * calls, the cells of the data lists and those of the frames. */
 static PyObject *core_snapshot(PyObject *self, PyObject *Py_UNUSED(ignored))
 {
     const struct krl_machine *machine = &((struct core *)self)->machine;
@@ -346,7 +351,7 @@ static const char *const step_names[] = {
 #undef STEP_NAME
 };
 
-/* All steps, each a tuple; the targets of jumps are the numbers of steps. */
+/* Returns all steps as tuples, with step numbers for the targets of jumps. */
 static PyObject *core_steps(PyObject *self, PyObject *Py_UNUSED(ignored))
 {
     const struct krl_machine *machine = &((struct core *)self)->machine;
@@ -363,7 +368,8 @@ static PyObject *core_steps(PyObject *self, PyObject *Py_UNUSED(ignored))
     return found;
 }
 
-/* The arrays that steps name: base, width and sizes of each. */
+/* Returns the table of arrays as tuples: base, width, dimensions, three sizes, and the register of
+ * a third index. */
 static PyObject *core_arrays(PyObject *self, PyObject *Py_UNUSED(ignored))
 {
     const struct krl_machine *machine = &((struct core *)self)->machine;
@@ -386,8 +392,8 @@ static void enter_compiled(struct krl_machine *machine)
             krl_stop_at(&machine->steps[*entry], KRL_STOP_COMPILED);
 }
 
-/* Stops before these steps from now on, and no others, as long as there are any in place of entering what was
- * compiled. */
+/* Replaces all breakpoints and returns their number. While there are any, native code is not
+ * entered. Skips steps at which no statement begins, and invalid conditions. */
 static PyObject *core_break_at(PyObject *self, PyObject *arguments)
 {
     struct krl_machine *machine = &((struct core *)self)->machine;
@@ -417,7 +423,8 @@ static PyObject *core_break_at(PyObject *self, PyObject *arguments)
     return PyLong_FromLong(machine->break_count);
 }
 
-/* Runs from now on what was compiled from these very steps. The library stays. */
+/* Loads a shared object that was compiled from the steps of this machine; its native code runs from
+ * now on. The library is never unloaded. Raises OSError if it cannot be loaded. */
 static PyObject *core_load(PyObject *self, PyObject *arguments)
 {
     static const struct krl_outside outside = {krl_is_plain, krl_compute, krl_compose, krl_invert, krl_call_text};

@@ -1,4 +1,4 @@
-/* The code objects of an image: their frames and their instructions. */
+/* Reads the code objects of an image: the layout of their frames, and their instructions. */
 #include "reader.h"
 
 struct shape {
@@ -16,7 +16,8 @@ static void read_slots(struct reader *reader, struct krl_code *code)
     const struct krl_type *types = reader->program->types;
     const uint8_t *start = reader->next;
     uint32_t left = reader->left;
-    /* Two passes: how many there are is known when the parameters and captures have been read. */
+    /* Two passes: the number of slots is known only when the parameters and captures have been
+     * read. */
     struct krl_slot *slots = NULL;
     for (int pass = 0; pass < 2 && !reader->is_wrong; pass++) {
         reader->next = start;
@@ -57,7 +58,8 @@ static void read_slots(struct reader *reader, struct krl_code *code)
         krl_refuse_image(reader, "the data lists and a frame have too many cells");
 }
 
-/* The words of instructions, of which targets become places of instructions. */
+/* Reads the instructions. Targets are word offsets in the image, and become indices of
+ * instructions. */
 static void read_body(struct reader *reader, struct krl_code *code)
 {
     int32_t words = krl_read_count(reader), count = 0;

@@ -1,7 +1,7 @@
-/* From the bytes of an image to a program; the format is that of interp/bytecode/image/layout.py.
+/* Reads an image into a program; interp/bytecode/image/layout.py defines the format.
  *
- * Here are its header and the order of its sections. What is in them is read in table_reader.c and
- * code_object_reader.c, by a reader that trusts nothing of it (reader.h).
+ * This file reads the header and defines the order of the sections. table_reader.c and
+ * code_object_reader.c read their contents, with a reader that trusts none of them (reader.h).
  */
 #include "reader.h"
 

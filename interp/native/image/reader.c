@@ -1,4 +1,4 @@
-/* Reading the words of a section, and what stands all over an image: strings, types, modes. */
+/* Reads words, strings, types and modes, which all sections consist of. */
 #include "reader.h"
 
 void krl_refuse_image(struct reader *reader, const char *reason)
@@ -47,7 +47,7 @@ int32_t krl_read_optional(struct reader *reader, int32_t count)
 
 void *krl_allot_read(struct reader *reader, int32_t count, size_t size)
 {
-    void *memory = krl_allot(reader->program, (size_t)count + 1, size); /* never of no bytes */
+    void *memory = krl_allot(reader->program, (size_t)count + 1, size); /* never 0 bytes */
     if (memory == NULL)
         krl_refuse_image(reader, "there is not enough memory for the image");
     return memory;

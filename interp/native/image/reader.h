@@ -1,7 +1,7 @@
-/* How the sections of an image are read, word by word.
+/* Reads the sections of an image word by word.
  *
- * Nothing of the image is trusted. A reader that has met its end or something wrong gives zeros and
- * remembers why, so that it has to be asked only where a number is used to go on.
+ * Nothing in the image is trusted. After an error every word is read as 0, and the first reason is
+ * kept. So callers check `is_wrong` only before they use a number as an index or a size.
  */
 #ifndef KRL_READER_H
 #define KRL_READER_H
@@ -16,12 +16,12 @@ struct section {
 struct reader {
     struct krl_program *program;
     struct krl_refusal *why;
-    const uint8_t *next; /* words that are left of the section */
+    const uint8_t *next; /* the next word of the section */
     uint32_t left;
     int is_wrong;
     struct krl_text *strings;
     uint32_t string_count;
-    /* What is collected while the parts of an entry are read. */
+    /* The inputs of the entry that is being read. */
     struct krl_handed *inputs;
     int32_t input_count;
     int32_t input_cells;
@@ -35,30 +35,34 @@ static inline uint32_t krl_word_at(const uint8_t *bytes)
 
 /* ---------------------------------------------------------------------------- reader.c */
 
-/* Notes why the image is refused; from then on there is nothing left to read. */
+/* Refuses the image, for the first reason that is given, and ends the section. */
 void krl_refuse_image(struct reader *reader, const char *reason);
 
-/* Memory for so many, one at least, that is freed with the program; or NULL. */
+/* Returns zeroed memory for `count` elements, at least one, that is freed with the program. Refuses
+ * the image and returns NULL if there is not enough. */
 void *krl_allot_read(struct reader *reader, int32_t count, size_t size);
 
-/* What a section begins with, and that it has been read to its end. */
+/* Begin a section; refuse the image if a section has words that were not read. */
 void krl_begin_section(struct reader *reader, struct section section);
 void krl_end_section(struct reader *reader);
 
 uint32_t krl_read_word(struct reader *reader);
 
-/* The length of a list; whatever is read has a word at least. */
+/* Returns the length of a list. Every element has at least one word, so a length greater than the
+ * rest of the section is refused before memory is allocated for it. */
 int32_t krl_read_count(struct reader *reader);
 
-/* A number below a count; the second one gives -1 for none. */
+/* krl_read_choice returns a number below `choices`. krl_read_optional returns a number below
+ * `count`, or -1 for none: the image has the number plus 1. Other numbers refuse the image. */
 uint32_t krl_read_choice(struct reader *reader, uint32_t choices);
 int32_t krl_read_optional(struct reader *reader, int32_t count);
 
-/* The table of strings, and one of them by its number. */
+/* Read the table of strings, and a reference to one of them. */
 void krl_read_strings(struct reader *reader, struct section section);
 struct krl_text krl_read_string(struct reader *reader);
 
-/* A text as letters: a string has one byte of the controller's in each character. */
+/* Reads a string as a text: each character stands for one byte of the controller, so it has a code
+ * below 256 and at most two bytes of UTF-8. */
 struct krl_letters krl_read_letters(struct reader *reader);
 
 int32_t krl_read_type_number(struct reader *reader);
@@ -69,10 +73,10 @@ struct krl_handed krl_read_handed(struct reader *reader);
 void krl_read_types(struct reader *reader);
 void krl_read_texts(struct reader *reader);
 
-/* The requests, or the calls of predefined functions. */
+/* Reads the table of requests, or that of calls of predefined functions, and sets its length. */
 struct krl_entry *krl_read_entries(struct reader *reader, int32_t *count);
 
-/* The variables of the data lists, and their values in the beginning. */
+/* Read the variables of the data lists, the imports, and the initial values. */
 void krl_read_data(struct reader *reader);
 void krl_read_imports(struct reader *reader);
 void krl_read_initial(struct reader *reader);
@@ -83,11 +87,12 @@ void krl_read_codes(struct reader *reader);
 
 /* ---------------------------------------------------------------------------- image.c */
 
-/* Reads an image. It copies what it needs. 0 where the image is refused; then nothing is left. */
+/* Reads an image and copies what it needs. Returns 0, with the reason in `why` and an empty
+ * program, if the image is refused. */
 int krl_read_image(struct krl_program *program, const uint8_t *image, size_t length,
                    struct krl_refusal *why);
 
-/* The CRC-32 that an image has of what follows its header. */
+/* Returns the CRC-32 that zlib computes. The header has that of all bytes from 16 on. */
 uint32_t krl_checksum(const uint8_t *bytes, size_t length);
 
 #endif

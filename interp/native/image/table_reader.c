@@ -1,4 +1,4 @@
-/* The tables of an image: types, requests, calls of predefined functions, texts, data lists. */
+/* Reads the tables of an image: types, requests, calls of predefined functions, texts, data lists. */
 #include "reader.h"
 
 enum { DEEPEST = 64 };
@@ -6,7 +6,8 @@ enum { NIL, FALSE_, TRUE_, INT_, REAL_, STRING, CHOICE, INPUT, CHANGED, HANDLE, 
 
 /* ---------------------------------------------------------------------------- types */
 
-/* A size in cells; 0 where there are too many. */
+/* Returns a size in cells. Refuses the image and returns 0 if it is 0 or greater than
+ * KRL_MAX_CELLS. */
 static int32_t sized(struct reader *reader, uint64_t cells)
 {
     if (cells == 0 || cells > KRL_MAX_CELLS) {
@@ -58,7 +59,7 @@ static void read_type(struct reader *reader, struct krl_type *type)
         }
         for (int32_t i = 0; i < type->count && !reader->is_wrong; i++) {
             uint32_t size = krl_read_word(reader);
-            cells *= size; /* below 2**20 before */
+            cells *= size; /* no overflow: at most 2**20 before */
             type->sizes[i] = sized(reader, cells) ? (int32_t)size : 1;
         }
     }
@@ -76,13 +77,13 @@ void krl_read_types(struct reader *reader)
         program->types[program->type_count].size = 1;
     for (int32_t i = 0; i < count && !reader->is_wrong; i++) {
         read_type(reader, &program->types[program->type_count]);
-        program->type_count++; /* a type is made of those before it */
+        program->type_count++; /* a type consists of types before it */
     }
 }
 
 /* ---------------------------------------------------------------------------- requests */
 
-/* Notes an input and gives the place of its first cell. */
+/* Appends an input and returns the index of its first cell among those of all inputs. */
 static int32_t add_input(struct reader *reader, struct krl_handed handed)
 {
     if (reader->is_wrong)
@@ -176,7 +177,7 @@ static void read_entry(struct reader *reader, struct krl_entry *entry)
 struct krl_entry *krl_read_entries(struct reader *reader, int32_t *count)
 {
     *count = krl_read_count(reader);
-    /* An input has three words at least. */
+    /* An input has at least three words, so there cannot be more. */
     reader->inputs = krl_allot_read(reader, (int32_t)(reader->left / 3), sizeof *reader->inputs);
     struct krl_entry *entries = krl_allot_read(reader, *count, sizeof *entries);
     for (int32_t i = 0; i < *count && !reader->is_wrong; i++)
@@ -214,7 +215,8 @@ void krl_read_data(struct reader *reader)
     program->data_count = count;
 }
 
-/* What routines call variables of other data lists is for Python. */
+/* Only validates the imports, which name variables of other data lists: Python alone uses the
+ * names. */
 void krl_read_imports(struct reader *reader)
 {
     int32_t count = krl_read_count(reader);

@@ -1,7 +1,8 @@
-/* Cells: what variables, the stack of operands and references are kept in.
+/* Cells: the unit of memory for variables, references and the operand stack.
  *
- * A cell is 64 bits: the value in the lower half (an INT, the bits of a single, 0 or 1, a code, the
- * place of a constant, an address), what it is in the upper one. A cell without a value is zero.
+ * A cell has 64 bits. The lower half is the value (an INT, the bits of a REAL in single precision,
+ * 0 or 1 for a BOOL, a character code, the index of a constant, an address), the upper half its
+ * tag. A cell without a value is zero.
  */
 #ifndef KRL_CELLS_H
 #define KRL_CELLS_H
@@ -17,7 +18,7 @@
 
 typedef uint64_t krl_cell;
 
-/* CHAR, constants of enumerations and addresses are INT here, as in the machine in Python. */
+/* CHAR, constants of enumerations and addresses have the tag INT, as in the Python machine. */
 enum krl_tag { KRL_TAG_NONE = 0, KRL_TAG_INT = 1, KRL_TAG_REAL = 2, KRL_TAG_BOOL = 3 };
 
 #define KRL_NOTHING ((krl_cell)0)
@@ -66,7 +67,7 @@ static inline float krl_real_in(krl_cell cell)
     return krl_real_of_bits((uint32_t)cell);
 }
 
-/* Neither infinite nor no number. */
+/* Neither infinite nor NaN. */
 static inline int krl_is_finite(float value)
 {
     return fabsf(value) <= FLT_MAX;

@@ -1,4 +1,4 @@
-/* A program in memory: the arena that all of it lies in, and why one is refused. */
+/* The arena that holds a program, and the reason why a program is refused. */
 #include "program.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
-/* A program in memory, as interp/bytecode/program.py has it, and how it is read from an image.
+/* A program in memory, as defined in interp/bytecode/program.py.
  *
- * All of it lies in one arena and is freed with it. Numbers of types, entries and code objects are
- * places in the tables; -1 stands for none.
+ * All of it is allocated in one arena and freed together. Types, entries and code objects are
+ * referred to by their index in a table; -1 stands for none.
  */
 #ifndef KRL_PROGRAM_H
 #define KRL_PROGRAM_H
@@ -12,7 +12,7 @@
 #include "cells.h"
 #include "isa.gen.h"
 
-/* The types that every program begins with. */
+/* The first types of every program. */
 enum { KRL_TYPE_INT, KRL_TYPE_REAL, KRL_TYPE_BOOL, KRL_TYPE_CHAR, KRL_BASIC_TYPES };
 
 enum krl_form { KRL_SCALAR, KRL_ENUMERATION, KRL_STRUCTURE, KRL_ARRAY };
@@ -21,11 +21,11 @@ enum krl_code_kind { KRL_ROUTINE, KRL_ACTION, KRL_CONDITION };
 enum { KRL_MOST_DIMENSIONS = 3 };
 
 struct krl_text {
-    const char *bytes; /* UTF-8, not ended by a zero */
+    const char *bytes; /* UTF-8, not terminated by zero */
     uint32_t length;
 };
 
-/* A text as an array of CHAR has it. */
+/* A text as the cells of an array of CHAR. */
 struct krl_letters {
     const krl_cell *cells;
     int32_t count;
@@ -33,13 +33,13 @@ struct krl_letters {
 
 struct krl_member {
     int32_t type;
-    int32_t offset; /* its first cell within the structure */
+    int32_t offset; /* of its first cell in the structure */
 };
 
 struct krl_type {
     enum krl_form form;
     int32_t size;  /* in cells */
-    int32_t count; /* constants, members or dimensions */
+    int32_t count; /* number of constants, members or dimensions */
     struct krl_text name;
     const struct krl_text *constants;
     const struct krl_member *members;
@@ -47,28 +47,30 @@ struct krl_type {
     int32_t sizes[KRL_MOST_DIMENSIONS];
 };
 
-/* What is handed over: a parameter, or an input of a request or predefined function. */
+/* The mode and type of a parameter, or of an input of a request or a predefined function.
+ * `dimensions` is 0 unless it is a view, whose `type` is that of the elements. */
 struct krl_handed {
     enum krl_mode mode;
     int32_t type;
     int32_t dimensions;
 };
 
-/* How many cells it has on the stack. */
+/* Returns the number of cells on the operand stack: a view has an address and the size of each
+ * dimension. */
 static inline int32_t krl_stack_cells(const struct krl_handed *handed)
 {
     return 1 + handed->dimensions;
 }
 
-/* A part of a call of a predefined function, as far as this machine carries it out itself. */
+/* An argument of a predefined function. KRL_PART_OTHER stands for kinds that C does not use. */
 enum krl_part_kind { KRL_PART_INPUT, KRL_PART_CHANGED, KRL_PART_STRING, KRL_PART_CHOICE, KRL_PART_OTHER };
 
 struct krl_part {
     enum krl_part_kind kind;
-    int32_t place; /* the first of its cells among the inputs, or the place of the constant */
+    int32_t place; /* index of its first cell among the inputs, or of the constant */
     struct krl_handed handed;
     struct krl_letters letters;
-    int has_path; /* changed, and a copy of a system variable */
+    int has_path; /* KRL_PART_CHANGED: the reference is to a copy of a system variable */
 };
 
 /* A request or a call of a predefined function. */
@@ -82,9 +84,9 @@ struct krl_entry {
     int32_t part_count;
 };
 
-/* A parameter or local: its first cell in the frame and how many it has. */
+/* A parameter or local variable, with its first cell in the frame and its size in cells. */
 struct krl_slot {
-    struct krl_handed handed; /* a local is like a parameter :IN */
+    struct krl_handed handed; /* a local has the mode of a parameter :IN */
     int is_local;
     int32_t offset;
     int32_t cells;
@@ -92,24 +94,24 @@ struct krl_slot {
 
 struct krl_instruction {
     uint32_t op;
-    int32_t operands[4]; /* targets are places of instructions, not of words */
+    int32_t operands[4]; /* a target is the index of an instruction, not of a word */
 };
 
 struct krl_code {
     enum krl_code_kind kind;
     int32_t owner;
     int32_t result;
-    int32_t stack; /* the most cells that it has on the stack of operands */
-    int32_t frame; /* cells of a frame */
+    int32_t stack; /* maximum size of the operand stack, in cells */
+    int32_t frame; /* size of the parameters and locals, in cells */
     const struct krl_slot *slots;
     int32_t slot_count;
     int32_t parameter_count;
     int32_t capture_count;
     struct krl_instruction *body;
     int32_t length;
-    /* Found by krl_verify. */
-    int32_t *depths; /* cells on the stack before each instruction, -1 where no way leads to it */
-    uint8_t *leads;  /* whether an instruction is a target */
+    /* Set by krl_verify, by instruction. */
+    int32_t *depths; /* cells on the stack before each instruction, -1 if it is unreachable */
+    uint8_t *leads;  /* whether an instruction is the first or a target */
 };
 
 struct krl_value {
@@ -141,38 +143,39 @@ struct krl_program {
     struct krl_block *memory;
 };
 
-/* Why an image is refused: one line, without any text of the image. */
+/* Why an image is refused: one line, which contains no text of the image. */
 struct krl_refusal {
     char text[120];
 };
 
 /* ---------------------------------------------------------------------------- program.c */
 
-/* Memory of zeros that is freed with the program, or NULL. */
+/* Returns zeroed memory that is freed with the program, or NULL. */
 void *krl_allot(struct krl_program *program, size_t count, size_t size);
 void krl_free_program(struct krl_program *program);
 
-/* Notes the reason and gives 0. */
+/* Stores the reason, unless there is one already, and returns 0. */
 int krl_refuse(struct krl_refusal *why, const char *reason);
 
 /* ---------------------------------------------------------------------------- types.c */
 
-/* The type that a cell of a type has: a scalar or an enumeration. */
+/* Returns the type of the cell at an offset of a type: a scalar or an enumeration. */
 int32_t krl_kind_at(const struct krl_program *program, int32_t type, int32_t offset);
 
-/* Whether a part of this type begins there: a member, an element, a row, or the whole. */
+/* Whether a part of type `wanted` begins at an offset of the type `whole`: a member, an element, a
+ * row, or the whole. */
 int krl_has_part(const struct krl_program *program, int32_t whole, int32_t offset, int32_t wanted);
 
 int krl_is_plain(const struct krl_program *program, int32_t type);
 
-/* Whether a word stands for a value of a scalar or an enumeration; the cell that holds it. */
+/* Whether a word is a valid value of a scalar or an enumeration; the cell for a valid word. */
 int krl_is_word_of(const struct krl_program *program, int32_t word, int32_t type);
 krl_cell krl_cell_of_word(int32_t word, int32_t type);
 
-/* The variable of the data lists that has a cell, or NULL. */
+/* Returns the variable of the data lists that contains a cell, or NULL. */
 const struct krl_variable *krl_data_at(const struct krl_program *program, int32_t address);
 
-/* The parameter or local that has a cell of the frame, or NULL. */
+/* Returns the parameter or local that contains a cell of the frame, or NULL. */
 const struct krl_slot *krl_slot_at(const struct krl_code *code, int32_t offset);
 
 #endif

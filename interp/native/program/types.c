@@ -1,4 +1,4 @@
-/* Types: what lies where in a structure or an array. */
+/* The layout of types: which part of a structure or an array lies at an offset. */
 #include "program.h"
 
 int krl_is_plain(const struct krl_program *program, int32_t type)
@@ -6,7 +6,8 @@ int krl_is_plain(const struct krl_program *program, int32_t type)
     return program->types[type].form <= KRL_ENUMERATION;
 }
 
-/* A type, or what is left of an array when so many of its dimensions have an index. */
+/* A part of a type, and the offset in it that is searched for. If the first `skipped` dimensions of
+ * an array have an index, the part is a row of it. */
 struct part {
     int32_t type;
     int32_t skipped;
@@ -17,11 +18,11 @@ static int32_t row_size(const struct krl_program *program, const struct krl_type
 {
     int32_t size = program->types[array->element].size;
     for (int32_t dimension = from; dimension < array->count; dimension++)
-        size *= array->sizes[dimension]; /* no more than the array has */
+        size *= array->sizes[dimension]; /* no overflow: at most the size of the array */
     return size;
 }
 
-/* Steps into the direct part that has the cell; 0 where there are no parts. */
+/* Descends to the direct part that contains the offset. Returns 0 if the type has no parts. */
 static int step(const struct krl_program *program, struct part *part)
 {
     const struct krl_type *type = &program->types[part->type];
