@@ -124,7 +124,7 @@ def test_a_missing_extra_is_installed_by_the_tool_that_installed_us(
 
 
 def test_start_is_quick() -> None:
-    """Asking for help loads none of the rooms nor their parsers."""
+    """Asking for help loads no other package and no parser."""
     program = (
         "import sys; from krl.cli import main; main(['--help']);"
         "print([room for room in ('antlr4', 'lark', 'pandas', 'jinja2', 'recovery.survey.survey')"
