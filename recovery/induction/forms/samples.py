@@ -75,8 +75,7 @@ def _with_groups(
     place = 0
     while place < len(symbols):
         symbol = symbols[place]
-        closer = CLOSERS.get(symbol.text)
-        close = next((i for i in range(place, len(symbols)) if symbols[i].text == closer), None)
+        close = _closing(symbols, place)
         if close is not None:
             inside = _with_groups(rules, symbols[place + 1 : close], is_line=False)
             symbol = Symbol(symbol.text, None, inside)
@@ -90,3 +89,15 @@ def _with_groups(
             out.append(Symbol(rule) if rule in rules.following.values() else symbol)
         place += 1
     return tuple(out)
+
+
+def _closing(symbols: Sequence[Symbol], at: int) -> int | None:
+    """Return the index of the bracket that closes the one at an index; ``None`` without one."""
+    opening = symbols[at].text
+    depth = 0
+    for place in range(at, len(symbols) if opening in CLOSERS else at):
+        text = symbols[place].text
+        depth += (text == opening) - (text == CLOSERS[opening])
+        if not depth:
+            return place
+    return None

@@ -270,3 +270,14 @@ def test_words_that_only_other_rules_have_in_brackets(inside: str, words: set[st
     lexer = rules.lexer
     found = rules.words_in_brackets(lexer.kind_of["LPAREN"])
     assert words == {lexer.names[kind] for kind in found}
+
+
+def test_samples_nest_brackets_as_they_are_written() -> None:
+    """Each bracket is closed by its own, also behind a group of the same kind."""
+    grammar = read(_GRAMMAR.replace("'(' NAME index? ':' NAME ')'", "'(' '(' NAME ')' NAME ')'"))
+    rules = OperandRules(Recognizer(grammar))
+    (line,) = samples_of(rules, grammar.by_name["inside"].alternatives[0].elements)
+    (inner, name) = line[1].inside or ()
+    assert ("INSIDE", "'('") == tuple(symbol.text for symbol in line)
+    assert name.is_operand
+    assert 1 == len(inner.inside or ())
