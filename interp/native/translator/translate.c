@@ -1,16 +1,18 @@
-/* From instructions on a stack to steps on registers.
+/* Translates stack instructions into register code.
  *
- * A code object is walked through once, with a description of what lies on the stack: mostly in its
- * own place there, but a variable, a constant or an element of an array that was put on it stays
- * where it is until it is used, and the step that uses it takes it from there. The walk keeps the
- * order of all that can be noticed: what may still fault (a variable may have no value, an index may
- * be wrong) is settled, that is put in its place, before any step that faults in other ways, writes,
- * or leaves. Where ways meet everything is in its place.
+ * Each code object is walked once, with a virtual stack that describes the operand stack. Most
+ * items are in place, that is in the register of their stack slot. But a variable, a constant or an
+ * element of an array that is pushed stays where it is, and the step that uses the item reads it
+ * from there.
  *
- * A LINE becomes no step: it is noted in the step that comes next.
+ * The walk keeps the order of all observable effects. An item that may still fault (a variable
+ * without a value, a wrong index) is settled, that is put in place, before any step that faults in
+ * another way, writes, or leaves. At jump targets all items are in place.
  *
- * Here is the walk. What lies on the stack is described in virtual_stack.c; the instructions that need more
- * than a line stand in translate_control_flow.c, translate_data_movement.c and translate_arithmetic.c.
+ * A LINE does not become a step, unless LINE is traced: the next step carries it.
+ *
+ * This file has the walk, and virtual_stack.c the virtual stack. Instructions that need more than a
+ * line are in translate_control_flow.c, translate_data_movement.c and translate_arithmetic.c.
  */
 #include "translate.h"
 
@@ -56,7 +58,7 @@ static void instruction(struct translator *at, int32_t place)
         for (int32_t i = 0; i < operands[1]; i++)
             krl_push_constant(at, KRL_TAG_INT, 0);
         break;
-    case KRL_DROP: /* a variable without a value faults all the same */
+    case KRL_DROP: /* a variable without a value still faults */
         krl_secure(at, at->height);
         at->height--;
         break;
@@ -71,7 +73,7 @@ static void instruction(struct translator *at, int32_t place)
         for (int32_t i = 0; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
             krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
-    case KRL_PASS_VIEW: /* what was left out has sizes */
+    case KRL_PASS_VIEW: /* only the address may have no value: a missing view has sizes, too */
         krl_emit(at, KRL_STEP_PASS)->b = operands[0];
         krl_push_result(at);
         for (int32_t i = 1; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
@@ -159,7 +161,7 @@ static void instruction(struct translator *at, int32_t place)
     case KRL_EXOR_BITS: krl_binary(at, KRL_STEP_EXOR_BITS, KRL_STEP_COUNT, 0); break;
     case KRL_INT_TO_REAL: krl_unary(at, KRL_STEP_INT_TO_REAL); break;
     case KRL_REAL_TO_INT: krl_unary(at, KRL_STEP_REAL_TO_INT); break;
-    case KRL_CHAR_TO_INT: break; /* a cell holds the code */
+    case KRL_CHAR_TO_INT: break; /* CHAR and INT have the same cells */
     case KRL_INT_TO_CHAR: krl_unary(at, KRL_STEP_INT_TO_CHAR); break;
     case KRL_ADD_CONSTANT:
         krl_push_constant(at, KRL_TAG_INT, operands[0]);
@@ -187,7 +189,7 @@ static void instruction(struct translator *at, int32_t place)
 
 /* ---------------------------------------------------------------------------- code objects */
 
-/* A jump to what comes next is no step. */
+/* Removes the last step if it is a jump to the instruction that follows. */
 static void drop_jump(struct translator *at, int32_t target)
 {
     int32_t *steps = at->routine->steps;
@@ -230,7 +232,8 @@ static void code(struct translator *at)
     }
 }
 
-/* Targets become distances: of places, or of the complement of a step. */
+/* Replaces targets by distances in bytes. A target is an instruction or, if negative, the
+ * complement of a step. TEXT skips the step for Python that follows it. */
 static void land(struct krl_machine *machine)
 {
     for (int32_t number = 0; number < machine->program.code_count; number++) {

@@ -1,4 +1,4 @@
-/* What the parts of the translation share; translate.c describes it. */
+/* Shared declarations of the translator; translate.c describes it. */
 #ifndef KRL_TRANSLATE_H
 #define KRL_TRANSLATE_H
 
@@ -7,10 +7,10 @@
 
 enum virtual_kind {
     IN_PLACE,
-    VARIABLE, /* of the frame: `a` is its register; it may have no value */
-    CONSTANT, /* `a` bits, `tag` */
-    ADDRESS,  /* of a register: `a` */
-    ELEMENT   /* the address of an element: indices in the registers `a` and `b`, array `array` */
+    VARIABLE, /* of the frame, in register `a`; it may have no value */
+    CONSTANT, /* bits `a` with tag `tag` */
+    ADDRESS,  /* the address of register `a` */
+    ELEMENT   /* the address of an element: indices in registers `a` and `b`, table entry `array` */
 };
 
 struct virtual_value {
@@ -35,130 +35,144 @@ struct translator {
     int32_t array_capacity;
     struct virtual_value *stack;
     int32_t height;
-    int32_t line;      /* the place of a LINE that no step has noted yet, -1 for none */
-    int32_t result;    /* the step that put what is on top there, if the one behind has not begun */
+    int32_t line;      /* the LINE that the next step carries, -1 for none */
+    int32_t result;    /* the last step if it has written the top item to its place, else -1 */
     int is_wrong;
 };
 
 /* ---------------------------------------------------------------------------- virtual_stack.c */
 
-/* Adds a step, with the statement that begins here. There is one to write into even without memory. */
+/* Appends a step, which carries the statement that begins here. If there is no memory, sets
+ * `is_wrong` and returns a dummy step, so the result can always be written to. */
 struct krl_step *krl_emit(struct translator *at, enum krl_step_op op);
 
-/* The register that is the place on the stack with this number. */
+/* Returns the register of a slot of the operand stack. */
 int32_t krl_place_of(const struct translator *at, int32_t number);
 
-/* Adds to the table of arrays; gives the place there. */
+/* Appends to the table of arrays and returns the index there. If there is no memory, sets
+ * `is_wrong` and returns 0. */
 int32_t krl_add_array(struct translator *at, struct krl_array array);
 
-/* An array whose first cell is `base`, of the type that has this number. */
+/* Returns the entry for an array of the type `number` whose first cell is `base`. */
 struct krl_array krl_array_of(const struct translator *at, int32_t base, int32_t number);
 
-/* How an element of an array is reached: its address, its value, or a value for it. */
+/* Access to an element of an array: compute its address, read it, or write it. */
 enum access { INDEX, GET, PUT };
 
-/* The step that reaches an element; `a` is the register that gets or has the value or address. */
+/* Emits the step that accesses an element. Register `a` receives the address or the value, or has
+ * the value to write. */
 struct krl_step *krl_reach(struct translator *at, enum access access, const struct virtual_value *element,
                            int32_t a);
 
-/* Puts what lies there into its place; all below a height; all of the stack. */
+/* Put an item in place; all items below a height; all items. */
 void krl_settle(struct translator *at, int32_t number);
 void krl_settle_to(struct translator *at, int32_t height);
 void krl_settle_all(struct translator *at);
 
-/* Puts what can fault into its place, up to a height. */
+/* Settles the items below a height that may fault: variables and elements. */
 void krl_secure(struct translator *at, int32_t height);
 
 int krl_is_constant(const struct translator *at, int32_t number);
 
-/* The register that has what lies there. */
+/* Returns the register that has the value of an item, which is settled unless it is a variable. */
 int32_t krl_operand(struct translator *at, int32_t number);
 
-/* Put on the stack: something that lies elsewhere, a constant, what is in its place already. */
+/* Push an item, a constant, `count` items that are in place. */
 void krl_push(struct translator *at, struct virtual_value item);
 void krl_push_constant(struct translator *at, enum krl_tag tag, int32_t bits);
 void krl_push_places(struct translator *at, int32_t count);
 
-/* The last step gives the value of the place that is put on the stack now. */
+/* Pushes the result of the last step, which from now on writes to the place of this item. */
 void krl_push_result(struct translator *at);
 
-/* Whether the last step has put there what lies there. */
+/* Whether the last step has written this item to its place. */
 int krl_is_fresh(const struct translator *at, int32_t number);
 
 /* ---------------------------------------------------------------------------- translate_data_movement.c */
 
-/* A cell of the data lists; the cell that the reference on top leads to. */
+/* Push the value of a cell of the data lists; replace the reference on top by the value that it
+ * refers to. */
 void krl_load_data(struct translator *at, int32_t address);
 void krl_load(struct translator *at);
 
-/* The value on top goes into a register, a cell of the data lists, or where a reference leads. */
+/* Pop a value and store it in a register, in a cell of the data lists, or through the reference
+ * below it. */
 void krl_store_local(struct translator *at, int32_t place);
 void krl_store_data(struct translator *at, int32_t address);
 void krl_store(struct translator *at);
 
-/* The member of the structure that the reference on top leads to. */
+/* Replaces the reference on top, to a structure, by that to the member at an offset. */
 void krl_member(struct translator *at, int32_t offset);
 
-/* The element that indices lead to: of a variable of this array type, or of a view. */
+/* Pop all indices and push the address of the element: of a variable of this array type, or of the
+ * view in a parameter. */
 void krl_element(struct translator *at, int is_local, int32_t base, int32_t type);
 void krl_view_index(struct translator *at, int32_t place);
 
-/* The view of a row of an array or of a view; of all of an array. */
+/* Pop `count` indices and push the view of the row. krl_row also pops the reference to the array
+ * below them; krl_row_of_view takes a row of the view in a parameter. krl_view makes the reference
+ * on top a view of a whole array. */
 void krl_row(struct translator *at, int32_t type, int32_t count);
 void krl_row_of_view(struct translator *at, int32_t place, int32_t count);
 void krl_view(struct translator *at, const struct krl_type *type);
 
-/* A step that takes so many places of the stack, all settled; `a` is the first of them. */
+/* Settles the stack, pops `count` items and emits a step whose `a` is the first of them. */
 struct krl_step *krl_consume(struct translator *at, enum krl_step_op op, int32_t count);
 
 /* ---------------------------------------------------------------------------- translate_arithmetic.c */
 
 void krl_unary(struct translator *at, enum krl_step_op op);
 
-/* `constant` is the step for a constant at the right, or KRL_STEP_COUNT. */
+/* Replaces two operands by the result of a step. `constant` is the variant for a constant on the
+ * right, or KRL_STEP_COUNT if there is none. */
 void krl_binary(struct translator *at, enum krl_step_op op, enum krl_step_op constant, int commutes);
 
-/* Where the divisor is a constant it need not be looked at when it runs. */
+/* A constant divisor that cannot fault is not checked at run time. Subtracting a constant adds its
+ * negative. */
 void krl_division(struct translator *at);
 void krl_quotient(struct translator *at);
 void krl_subtraction(struct translator *at);
 
-/* A relation, by its place in EQ NE LT GT LE GE, from the step of EQ on; or a jump unless it holds.
- * The second one gives a BOOL. */
+/* Pop two operands and emit a comparison. `first` is the EQ step of a group, `relation` an index in
+ * EQ NE LT GT LE GE. UNLESS steps jump unless the relation holds, and the caller sets the target;
+ * krl_relation is for the others and pushes the BOOL. */
 struct krl_step *krl_relate(struct translator *at, enum krl_step_op first, int relation);
 void krl_relation(struct translator *at, enum krl_step_op first, int relation);
 
 /* ---------------------------------------------------------------------------- translate_control_flow.c */
 
-/* A step for Python: all that lies on the stack is in its place before. */
+/* Settles the stack and emits a step that Python executes. */
 struct krl_step *krl_to_python(struct translator *at, enum krl_matter matter, int32_t place);
 
-/* The beginning of the statement at a place. */
+/* Begins the statement of the LINE at a place. */
 void krl_line(struct translator *at, int32_t place);
 
-/* A jump if, or unless, the BOOL on top holds: one with the relation that has just given it. */
+/* Pops a BOOL and jumps if, or unless, it is TRUE. A comparison that has just computed it becomes
+ * part of the jump. */
 void krl_jump_on(struct translator *at, int is_if, int32_t target);
 
-/* A jump unless the relation holds, of INT or REAL, that has this place in EQ NE LT GT LE GE. */
+/* Pops two operands, INT or REAL, and jumps unless the relation with this index in EQ NE LT GT LE
+ * GE holds. */
 void krl_jump_unless(struct translator *at, int is_real, int relation, int32_t target);
 
-/* The CASE at a place, with those that follow it. */
+/* Translates the CASE at a place, and all that follow it without a gap. */
 void krl_choose(struct translator *at, int32_t place);
 
-/* The end of a turn of a FOR loop. */
+/* Ends an iteration of a FOR loop. */
 void krl_count_up(struct translator *at, const struct krl_instruction *instruction);
 
-/* The call, and the end, that the instruction at a place is. */
+/* Translate the CALL, and the RETURN or RETURN_VALUE, at a place. */
 void krl_call_routine(struct translator *at, int32_t place);
 void krl_leave(struct translator *at, int32_t place);
 
-/* A request; and a call of a predefined function, which is one where C does not have it. */
+/* Translate a request, and a call of a predefined function: one that C does not have is left to
+ * Python like a request. */
 void krl_ask(struct translator *at, const struct krl_entry *entry, int32_t place);
 void krl_call_builtin(struct translator *at, int32_t place);
 
 /* ---------------------------------------------------------------------------- translate.c */
 
-/* Translates all code objects. */
+/* Translates all code objects. Returns 0, with the reason in `why`, if there is not enough memory. */
 int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
 
 #endif

@@ -1,4 +1,5 @@
-/* Translating what computes: a constant becomes part of the step where there is a step for that. */
+/* Translates arithmetic and comparisons. A constant becomes part of the step if there is a variant
+ * of the step for that. */
 #include "translate.h"
 
 void krl_unary(struct translator *at, enum krl_step_op op)
@@ -17,7 +18,7 @@ void krl_binary(struct translator *at, enum krl_step_op op, enum krl_step_op con
     if (commutes && krl_is_constant(at, left) && !krl_is_constant(at, right)) {
         struct virtual_value swapped = at->stack[left];
         if (at->stack[right].kind == IN_PLACE) {
-            /* what lies in the upper place is read from there */
+            /* the value stays in its place, the upper one */
             at->stack[left] = (struct virtual_value){VARIABLE, krl_place_of(at, right), 0, 0, 0, 0};
         } else
             at->stack[left] = at->stack[right];
@@ -51,7 +52,7 @@ struct krl_step *krl_relate(struct translator *at, enum krl_step_op first, int r
     int has_constant = krl_is_constant(at, other);
     c = has_constant ? at->stack[other].a : krl_operand(at, other);
     at->height -= 2;
-    krl_settle_to(at, first < KRL_STEP_EQ_INT ? at->height : 0); /* a jump */
+    krl_settle_to(at, first < KRL_STEP_EQ_INT ? at->height : 0); /* all is in place before a jump */
     struct krl_step *step = krl_emit(at, (enum krl_step_op)((int)first + 6 * has_constant + relation));
     step->b = b;
     step->c = c;

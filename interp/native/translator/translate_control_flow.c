@@ -1,9 +1,10 @@
-/* Translating what decides where to go on: statements, jumps, loops, calls, requests. */
+/* Translates control flow: statements, jumps, loops, calls, requests. */
 #include "translate.h"
 
 #include <stdlib.h>
 
-/* With fewer constants a table is slower: what follows waits for the selector. */
+/* With fewer constants comparisons are faster than a table, whose jump has to wait for the
+ * selector. */
 enum { LEAST_CASES = 24, MOST_CASES = 1000 };
 
 struct krl_step *krl_to_python(struct translator *at, enum krl_matter matter, int32_t place)
@@ -16,7 +17,7 @@ struct krl_step *krl_to_python(struct translator *at, enum krl_matter matter, in
     return step;
 }
 
-/* The program can go on at any statement, where the stack is empty. */
+/* Stores the step of a LINE: a program can continue at any statement, where the stack is empty. */
 static void start_here(struct translator *at, int32_t place)
 {
     at->result = -1;
@@ -114,7 +115,7 @@ void krl_choose(struct translator *at, int32_t place)
     const uint8_t *leads = at->code->leads;
     int32_t count = 1;
     if (place > 0 && first[-1].op == KRL_CASE && !leads[place])
-        return; /* together with the one before */
+        return; /* translated with the CASE before it */
     while (place + count < at->code->length && first[count].op == KRL_CASE && !leads[place + count])
         count++;
     krl_settle_to(at, at->height - 1);
@@ -213,7 +214,7 @@ static int all_reals(const struct krl_entry *entry)
     return entry->result == KRL_TYPE_REAL;
 }
 
-/* INV_POS of a pose, into a pose. */
+/* Whether a call is INV_POS from a pose to a pose. */
 static int is_inversion(const struct translator *at, const struct krl_entry *entry)
 {
     if (!is_named(entry, "INV_POS") || entry->part_count != 1 || entry->parts[0].kind != KRL_PART_INPUT ||

@@ -1,9 +1,10 @@
-/* Translating what moves values: variables, references, elements of arrays, rows and views. */
+/* Translates data movement: variables, references, elements of arrays, rows and views. */
 #include "translate.h"
 
 void krl_load_data(struct translator *at, int32_t address)
 {
-    /* It faults as a variable does that has no value; an index that is wrong faults in another way. */
+    /* GET_DATA faults if the cell has no value, as a pending variable does: their order does not
+     * matter. A pending element may fault because of its index, so it is settled first. */
     for (int32_t number = 0; number < at->height; number++)
         if (at->stack[number].kind == ELEMENT)
             krl_settle(at, number);
@@ -11,7 +12,8 @@ void krl_load_data(struct translator *at, int32_t address)
     krl_push_result(at);
 }
 
-/* Makes of a step that gives the address of an element the one that gives its value, where there is one. */
+/* Turns a step that computes the address of an element into the one that reads it. Returns 0 if
+ * there is none. */
 static int reaches_element(struct krl_step *step)
 {
     switch (step->op) {
@@ -87,7 +89,7 @@ void krl_store_data(struct translator *at, int32_t address)
     at->height--;
 }
 
-/* For the trace: what was written last. */
+/* Stores the address of the assignment, for the trace. */
 static void remember(struct translator *at, struct virtual_value where)
 {
     if (at->machine->traced & KRL_TRACED_ASSIGN)
@@ -145,7 +147,7 @@ void krl_member(struct translator *at, int32_t offset)
     }
 }
 
-/* The place of an element in its array where all indices are constants and right; else -1. */
+/* Returns the offset of an element if all indices are valid constants, else -1. */
 static int32_t known_place(const struct translator *at, const struct krl_array *array)
 {
     int32_t place = 0;
@@ -178,7 +180,8 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
     item.array = krl_add_array(at, array);
     at->height = first;
     krl_push(at, item);
-    /* An index in a place that is no longer the stack's would not stay; the trace needs addresses. */
+    /* A second or third index in a stack register is above the new top of the stack and would be
+     * overwritten. The trace of assignments needs the address itself. */
     int is_above = item.b >= at->code->frame || array.third >= at->code->frame;
     if ((array.dimensions > 1 && is_above) || at->machine->traced & KRL_TRACED_ASSIGN) {
         krl_secure(at, first);
@@ -207,7 +210,7 @@ void krl_view_index(struct translator *at, int32_t place)
     krl_row_of_view(at, place, dimensions);
 }
 
-/* What indices leave of an array is a view; where none is left out, the address of an element. */
+/* The dimensions without an index are a view; with all indices, it is the address of an element. */
 void krl_row(struct translator *at, int32_t type, int32_t count)
 {
     int32_t number = krl_add_array(at, krl_array_of(at, 0, type));

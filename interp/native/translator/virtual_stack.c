@@ -1,9 +1,10 @@
-/* What lies on the stack while a code object is translated, and the steps that put it in place. */
+/* The virtual stack: what is on the stack while a code object is translated, and the steps that put
+ * it in place. */
 #include "translate.h"
 
 #include <stdlib.h>
 
-static struct krl_step spare; /* takes what is written when there is no more memory */
+static struct krl_step spare; /* written to when there is no more memory */
 
 struct krl_step *krl_emit(struct translator *at, enum krl_step_op op)
 {

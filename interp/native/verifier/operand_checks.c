@@ -1,10 +1,11 @@
-/* What the operands of instructions name, for the verifier, and what must hold of it: the checks of
- * interp/bytecode/instructions.tsv. What does not hold refuses the code object. */
+/* Checks of operands, by interp/bytecode/instructions.tsv: what they refer to, and the conditions
+ * on that. A check that fails refuses the code object. */
 #include "verifier.h"
 
 /* ---------------------------------------------------------------------------- variables */
 
-/* The variable that a cell of the frame belongs to, and the offset within it. */
+/* Returns the variable that contains cell `place` of the frame, and sets `place` to the offset in
+ * it. Returns NULL, with the code object refused, if there is none. */
 static const struct krl_slot *variable(struct flow *flow, int32_t *place)
 {
     const struct krl_slot *slot = krl_slot_at(flow->code, *place);
@@ -113,7 +114,8 @@ void krl_check_positions(struct flow *flow, int32_t left, int32_t right)
 {
     const struct krl_type *types = flow->program->types;
     int32_t count = types[left].size < types[right].size ? types[left].size : types[right].size;
-    /* No position has more cells; the names that distinguish positions are not looked at here. */
+    /* No position has more than 64 cells. Only the types of the cells are compared, not the names
+     * of the members. */
     if (types[left].form != KRL_STRUCTURE || types[right].form != KRL_STRUCTURE || count > 64) {
         krl_refuse_code(flow, "positions are needed");
         return;

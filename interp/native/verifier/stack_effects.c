@@ -1,6 +1,6 @@
-/* The steps of the verifier that the effects of instructions are made of: what is checked, taken from
- * the stack, pushed. Which instruction has which steps stands in interp/bytecode/instructions.tsv;
- * interp/bytecode/verifier/stack_effects.py has the same steps.
+/* The primitives of stack effects: checks, pops and pushes. interp/bytecode/instructions.tsv
+ * defines the effect of each instruction in these terms; interp/bytecode/verifier/stack_effects.py
+ * has the same primitives.
  */
 #include "verifier.h"
 
@@ -39,7 +39,7 @@ static void take(struct flow *flow, struct item wanted)
 
 /* ---------------------------------------------------------------------------- items */
 
-/* What lies on the stack, as the operands of an instruction determine it. */
+/* The items that the operands of an instruction determine. */
 
 static struct item value(struct flow *flow, int32_t type)
 {
@@ -151,7 +151,7 @@ static struct item element_value(struct flow *flow, int32_t array)
     return value(flow, type);
 }
 
-/* ---------------------------------------------------------------------------- what is taken */
+/* ---------------------------------------------------------------------------- pops */
 
 static void take_any(struct flow *flow)
 {
@@ -171,7 +171,7 @@ static void take_enumeration(struct flow *flow)
 
 static void take_like(struct flow *flow, int32_t constant)
 {
-    (void)constant; /* one that no value equals does no harm */
+    (void)constant; /* a constant that no value equals is harmless */
     take_any(flow);
     if (flow->same.type == KRL_TYPE_REAL || flow->same.type == KRL_TYPE_BOOL)
         krl_refuse_code(flow, "an INT, CHAR or constant is needed");
@@ -231,7 +231,7 @@ static void take_arguments(struct flow *flow, int32_t number)
     for (int32_t i = callee->parameter_count - 1; i >= 0 && !flow->is_wrong; i--) {
         struct krl_handed wanted = callee->slots[i].handed;
         if (wanted.mode == KRL_BY_VALUE && !krl_is_plain(flow->program, wanted.type))
-            wanted.mode = KRL_BY_REFERENCE; /* the structure is copied from there */
+            wanted.mode = KRL_BY_REFERENCE; /* the call copies the structure from there */
         struct item held = pop(flow);
         if (held.mode == KRL_BY_VALUE && held.type == NO_TYPE && wanted.mode == KRL_BY_VALUE)
             continue;
@@ -247,8 +247,8 @@ static void push_result(struct flow *flow, int32_t number)
         push(flow, value(flow, flow->program->codes[number].result));
 }
 
-/* Whether an input of a predefined function, whose first cell has this place, is a text that it
- * reads: it may have been left out. */
+/* Whether the input of a predefined function whose first cell has the index `place` is a text that
+ * the function only reads. Such a text may have been left out. */
 static int is_text_read(const struct krl_entry *entry, const struct krl_handed *input, int32_t place)
 {
     if (input->mode != KRL_BY_VIEW || input->dimensions != 1 || input->type != KRL_TYPE_CHAR)

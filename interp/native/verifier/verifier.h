@@ -1,15 +1,16 @@
-/* What the parts of the verifier share: what lies on the stack where an instruction is looked at.
+/* Shared declarations of the verifier: the abstract stack at an instruction.
  *
- * verify.c follows the ways through a code object. stack_effects.c knows what each instruction takes
- * from the stack and leaves there, operand_checks.c what its operands name.
+ * verify.c walks through the control flow of a code object. stack_effects.c has the stack effect of
+ * each instruction, operand_checks.c the checks of operands.
  */
 #ifndef KRL_VERIFIER_H
 #define KRL_VERIFIER_H
 
 #include "program/program.h"
 
-/* What lies on the stack. Of a view that may be missing, and of a value that was left out (type -1),
- * nothing is ever used but the sizes, which are 0. */
+/* An item of the abstract stack. A value that was left out has the type -1. An item that
+ * `is_missing` may have been left out: it can only be passed on, to a routine or to a predefined
+ * function that reads it as a text. The sizes of a missing view are 0, and nothing else is used. */
 struct item {
     int32_t type;
     uint8_t mode;
@@ -17,14 +18,14 @@ struct item {
     uint8_t is_missing;
 };
 
-/* An argument or an input, as it lies on the stack. */
+/* Returns the item of an argument or an input. */
 static inline struct item krl_item_of(const struct krl_handed *handed)
 {
     return (struct item){handed->type, (uint8_t)handed->mode, (uint8_t)krl_stack_cells(handed), 0};
 }
 
 struct remembered {
-    struct item *items; /* NULL where no way leads to it yet */
+    struct item *items; /* NULL until a path reaches it */
     int32_t count;
 };
 
@@ -32,20 +33,20 @@ struct flow {
     const struct krl_program *program;
     struct krl_code *code;
     struct krl_refusal *why;
-    struct krl_program scratch; /* memory for the time of the check */
-    struct remembered *at;      /* for targets only */
+    struct krl_program scratch; /* memory that is freed after the check */
+    struct remembered *at;      /* the stack at each target */
     int32_t *todo;
     int32_t todo_count;
     int64_t remembered;
     struct item *stack;
-    struct item same; /* what stands for any value in the effect of an instruction */
+    struct item same; /* the value that an instruction has popped or referred to, for its later primitives */
     int32_t count;
     int32_t cells;
     int is_wrong;
 };
 
-/* Notes why the code object is refused. The check goes on to where it looks at `is_wrong`: until
- * then whatever is asked gives something harmless. */
+/* Refuses the code object. The check continues until it looks at `is_wrong`; until then all
+ * functions return harmless values. */
 static inline void krl_refuse_code(struct flow *flow, const char *reason)
 {
     krl_refuse(flow->why, reason);
@@ -60,46 +61,51 @@ static inline int krl_is_same(struct item left, struct item right)
 
 /* ---------------------------------------------------------------------------- stack_effects.c */
 
-/* Changes the stack as the instruction does, or refuses the code object. */
+/* Applies the stack effect of an instruction, or refuses the code object. */
 void krl_apply(struct flow *flow, const struct krl_instruction *instruction);
 
 /* ---------------------------------------------------------------------------- operand_checks.c */
 
-/* The type of the cell of a variable; INT where there is none. */
+/* Return the type of a cell of the frame, or of the data lists. Refuse the code object and return
+ * INT if the cell belongs to no variable. */
 int32_t krl_local_kind(struct flow *flow, int32_t place);
 int32_t krl_data_kind(struct flow *flow, int32_t address);
 
-/* The parameter of this mode that begins there; any view where there is none. */
+/* Returns the item of the parameter of this mode that begins at a cell. Refuses the code object and
+ * returns some view if there is none. */
 struct item krl_parameter(struct flow *flow, int32_t place, enum krl_mode mode);
 
-/* The stack is empty, and where the code object ends there is no result to be given. */
+/* Check that the stack is empty; that it is empty at a RETURN, and the code object has no result. */
 void krl_check_empty(struct flow *flow);
 void krl_check_no_result(struct flow *flow);
 
-/* A part of this type, or the whole variable, begins there. */
+/* Check that a part of this type, or the whole variable, begins at a cell. */
 void krl_check_part_of_local(struct flow *flow, int32_t place, int32_t type);
 void krl_check_part_of_data(struct flow *flow, int32_t address, int32_t type);
 
-/* An enumeration has a constant at this place. */
+/* Checks that a type is an enumeration with a constant of this index. */
 void krl_check_constant(struct flow *flow, int32_t type, int32_t place);
 
-/* Arrays can have so many dimensions; a type is one; so many indices leave a row of it. */
+/* Check that arrays can have this number of dimensions; that a type is an array; that this number
+ * of indices leaves a row: at least one, and not all. */
 void krl_check_rank(struct flow *flow, int32_t dimensions);
 void krl_check_array(struct flow *flow, int32_t type);
 void krl_check_row(struct flow *flow, int32_t array, int32_t count);
 void krl_check_view_row(struct flow *flow, int32_t place, int32_t count);
 
-/* Of two structures the cells that both have are of the same kinds; both begin with a pose. */
+/* Check that the cells that two structures have in common are of the same types; that both begin
+ * with a pose, too. */
 void krl_check_positions(struct flow *flow, int32_t left, int32_t right);
 void krl_check_poses(struct flow *flow, int32_t left, int32_t right);
 
-/* The counter and the limit of a loop are INT, and its step is not 0. */
+/* Check that counter and limit of a FOR loop are INT, and the step is not 0. */
 void krl_check_for_local(struct flow *flow, int32_t counter, int32_t limit, int32_t step);
 void krl_check_for_data(struct flow *flow, int32_t counter, int32_t limit, int32_t step);
 
 /* ---------------------------------------------------------------------------- verify.c */
 
-/* Checks what the machine relies on, and finds depths and targets. 0 where the program is refused. */
+/* Checks the rules that the machine relies on, and sets depths and targets. Returns 0, with the
+ * reason in `why`, if the program is refused. */
 int krl_verify(struct krl_program *program, struct krl_refusal *why);
 
 #endif

@@ -1,21 +1,22 @@
-/* Whether a program keeps the rules that the machine relies on, so that no image can do harm.
+/* The verifier: checks the rules that the machine relies on, so that no image can do harm.
  *
- * The same is asked as by interp/bytecode/verifier/verify.py, as far as memory and time depend on it: what
- * lies on the stack at every instruction, that references and views lead to cells of their type, that
- * no way falls off the end, and that every circle has a statement in it. Names, and whether the parts
- * of a request fit its fields, are left to the verifier in Python: nothing here uses them.
+ * It checks what interp/bytecode/verifier/verify.py checks, as far as memory safety and bounded
+ * time depend on it: what is on the stack at every instruction, that references and views refer to
+ * cells of their type, that no path runs off the end, and that every cycle has a LINE or an ASK.
+ * Names, and whether the parts of a request match its fields, are left to the verifier in Python: C
+ * does not use them.
  *
- * Here is what holds for whole code objects, and the walk along their ways; what each instruction
- * does to the stack stands in stack_effects.c.
+ * This file has the rules for whole code objects, and the walk along their control flow;
+ * stack_effects.c has the stack effect of each instruction.
  */
 #include "verifier.h"
 
-/* All stacks of a code object where ways meet have at most so many entries together. */
+/* The maximum number of items in all stacks that are stored for the targets of a code object. */
 enum { MOST_REMEMBERED = 1 << 23 };
 
 /* ---------------------------------------------------------------------------- operands */
 
-/* The kinds of an instruction's operands, a byte each. */
+/* The kinds of the operands of each instruction, a byte each. */
 static const uint32_t kinds[] = {
 #define KINDS(name, count, kinds) kinds,
     KRL_OPCODES(KINDS)
@@ -27,11 +28,11 @@ static int is_operand(const struct flow *flow, uint32_t kind, int32_t operand)
     switch (kind) {
     case KRL_OPERAND_REAL: return krl_is_finite(krl_real_of_bits((uint32_t)operand));
 #include "operand_ranges.gen.h"
-    default: return 1; /* INT; LINE, which only Python uses; TARGET, which the reader has checked */
+    default: return 1; /* INT; LINE, which only Python uses; TARGET, which the reader checks */
     }
 }
 
-/* Where the instruction may go on besides the next one, or -1; none has more than one target. */
+/* Returns the target of an instruction, or -1; no instruction has more than one. */
 static int32_t target_of(const struct krl_instruction *instruction)
 {
     uint32_t packed = kinds[instruction->op];
@@ -41,7 +42,7 @@ static int32_t target_of(const struct krl_instruction *instruction)
     return -1;
 }
 
-/* All operands name something; notes the targets. */
+/* Checks that every operand refers to something, and marks the targets. */
 static void check_operands(struct flow *flow)
 {
     const struct krl_code *code = flow->code;
@@ -58,7 +59,8 @@ static void check_operands(struct flow *flow)
 
 /* ---------------------------------------------------------------------------- the stack */
 
-/* The stack meets that of another way, or goes on alone. */
+/* Merges the first `count` items of the stack into an instruction. The first path stores its stack
+ * there and schedules the instruction; all others must have the same stack. */
 static void meet(struct flow *flow, int32_t place, int32_t count)
 {
     struct remembered *there = &flow->at[place];
@@ -85,7 +87,7 @@ static void meet(struct flow *flow, int32_t place, int32_t count)
         krl_refuse_code(flow, "the stack differs from that of another way");
 }
 
-/* Walks on from a place until a way ends or meets another one. */
+/* Walks from an instruction to the end of the path or the next target. */
 static void walk(struct flow *flow, int32_t place)
 {
     const struct krl_code *code = flow->code;
@@ -101,7 +103,7 @@ static void walk(struct flow *flow, int32_t place)
         if (flow->is_wrong)
             return;
         int32_t target = target_of(instruction);
-        if (target >= 0) /* where a statement is left, its operands are forgotten */
+        if (target >= 0) /* AT ends a statement early, which drops its operands; a CASE that jumps pops its value */
             meet(flow, target, instruction->op == KRL_AT ? 0 : flow->count - (instruction->op == KRL_CASE));
         if (krl_ends(instruction->op))
             return;
@@ -116,9 +118,10 @@ static void walk(struct flow *flow, int32_t place)
     }
 }
 
-/* ---------------------------------------------------------------------------- the ways alone */
+/* ---------------------------------------------------------------------------- control flow */
 
-/* Where an instruction goes on: the target, then the next one. */
+/* Stores the successors of an instruction, the target before the next one, and returns their
+ * number. */
 static int after(const struct krl_code *code, int32_t place, int32_t *found)
 {
     const struct krl_instruction *instruction = &code->body[place];
@@ -130,7 +133,7 @@ static int after(const struct krl_code *code, int32_t place, int32_t *found)
     return count;
 }
 
-/* Nothing is called or asked before the first statement begins. */
+/* Checks that no path has a CALL or an ASK before its first LINE. */
 static void check_start(struct flow *flow)
 {
     const struct krl_code *code = flow->code;
@@ -159,7 +162,8 @@ static void check_start(struct flow *flow)
     }
 }
 
-/* Every circle has a LINE or an ASK: without these, no instruction leads to itself. */
+/* Checks that every cycle has a LINE or an ASK: a depth-first search that stops at these must find
+ * no edge to an open instruction. */
 static void check_circles(struct flow *flow)
 {
     enum { FRESH, OPEN, DONE };
@@ -198,7 +202,7 @@ static void check_circles(struct flow *flow)
     }
 }
 
-/* A condition only goes forwards, and changes nothing of the program. */
+/* Checks that a condition has forward jumps only, and changes nothing of the program. */
 static void check_condition(struct flow *flow)
 {
     const struct krl_code *code = flow->code;
@@ -240,7 +244,8 @@ static void check_code(struct flow *flow)
     check_circles(flow);
 }
 
-/* What an action or a condition belongs to, so that its references can be found in that frame. */
+/* Whether the owner is valid. A routine has none and captures nothing. Actions and conditions
+ * belong to a routine, and their parameters are its captured variables. */
 static int is_owned(const struct krl_program *program, const struct krl_code *code)
 {
     if (code->kind == KRL_ROUTINE)
