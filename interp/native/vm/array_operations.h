@@ -1,10 +1,12 @@
-/* Blocks of cells: elements, views, arrays, texts. Inline, as run.c does this within its steps. */
+/* Operations on blocks of cells: elements, views, arrays, texts. They are inline because the steps
+ * of run.c use them. */
 #ifndef KRL_ARRAY_OPERATIONS_H
 #define KRL_ARRAY_OPERATIONS_H
 
 #include "machine.h"
 
-/* The place of the element that indices lead to, or -1. They have been looked at: all have values. */
+/* Returns the offset of an element in row-major order, in elements, or -1 if an index is out of
+ * range. The indices must have values. */
 static inline int32_t krl_flat_place(const int32_t *sizes, int32_t dimensions,
                                      const krl_cell *indices)
 {
@@ -18,14 +20,14 @@ static inline int32_t krl_flat_place(const int32_t *sizes, int32_t dimensions,
     return place;
 }
 
-/* The sizes of a view, which lie behind its address. */
+/* Reads the sizes of a view, which follow its address. */
 static inline void krl_view_sizes(const krl_cell *view, int32_t dimensions, int32_t *sizes)
 {
     for (int32_t i = 0; i < dimensions; i++)
         sizes[i] = krl_int_in(view[1 + i]);
 }
 
-/* They may overlap. */
+/* Source and target may overlap. */
 static inline void krl_copy_cells(krl_cell *target, const krl_cell *source, int32_t count)
 {
     memmove(target, source, (size_t)count * sizeof *target);
@@ -36,7 +38,8 @@ static inline void krl_blank_cells(krl_cell *target, int32_t count)
     memset(target, 0, (size_t)count * sizeof *target);
 }
 
-/* As interp.values.values.fill does it with arrays; gives a fault. */
+/* Fills an array with another one, each given by a view, as interp.values.values.fill does. Returns
+ * a fault or KRL_FINE. */
 static inline int krl_fill_array(krl_cell *cells, const krl_cell *target, const krl_cell *source,
                                  int32_t width, int32_t dimensions)
 {
@@ -54,7 +57,7 @@ static inline int krl_fill_array(krl_cell *cells, const krl_cell *target, const 
     return KRL_FINE;
 }
 
-/* The text, as much of it as there is room for; the rest loses its values. */
+/* Stores as much of a text as fits. The cells after it lose their values. */
 static inline void krl_set_text(krl_cell *target, int32_t length, const struct krl_letters *text)
 {
     int32_t count = text->count < length ? text->count : length;
@@ -62,7 +65,8 @@ static inline void krl_set_text(krl_cell *target, int32_t length, const struct k
     krl_blank_cells(target + count, length - count);
 }
 
-/* Puts arguments, of which structures are references, into a frame, and takes the rest's values away. */
+/* Stores arguments in a frame, whose other cells lose their values. A structure is copied: its
+ * argument is a reference. */
 static inline void krl_receive(struct krl_machine *machine, const struct krl_routine *callee,
                                krl_cell *frame, const krl_cell *arguments)
 {

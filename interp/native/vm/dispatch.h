@@ -1,8 +1,8 @@
-/* What the steps of the interpreter are written with; for run.c alone.
+/* Macros for the steps of the interpreter; only for run.c.
  *
- * Where the compiler has labels as values, each step goes straight to the next one; else, or with
- * KRL_SWITCH, there is one switch. Each step is there twice: as it is, and with the beginning of a
- * statement before it.
+ * If the compiler has labels as values, the code is threaded: each step jumps directly to the next
+ * one. Otherwise, or with KRL_SWITCH, there is one switch. Each step has two entries: one begins a
+ * statement first.
  *
  * The macros use the variables and labels of the function in run.c: the step `pc`, the frame `fp`,
  * all `cells`, `left`, `statement`, `fault`.
@@ -18,7 +18,7 @@
 #define KRL_THREADED 0
 #endif
 
-/* ---------------------------------------------------------------------------- from step to step */
+/* ---------------------------------------------------------------------------- dispatch */
 
 #define BEGIN_STATEMENT()                                                                          \
     do {                                                                                           \
@@ -55,7 +55,7 @@
 #define A fp[pc->a]
 #define B fp[pc->b]
 
-/* A step of steps.h. */
+/* An interpreter step whose effect is in steps.h. */
 #define ORDINARY(name)                                                                             \
     STEP(name)                                                                                     \
     {                                                                                              \

@@ -1,19 +1,19 @@
-/* SWRITE and SREAD, as interp/values/formats.py has them, which describes the formats.
- *
- * What an assignment may refuse, a text that is read and written at once, and values of structures are for
- * Python: then nothing has been done here. */
+/* SWRITE and SREAD, as in interp/values/formats.py, which describes the formats. Python executes
+ * assignments that may be refused, calls in which one text is read and written, and values of
+ * structures: in these cases nothing has been done here. */
 #include "formats.h"
 
 #include <stdio.h>
 
-/* Widths and precisions; the variables of a call; and the longest number: digits before the point, and behind. */
+/* Maximum of widths and precisions; of values in a call; of the characters of a number, which are
+ * the digits after the point and some before it. */
 enum { LONGEST = 2047, MOST_VALUES = 10, LONGEST_NUMBER = LONGEST + 64 };
-/* Letters of a constant with its #; Python writes longer ones. */
+/* Maximum length of a constant with its #; Python writes longer ones. */
 enum { LONGEST_WORD = 256 };
 
 /* ---------------------------------------------------------------------------- arguments */
 
-/* The members of STATE_T. */
+/* The members of STATE_T, in order. */
 enum { RET1, MSG_NO, MSG_TYPE, MSG_TXT, HITS, LENGTH, STATE_MEMBERS };
 enum { TEXT = 0, STATE, OFFSET, FORMAT, VALUES };
 
@@ -55,7 +55,8 @@ int krl_can_scan(const struct krl_program *program, const struct krl_part *part)
              (type == KRL_TYPE_INT || type == KRL_TYPE_REAL || type == KRL_TYPE_CHAR)));
 }
 
-/* The cells of an argument that is no value; none of a constant text. */
+/* Returns the cells of an argument that is passed by reference or as a view; none for a constant
+ * text. */
 static struct krl_letters cells_of(const struct krl_text_call *call, int32_t argument)
 {
     const struct krl_part *part = &call->entry->parts[argument];
@@ -66,7 +67,8 @@ static struct krl_letters cells_of(const struct krl_text_call *call, int32_t arg
     return (struct krl_letters){krl_referred(call, argument), call->machine->program.types[part->handed.type].size};
 }
 
-/* Whether all have values, and no argument that changes has a cell in common with another. */
+/* Whether all values and the offset are there, and no argument that is changed shares a cell with
+ * another. */
 static int are_apart(const struct krl_text_call *call)
 {
     const struct krl_entry *entry = call->entry;
@@ -104,12 +106,12 @@ static void give_state(const struct krl_text_call *call, const char *word, int32
 
 /* ---------------------------------------------------------------------------- formats */
 
-/* The next piece of a format: a specification, or as many letters as stand for themselves. */
+/* The next piece of a format: a conversion, or a run of literal letters. */
 struct piece {
     struct krl_letters letters;
     int is_plus, is_left, is_zero, is_full; /* the flags + - 0 # */
     int32_t width, precision;               /* -1 for none */
-    char letter;                            /* 0 for letters that stand for themselves */
+    char letter;                            /* of the conversion; 0 for literal letters */
 };
 
 static uint32_t code_at(struct krl_letters text, int32_t place)
@@ -117,7 +119,7 @@ static uint32_t code_at(struct krl_letters text, int32_t place)
     return place < text.count ? (uint32_t)text.cells[place] : 0;
 }
 
-/* Up to four digits; 0 where the number is too large. */
+/* Reads a number of up to four digits, -1 if there are none. Returns 0 if it is too large. */
 static int count(struct krl_letters format, int32_t *place, int32_t *number)
 {
     *number = -1;
@@ -126,7 +128,7 @@ static int count(struct krl_letters format, int32_t *place, int32_t *number)
     return *number <= LONGEST;
 }
 
-/* Takes a piece off a format that is not at its end; 0 where it is none. */
+/* Removes the first piece from a format that is not empty. Returns 0 if it is invalid. */
 static int take_piece(struct krl_letters *format, struct piece *piece)
 {
     int32_t place = 0;
@@ -165,7 +167,7 @@ static int take_piece(struct krl_letters *format, struct piece *piece)
 
 /* ---------------------------------------------------------------------------- SWRITE */
 
-/* Where to write: letters, of which `used` are written. */
+/* The letters to write to, of which `used` are in use. */
 struct output {
     krl_cell *cells;
     int32_t count;
@@ -194,7 +196,7 @@ static int32_t at_least(int32_t length, int32_t least)
     return length > least ? length : least;
 }
 
-/* Letters with blanks; 0 where there is no room. */
+/* Writes letters, padded with blanks. Returns 0, with nothing written, if they do not fit. */
 static int put_letters(struct output *output, const struct piece *piece, struct krl_letters text)
 {
     int32_t blanks = at_least(piece->width - text.count, 0);
@@ -207,7 +209,8 @@ static int put_letters(struct output *output, const struct piece *piece, struct 
     return 1;
 }
 
-/* A value as letters, for c and s; 0 where it has none. */
+/* Writes a value as letters, for %c and %s. Returns 0 if the value has no such form, or it does not
+ * fit. */
 static int put_characters(struct output *output, const struct piece *piece, const struct krl_program *program,
                           const struct krl_part *part, krl_cell value, struct krl_letters text)
 {
@@ -249,7 +252,8 @@ static int put_characters(struct output *output, const struct piece *piece, cons
     return put_letters(output, piece, found);
 }
 
-/* The digits of a number without its sign; -1 where the letter is not for it. */
+/* Stores the digits of a number without its sign. Returns their number, or -1 if the conversion is
+ * not for this type. */
 static int32_t digits_of(const struct piece *piece, int32_t type, krl_cell value, char *digits)
 {
     char letter = piece->letter;
@@ -271,7 +275,8 @@ static int32_t digits_of(const struct piece *piece, int32_t type, krl_cell value
     return snprintf(digits, LONGEST_NUMBER, letter == 'x' ? "%.*x" : "%.*u", at_least(precision, 1), number);
 }
 
-/* A number, for all other letters; 0 where it has no room, or the letter is not for it. */
+/* Writes a number, for all other conversions. Returns 0 if it does not fit, or the conversion is
+ * not for its type. */
 static int put_number(struct output *output, const struct piece *piece, int32_t type, krl_cell value)
 {
     char digits[LONGEST_NUMBER];
@@ -293,7 +298,7 @@ static int put_number(struct output *output, const struct piece *piece, int32_t 
     return 1;
 }
 
-/* The value of an argument behind the format. */
+/* Writes the value of an argument after the format. Returns 0 as the functions above do. */
 static int put_value(struct output *output, const struct piece *piece, const struct krl_text_call *call,
                      int32_t argument)
 {
@@ -332,7 +337,7 @@ static int write_text(const struct krl_text_call *call, struct krl_letters targe
 
 /* ---------------------------------------------------------------------------- SREAD */
 
-/* What was read: letters, or a number. */
+/* What SREAD has read: letters, or a number. */
 struct found {
     struct krl_letters letters;
     krl_cell number; /* KRL_NOTHING for letters */
@@ -345,7 +350,8 @@ static int32_t behind_blanks(struct krl_letters text, int32_t place)
     return place;
 }
 
-/* The place behind what the format expects literally; -1 where it is not there. */
+/* Skips what the format expects literally; a blank stands for any number of blanks. Returns the
+ * place after it, or -1 if the text differs. */
 static int32_t skipped(struct krl_letters text, int32_t place, struct krl_letters expected)
 {
     for (int32_t i = 0; i < expected.count; i++) {
@@ -363,7 +369,8 @@ static uint32_t hexadecimal(uint32_t code)
     return code - '0' < 10 ? code - '0' : (code | 32) - 'a' < 6 && code < 128 ? (code | 32) - 'a' + 10 : 16;
 }
 
-/* How many letters are a number without sign, decimal or hexadecimal; it is 0 if too large. */
+/* Reads an unsigned number, decimal or hexadecimal, and returns how many letters it has; 0 for
+ * none, or if it is too large. */
 static int32_t take_unsigned(struct krl_letters text, uint32_t base, krl_cell *value)
 {
     int32_t place = 0;
@@ -376,7 +383,7 @@ static int32_t take_unsigned(struct krl_letters text, uint32_t base, krl_cell *v
     return number > UINT32_MAX || place > 2 + 32 ? 0 : place;
 }
 
-/* Reads a value; the place behind it, or -1 where there is none. */
+/* Reads a value by a conversion. Returns the place after it, or -1 if there is none. */
 static int32_t scan(struct krl_letters text, int32_t place, const struct piece *piece, struct found *found)
 {
     if (piece->is_plus || piece->is_left || piece->is_zero || piece->is_full || piece->precision >= 0)
@@ -416,7 +423,7 @@ static int32_t scan(struct krl_letters text, int32_t place, const struct piece *
     return length > 0 ? place + length : -1;
 }
 
-/* What a variable gets of what was read; 0 where the assignment is for Python. */
+/* Converts what was read to the type of a variable. Returns 0 if Python has to do the assignment. */
 static int converts(const struct krl_program *program, const struct krl_part *part, struct found *found)
 {
     int is_real = krl_tag_of(found->number) == KRL_TAG_REAL;

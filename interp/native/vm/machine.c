@@ -17,8 +17,9 @@ void krl_unload(struct krl_machine *machine)
     memset(machine, 0, sizeof *machine);
 }
 
-/* Frames begin within the one before, behind its variables: together they have no more cells than
- * KRL_MAX_CELLS and all their places on the stack, nor than so many of the largest. */
+/* Returns how many cells a number of frames can need. A frame begins in the one before, behind the
+ * variables. So together they have at most KRL_MAX_CELLS and all operand stacks; and at most the
+ * cells of the largest frame, so many times. */
 static int64_t frames_need(const struct krl_machine *machine, int64_t frames)
 {
     int64_t sparse = KRL_MAX_CELLS + frames * machine->most_stack;
@@ -26,7 +27,8 @@ static int64_t frames_need(const struct krl_machine *machine, int64_t frames)
     return (dense < sparse ? dense : sparse) + 1;
 }
 
-/* Makes the memory larger. Zeros that were never read cost nothing. */
+/* Makes the memory larger; returns 0 if there is not enough. With calloc, pages that are never
+ * touched cost nothing. */
 static int extend(struct krl_memory *memory, int64_t count)
 {
     krl_cell *cells = NULL;

@@ -1,6 +1,7 @@
-/* Functions of numbers and poses, as interp/values/builtins.py and interp/values/frames.py have them.
+/* Functions of numbers and poses, as in interp/values/builtins.py and interp/values/frames.py.
  *
- * All is computed in double, in the order written there, and each result is rounded to single once.
+ * Everything is computed in double precision, in the same order as there, and each result is
+ * rounded to single precision once.
  */
 #include "machine.h"
 
@@ -10,16 +11,17 @@ static const double PI = 3.141592653589793;
 #define DEGREE (PI / 180.0)
 #define RADIAN (180.0 / PI)
 
-/* The x axis of a pose is upright when its part in the plane is shorter. */
+/* The x axis of a pose counts as vertical if its projection onto the xy plane, which has length 0
+ * to 1, is shorter than this. */
 static const double UPRIGHT = 1e-6;
 
-/* Full circles are taken off before, so that large angles stay exact. */
+/* Converts degrees to radians, modulo 360 first: that is exact for large angles. */
 static double radians(double degrees)
 {
     return fmod(degrees, 360.0) * DEGREE;
 }
 
-/* Rounds to single; gives a fault where that is not finite. */
+/* Rounds to single precision. Returns a fault if the result is not finite. */
 static int single(double wide, float *result)
 {
     *result = (float)wide;
@@ -57,7 +59,7 @@ int krl_compute(enum krl_function function, float one, float other, float *resul
         if (one == 0 && other == 0)
             return KRL_FAULT_DOMAIN;
         return single(atan2(number, other) * RADIAN, result);
-    case KRL_ABS: case KRL_SQRT: /* the step computes these itself */
+    case KRL_ABS: case KRL_SQRT: /* the step FUNCTION computes these */
     case KRL_FUNCTIONS:
         break;
     }
@@ -66,7 +68,8 @@ int krl_compute(enum krl_function function, float one, float other, float *resul
 
 /* ---------------------------------------------------------------------------- poses */
 
-/* X, Y, Z, A, B, C, which are the first cells of every pose. */
+/* Reads X, Y, Z, A, B, C (mm and degrees), the first cells of every pose. Returns a fault if one
+ * has no value. */
 static int read_pose(const krl_cell *cells, double *pose)
 {
     for (int i = 0; i < 6; i++) {
@@ -106,7 +109,7 @@ static float angle(double radians)
     return degrees == -180.0f ? 180.0f : degrees + 0.0f;
 }
 
-/* A, B, C of a matrix in degrees. */
+/* Computes A, B, C, in degrees, from a rotation matrix. */
 static void angles(const double *m, float *result)
 {
     double across = m[3], along = m[0];

@@ -1,8 +1,9 @@
-/* The interpreter: what each step does.
+/* The interpreter of register code.
  *
- * It is one long function: only within one can steps go straight to one another and keep what they
- * all use in registers. register_code.h says what their operands are, steps.h what most of them do;
- * those that call and leave stand here. dispatch.h is how it goes from one to the next.
+ * It is one long function: only within one function can steps jump directly to each other and keep
+ * the variables that all of them use in processor registers. register_code.h describes the operands
+ * of steps, steps.h the effects of most of them; those that call and leave are in this file.
+ * dispatch.h has the jumps from one to the next.
  */
 #include "dispatch.h"
 
@@ -88,7 +89,7 @@ static struct krl_stopped interpret(struct krl_machine *machine, int32_t step, i
         goto stop;
     }
 
-    /* ---- the rest */
+    /* ---- other steps */
     STEP(SWITCH)
     {
         krl_cell number = B;
@@ -145,7 +146,7 @@ enter:
 finished:
     stopped.why = KRL_STOP_END;
     goto stop;
-broken: /* where a statement begins its frame has no operands */
+broken: /* at the beginning of a statement the operand stack is empty */
 #if KRL_THREADED
     if (krl_passes_break(machine, fp, (int32_t)(pc - machine->steps)))
         goto *labels[2 * pc->op + 1];
@@ -157,7 +158,7 @@ wait:
 before:
     stopped.at = (int32_t)(pc - machine->steps);
     goto bare;
-failed: /* the operands of what has failed are given up */
+failed: /* a statement that fails drops its operands */
     stopped.why = KRL_STOP_FAULT;
     stopped.at = fault;
 bare:
@@ -169,7 +170,8 @@ stop:
     return stopped;
 }
 
-/* Of a step at which the machine stops: where a compiled program is entered, or at a breakpoint. */
+/* Returns the handler of a step before which the machine stops: to enter native code, or at a
+ * breakpoint. */
 static const void *krl_handler(enum krl_stop why)
 {
     int is_break = why == KRL_STOP_BREAK;

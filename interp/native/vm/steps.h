@@ -1,7 +1,8 @@
-/* What each step does that neither calls nor leaves: for the interpreter (run.c), and for programs that
- * are compiled (compiled.h), where the step is a constant.
+/* The effects of all steps that neither call nor leave (KRL_ORDINARY_STEPS), for the interpreter
+ * (run.c) and for native code (compiled.h), where the step is a constant.
  *
- * A step is a function that is always inlined. It gives where to go on, or a fault.
+ * A step is a function that is always inlined. It returns KRL_GO_NEXT, KRL_GO_JUMP, or the code of
+ * a fault.
  */
 #ifndef KRL_STEPS_H
 #define KRL_STEPS_H
@@ -21,10 +22,10 @@
 #define KRL_INLINE static __forceinline
 #endif
 
-/* Where a step goes on that does not fault, whose codes are not negative. */
+/* Where execution continues after a step that does not fault. Codes of faults are not negative. */
 enum { KRL_GO_NEXT = -1, KRL_GO_JUMP = -2 };
 
-/* A register is a cell, unless compiled.h has another form of it. */
+/* A register is a cell, unless compiled.h defines it otherwise. */
 #ifndef KRL_REGISTERS
 typedef krl_cell krl_register;
 #define REGISTER_OF(cell) (cell)
@@ -39,7 +40,7 @@ typedef krl_cell krl_register;
 #define OF_REAL krl_of_real
 #endif
 
-/* What was written last through a reference, for the trace. */
+/* Stores the address of an assignment through a reference, for the trace. */
 #ifndef REMEMBER
 #define REMEMBER(address) machine->last = (address)
 #endif
@@ -48,7 +49,8 @@ typedef krl_cell krl_register;
 #define KRL_ARRAY(number) (&machine->arrays[number])
 #endif
 
-/* All `cells`, the frame `fp`, its `registers`, which are the same cells or copies of them, the step `pc`. */
+/* Arguments: all `cells`, the frame `fp`, its `registers` (the same cells, or copies of them), the
+ * step `pc`. */
 #define STEP(name)                                                                                 \
     KRL_INLINE int krl_step_##name(KRL_UNUSED struct krl_machine *machine,                         \
                                    KRL_UNUSED krl_cell *const cells, KRL_UNUSED krl_cell *const fp, \
@@ -70,7 +72,8 @@ typedef krl_cell krl_register;
         if (UNLIKELY(condition))                                                                   \
             FAULT(name);                                                                           \
     } while (0)
-/* What is read may have no value, unless it is known to come from another step. */
+/* Faults if what is read has no value. In native code the C compiler drops the check where it knows
+ * the tag. */
 #define READ(name, place)                                                                          \
     krl_register name = (place);                                                                   \
     FAULT_IF(!HAS_VALUE(name), UNINITIALISED)
@@ -93,14 +96,14 @@ static inline int overflows(int64_t wide, int32_t *result)
 #define multiplies(a, b, result) overflows((int64_t)(a) * (b), result)
 #endif
 
-/* The nearest INT, halves away from zero; not 0 where there is none. The sum with a half is that of
- * doubles: that of singles would round. */
+/* Rounds to the nearest INT, halves away from zero. Returns 1 if that is out of range. The half is
+ * added in double precision, because the sum in single precision would be rounded. */
 static inline int rounds(float number, int32_t *result)
 {
     double wide = number >= 0 ? (double)number + 0.5 : (double)number - 0.5;
     if (wide >= 2147483648.0 || wide <= -2147483649.0)
         return 1;
-    *result = (int32_t)wide; /* towards zero */
+    *result = (int32_t)wide; /* truncates */
     return 0;
 }
 
@@ -159,7 +162,7 @@ static inline int rounds(float number, int32_t *result)
         READ(b, B);                                                                                \
         REAL_RESULT(REAL(b) operator krl_real_of_bits((uint32_t)pc->c));                           \
     }
-/* What gives a BOOL, and the jump unless it holds. */
+/* The comparison that stores a BOOL, and the jump unless it holds. */
 #define RELATION_STEP(name, read, holds)                                                           \
     STEP(name)                                                                                     \
     {                                                                                              \
@@ -180,7 +183,7 @@ static inline int rounds(float number, int32_t *result)
     RELATION_STEP(name##_REAL, READ_BOTH, REAL(b) operator REAL(c))                                \
     RELATION_STEP(name##_REAL_K, READ(b, B),                                                       \
                   REAL(b) operator krl_real_of_bits((uint32_t)pc->c))
-/* Two operands that are looked at as numbers of 32 bits; both BOOL, or both INT. */
+/* Operates on all 32 bits of two operands, both INT or both BOOL. */
 #define BIT_STEP(name, make, operator)                                                             \
     STEP(name)                                                                                     \
     {                                                                                              \
@@ -189,7 +192,7 @@ static inline int rounds(float number, int32_t *result)
         NEXT();                                                                                    \
     }
 
-/* The element at an address: its address, its value, or the place for one. */
+/* Steps on the element that `find` locates: compute its address, read it, write it. */
 #define ACCESS_STEPS(suffix, base, find)                                                           \
     STEP(INDEX_##suffix)                                                                           \
     {                                                                                              \
@@ -226,7 +229,7 @@ static inline int rounds(float number, int32_t *result)
         A = found;                                                                                 \
         NEXT();                                                                                    \
     }
-/* Indices count from 1; as numbers without sign, 0 and negative ones are too large. */
+/* Indices count from 1. One unsigned comparison also excludes 0 and negative indices. */
 #define FIND_ONE                                                                                   \
     READ(index, B);                                                                                \
     uint32_t number = (uint32_t)INT(index) - 1;                                                    \
@@ -259,7 +262,7 @@ static inline int rounds(float number, int32_t *result)
     uint32_t row = number * (uint32_t)array->sizes[1] + behind;                                    \
     uint32_t place = (uint32_t)array->base + (row * (uint32_t)array->sizes[2] + last) * (uint32_t)array->width
 
-/* An element of a view: its address. */
+/* Locates an element of a view by its address. */
 #define FIND_IN_VIEW                                                                               \
     READ(index, B);                                                                                \
     READ(base, C);                                                                                 \
@@ -275,7 +278,7 @@ static inline int rounds(float number, int32_t *result)
     FAULT_IF(number >= (uint32_t)INT(REGISTER(pc->c + 1)) || behind >= columns, INDEX);            \
     int32_t place = INT(base) + (int32_t)(number * columns + behind) * pc->tag
 
-/* ---- where to go on */
+/* ---- control flow */
 STEP(JUMP)
 {
     JUMP();
@@ -312,7 +315,7 @@ FOR_STEP(FOR_DATA_UP, REGISTER_AT(cells[pc->a]), SET_DATA, <=)
 FOR_STEP(FOR_DATA_DOWN, REGISTER_AT(cells[pc->a]), SET_DATA, >=)
 KRL_COMPARISONS(RELATION_STEPS)
 
-/* ---- moving */
+/* ---- data movement */
 STEP(NOP)
 {
     NEXT();
@@ -458,7 +461,7 @@ STEP(ROW_VIEW)
     NEXT();
 }
 
-/* ---- blocks of cells; references in place always have values */
+/* ---- blocks of cells; references on the operand stack have values */
 STEP(COPY)
 {
     REMEMBER(INT(A));
@@ -524,7 +527,7 @@ STEP(INVERT)
     NEXT();
 }
 
-/* ---- computing */
+/* ---- arithmetic */
 INT_STEP(ADD_INT, adds)
 INT_STEP(SUB_INT, subtracts)
 INT_STEP(MUL_INT, multiplies)
@@ -541,7 +544,7 @@ STEP(DIV_INT)
     NEXT();
 }
 
-STEP(DIV_INT_K) /* neither 0 nor -1 */
+STEP(DIV_INT_K) /* the divisor is neither 0 nor -1 */
 {
     READ(b, B);
     A = OF_INT(INT(b) / pc->c);
@@ -589,7 +592,7 @@ STEP(DIV_REAL)
     REAL_RESULT(REAL(b) / REAL(c));
 }
 
-STEP(DIV_REAL_K) /* not zero */
+STEP(DIV_REAL_K) /* the divisor is not zero */
 {
     READ(b, B);
     REAL_RESULT(REAL(b) / krl_real_of_bits((uint32_t)pc->c));
@@ -635,7 +638,8 @@ STEP(FUNCTION)
         READ(c, C);
         other = REAL(c);
     }
-    /* These are exact, or rounded once: in single precision they give what they give in double. */
+    /* ABS is exact, and the root is rounded once: single precision gives the same result as
+     * rounding that of double precision. */
     if (pc->tag == KRL_ABS || pc->tag == KRL_SQRT) {
         FAULT_IF(pc->tag == KRL_SQRT && REAL(b) < 0, DOMAIN);
         A = OF_REAL(pc->tag == KRL_ABS ? fabsf(REAL(b)) : sqrtf(REAL(b)));
@@ -656,7 +660,7 @@ STEP(TEXT)
     NEXT();
 }
 
-/* ---- the rest */
+/* ---- other steps */
 STEP(CHECK_CALL)
 {
     FAULT_IF(machine->open >= machine->most_calls ||
@@ -684,7 +688,7 @@ STEP(REMEMBER_DATA)
 
 /* ---------------------------------------------------------------------------- calls */
 
-/* The frame to return to from the call that a step is. */
+/* Returns the call to record for a CALL step: the frame to return to. */
 KRL_INLINE struct krl_call krl_call_of(krl_cell *const cells, krl_cell *const fp, const struct krl_step *const pc,
                                        int32_t step, int32_t code, int32_t extent, int32_t statement,
                                        int32_t serial)
@@ -693,8 +697,8 @@ KRL_INLINE struct krl_call krl_call_of(krl_cell *const cells, krl_cell *const fp
                              (int32_t)(fp + pc->a - cells), 0};
 }
 
-/* Opens the call that a step is, and notes the frame to return to. Gives the frame of the routine that
- * is called, with its arguments; NULL where there is no room for it. */
+/* Opens the call of a step and records the frame to return to. Returns the frame of the callee,
+ * with its arguments, or NULL if there are too many calls or cells. */
 KRL_INLINE krl_cell *krl_enter(struct krl_machine *machine, krl_cell *const cells, krl_cell *const fp,
                                const struct krl_step *const pc, int32_t step, int32_t statement)
 {
@@ -716,7 +720,7 @@ KRL_INLINE krl_cell *krl_enter(struct krl_machine *machine, krl_cell *const cell
     return fp + pc->d;
 }
 
-/* Ends the call that was opened last; gives what to return to. */
+/* Closes the last call and returns it. The caller of this function restores `fp` and the statement. */
 KRL_INLINE const struct krl_call *krl_return(struct krl_machine *machine)
 {
     const struct krl_call *call = &machine->calls[--machine->open];
@@ -726,7 +730,7 @@ KRL_INLINE const struct krl_call *krl_return(struct krl_machine *machine)
     return call;
 }
 
-/* Puts a result where the call has its place for it. */
+/* Stores a result in the cell that the call has for it. */
 KRL_INLINE void krl_give(struct krl_machine *machine, krl_cell *const cells, krl_cell value)
 {
     machine->top = machine->calls[machine->open - 1].result;
@@ -735,7 +739,7 @@ KRL_INLINE void krl_give(struct krl_machine *machine, krl_cell *const cells, krl
 
 /* ---------------------------------------------------------------------------- slices */
 
-/* Whether the advance run need not be asked to stop, as Counter.passes_stop has it; then a slice begins. */
+/* Whether a StopAdvance needs no request, as in Counter.passes_stop. If so, a slice begins. */
 KRL_INLINE int krl_passes_stop(struct krl_machine *machine, int32_t *left)
 {
     if (machine->stops == 0)

@@ -1,11 +1,12 @@
-/* The functions on texts, as interp/values/texts.py has them; what gives structures is carried out in
- * Python. */
+/* The text functions, as in interp/values/texts.py. Python executes those that return structures. */
 #include "formats.h"
 
 struct known {
     const char *name;
-    /* T a text, C an array that may change, D one that does not, N an INT, M a mode, I, R, B an INT, REAL
-     * or BOOL that changes, S a STATE_T; + what SWRITE writes, * what SREAD changes, each any number */
+    /* One letter for each argument: T a text; C an array that is changed; D an array that is not; N
+     * an INT; M whether case matters; I, R, B a variable INT, REAL, BOOL that is changed; S a
+     * STATE_T. The last one stands for any number: + values that SWRITE writes; * variables that
+     * SREAD changes. */
     const char *parameters;
     int32_t result;
 };
@@ -26,9 +27,9 @@ static const struct known known[KRL_TEXT_FUNCTIONS] = {
     [KRL_SREAD] = {"SREAD", "TSIT*", -1},
 };
 
-/* ---------------------------------------------------------------------------- which it is */
+/* ---------------------------------------------------------------------------- signatures */
 
-/* The place of the constant that distinguishes letters by their case; -1 where there is none. */
+/* Returns the index of the constant for comparisons with case, or -1. */
 static int32_t sensitive(const struct krl_program *program, int32_t type)
 {
     return krl_constant_named(&program->types[type], "CASE_SENS");
@@ -119,7 +120,8 @@ static int is_sensitive(const struct krl_text_call *call, int32_t argument)
     return place == sensitive(&call->machine->program, part->handed.type);
 }
 
-/* Reads a value, blanks around it left out, into the second argument; whether there was one. */
+/* Reads the first argument, without the blanks around it, as a value of the second one. Returns a
+ * BOOL: whether it was one. */
 static krl_cell taken(const struct krl_text_call *call, int (*read)(struct krl_letters, krl_cell *))
 {
     struct krl_letters text = krl_text_argument(call, 0);
@@ -134,7 +136,7 @@ static krl_cell taken(const struct krl_text_call *call, int (*read)(struct krl_l
     return krl_of_bool(1);
 }
 
-/* ---------------------------------------------------------------------------- what it does */
+/* ---------------------------------------------------------------------------- execution */
 
 int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
                   const struct krl_entry *entry, krl_cell *inputs)

@@ -1,4 +1,4 @@
-/* Texts and the numbers in them, as the functions on texts and SWRITE and SREAD have them. */
+/* Texts and the numbers in them, for the text functions, SWRITE and SREAD. */
 #include "texts.h"
 
 #include <locale.h>
@@ -27,7 +27,8 @@ int32_t krl_constant_named(const struct krl_type *type, const char *name)
 struct krl_letters krl_used(struct krl_letters all)
 {
     struct krl_letters found = {all.cells, 0};
-    /* Codes are small: four at once, of which the least is 0 or not, with one branch. */
+    /* Tests four letters with one branch: codes are small, so code - 1 has the highest bit set only
+     * for code 0. */
     for (const krl_cell *four = all.cells; found.count + 4 <= all.count; found.count += 4, four += 4)
         if ((((uint32_t)four[0] - 1) | ((uint32_t)four[1] - 1) | ((uint32_t)four[2] - 1) | ((uint32_t)four[3] - 1)) >> 31)
             break;
@@ -70,9 +71,9 @@ int krl_put_text(const struct krl_text_call *call, struct krl_letters array, int
 
 /* ---------------------------------------------------------------------------- numbers */
 
-/* Longer ones are refused, as by interp/values/texts.py. */
+/* Longer numbers are refused, as in interp/values/texts.py. */
 enum { MOST_DIGITS = 64 };
-/* Bytes that a locale may have for the decimal point; there is one at most. */
+/* The maximum length of a locale's decimal point in bytes; a number has at most one. */
 enum { LONGEST_POINT = 8 };
 
 static int is_digit(struct krl_letters text, int32_t place)
