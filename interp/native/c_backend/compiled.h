@@ -1,16 +1,20 @@
-/* What the C of a program is written with (compiled.py): a function for each routine, a label for each step.
+/* Macros and functions for the C code of a program that compiled.py generates: a function for each
+ * routine, with a label for each step.
  *
- * A step does what the interpreter does (steps.h), but its operands are constants. The function works on copies of
- * the cells of its frame, which the C compiler keeps in registers of the processor. Interpreter and function take
- * turns: a fault, a request, the end of the budget, all that is out of the ordinary is left to the interpreter. The
- * function puts back what the interpreter needs (`OUT`), says where to go on, and ends, and so do all that have
- * called it, each noting its call. The interpreter does the step again; that nothing but operands has changed since
- * the place where it goes on is what register_flow.py sees to.
+ * A step has the same effect as in the interpreter (steps.h), but its operands are constants. The
+ * function works on copies of its frame's cells, which the C compiler keeps in processor registers.
+ * It executes the common cases only. After a fault, at a request, at the end of the statement
+ * budget and in all other cases the interpreter continues: the function stores the state that the
+ * interpreter needs (`OUT`), sets the step to continue at, and returns, as do all its callers, each
+ * recording its call. The interpreter executes the step again. It may restart at an earlier step;
+ * register_flow.py (`restarts`) ensures that since then only stack registers have changed that were
+ * not live.
  */
 #ifndef KRL_COMPILED_H
 #define KRL_COMPILED_H
 
-/* Here they would take constants from what says that a sum is too large, which then has to be a number each time. */
+/* These passes would derive constants from the overflow flag of an addition, and so force the flag
+ * into a register each time. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-dominator-opts")
 #endif
@@ -27,7 +31,7 @@ static const struct krl_array arrays[];
 
 /* ---------------------------------------------------------------------------- registers */
 
-/* A register in three parts, of which the C compiler keeps what is used. */
+/* A register as three variables, of which the C compiler keeps those that are used. */
 typedef struct {
     enum krl_tag tag;
     int32_t bits; /* 0 for a REAL */
@@ -43,10 +47,11 @@ typedef struct {
 #define OF_INT(value) ((krl_register){KRL_TAG_INT, (value), 0})
 #define OF_BOOL(value) ((krl_register){KRL_TAG_BOOL, (value) != 0, 0})
 #define OF_REAL(value) ((krl_register){KRL_TAG_REAL, 0, (value)})
-/* The step that takes this result finds it too: see `deferred` in register_flow.py. */
+/* The tag is 1 if the step that uses the result detects its overflow: see `deferred` in
+ * register_flow.py. */
 #define MUST_BE_FINITE (pc->tag == 0)
 
-/* Of and to cells of a type. */
+/* Conversions from and to cells of a type, or of ANY. */
 #define krl_register_of_INT(cell) ((krl_register){krl_tag_of(cell) ? KRL_TAG_INT : KRL_TAG_NONE, krl_int_in(cell), 0})
 #define krl_register_of_BOOL(cell) ((krl_register){krl_tag_of(cell) ? KRL_TAG_BOOL : KRL_TAG_NONE, krl_int_in(cell), 0})
 #define krl_register_of_REAL(cell) ((krl_register){krl_tag_of(cell) ? KRL_TAG_REAL : KRL_TAG_NONE, 0, krl_real_in(cell)})
@@ -59,7 +64,8 @@ static inline krl_cell krl_cell_of_ANY(krl_register value)
     return value.tag == KRL_TAG_REAL ? krl_of_real(value.real) : krl_tagged(value.tag, (uint32_t)value.bits);
 }
 
-/* The halves of a cell in memory are read one by one: no shifting, and only what is used. */
+/* Loads the halves of a cell separately: that needs no shift, and the C compiler drops a half that
+ * is not used. */
 static inline krl_register krl_register_at(const krl_cell *cell)
 {
     static const uint16_t one = 1;
@@ -71,29 +77,31 @@ static inline krl_register krl_register_at(const krl_cell *cell)
     return (krl_register){(enum krl_tag)tag, (int32_t)bits, krl_real_of_bits(bits)};
 }
 
-/* REMEMBER_LOCAL and REMEMBER_DATA are there only where assignments are traced. */
+/* Only a trace of assignments needs the address. REMEMBER_LOCAL and REMEMBER_DATA exist only then. */
 #define REMEMBER(address) (void)((KRL_TRACED & KRL_TRACED_ASSIGN) && (machine->last = (address)))
 
 #include "vm/steps.h"
 
 /* ---------------------------------------------------------------------------- routines */
 
-/* Calls in C that are open at once. */
+/* The maximum depth of native calls. */
 enum { MOST_NESTED = 200 };
 
-/* How a call ends: the statements left, or 0 where the interpreter goes on within it; and the bits of its result. */
+/* The result of a native call: the statements left, or 0 if the interpreter has to continue in it;
+ * and the value that the routine returns, as bits. */
 typedef struct {
     int32_t left;
     uint64_t result;
 } krl_ended;
 
-/* `entry` is the step to go on at where the interpreter has come, or CALLED. `left` and `open` stand for the fields of
- * the machine, which have their values only while the interpreter runs. */
+/* `left` and `open` replace the fields of the machine, which are valid only while the interpreter
+ * runs. `entry` is the step at which the interpreter enters, or CALLED. */
 #define PARAMETERS struct krl_machine *machine, krl_cell *const fp, int32_t left, int32_t open
 enum { CALLED = -1 };
 
-/* A routine once for calls from compiled code, which hand over its first cells, and once for the interpreter. Where
- * both are this one INLINED, with a constant `entry`, the C compiler leaves out of each what only the other needs. */
+/* The body of a routine has two callers: one function for calls from native code, which pass its
+ * first cells as arguments, and one for the interpreter. If the body is INLINED, with a constant
+ * `entry`, the C compiler removes from each what only the other one needs. */
 #define INLINED static inline __attribute__((always_inline))
 #define BODY(kind, number, ...)                                                                          \
     kind krl_ended body_##number(PARAMETERS, const int32_t entry, int32_t at, ##__VA_ARGS__)
@@ -110,12 +118,14 @@ enum { CALLED = -1 };
     statement = machine->statement;                                                                \
     serial = machine->serial;                                                                      \
     switch (at)
-/* Between the frame and the copies of its cells: of a type, or ANY; and from what a call hands over. */
+/* GET and PUT copy a cell from and to the frame, by its type or ANY. TAKE stores an argument of a
+ * native call in a register, TAKE_CELL in the frame. */
 #define GET(number, type) registers[number] = krl_register_of_##type(fp[number]);
 #define PUT(number, type) fp[number] = krl_cell_of_##type(registers[number]);
 #define TAKE(number, type) registers[number] = krl_register_of_##type(p##number);
 #define TAKE_CELL(number, type) fp[number] = p##number;
-/* The same of parameters that have a value in all calls: they are handed over as what C computes with. */
+/* The same for parameters that have a value in every call: they are passed as C numbers, without a
+ * tag. */
 #define TAKE_VALUE(number, type) registers[number] = krl_register_of_##type(krl_cell_with_##type(p##number));
 #define TAKE_VALUE_CELL(number, type) fp[number] = krl_cell_with_##type(p##number);
 #define VALUE_INT INT
@@ -128,22 +138,23 @@ enum { CALLED = -1 };
 #define BLANK_CELLS(first, end)                                                                    \
     for (int32_t i = first; i < end; i++)                                                          \
         fp[i] = KRL_NOTHING;
-/* A cell that has a value wherever the program comes from: no step need look again. */
+/* Loads a cell, at a loop head where the interpreter enters, that has a value on every path: no
+ * step checks it again. If it has none, the interpreter continues. */
 #define GET_VALUE(number, type)                                                                    \
     GET(number, type)                                                                              \
     if (UNLIKELY(!HAS_VALUE(registers[number]))) {                                                 \
         krl_stay(machine, at);                                                                     \
         return (krl_ended){0};                                                                     \
     }
-/* The same where ways meet, for the C compiler, which need not look what it was on each of them. */
+/* Tells the C compiler, at a target, the tag of a register that has a value on every path. */
 #define KNOWN(number, type) registers[number].tag = KRL_TAG_##type;
-/* And of a parameter. */
+/* GET_VALUE for a parameter, before the body. */
 #define NEED_VALUE(number, type)                                                                   \
     if (UNLIKELY(fp[number] == KRL_NOTHING)) {                                                     \
         krl_stay(machine, at);                                                                     \
         return;                                                                                    \
     }
-/* The interpreter does itself what begins where it has come. */
+/* Returns to the interpreter at the step where it has entered. */
 static inline void krl_stay(struct krl_machine *machine, int32_t at)
 {
     machine->at = at;
@@ -152,7 +163,8 @@ static inline void krl_stay(struct krl_machine *machine, int32_t at)
 
 /* ---------------------------------------------------------------------------- steps */
 
-/* The beginning of statements of which only a fault can come between; and of each. */
+/* BEGIN counts the statements of a basic block together, as only a fault can come between them.
+ * STATEMENT begins each of them. */
 #define BEGIN(number, count)                                                                       \
     if (UNLIKELY((left -= count) <= 0))                                                            \
         goto wait_##number;
@@ -170,12 +182,13 @@ static inline void krl_stay(struct krl_machine *machine, int32_t at)
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;
-/* The CASE steps from this one on that compare the same register. */
+/* Jumps by all CASE steps from this one on that compare the same register. */
 #define SWITCH(number, out)                                                                        \
     if (UNLIKELY(!HAS_VALUE(registers[steps[number].b])))                                          \
         goto out_##out;                                                                            \
     switch (INT(registers[steps[number].b]))
-/* `prepare` makes the frame of the call; `save` puts back what is not read unless the interpreter goes on within it. */
+/* `prepare` stores arguments in the callee's frame. `save` stores the registers that are needed
+ * only if the interpreter continues in the call. `put` stores the result. */
 #define CALL(number, out, function, frame, prepare, save, put, ...)                                \
     {                                                                                              \
         if (UNLIKELY(open >= machine->most_nested))                                                \
@@ -204,12 +217,13 @@ static inline void krl_stay(struct krl_machine *machine, int32_t at)
 
 /* ---------------------------------------------------------------------------- leaving */
 
-/* Where the interpreter goes on: before statements that were counted here; or at a step whose statement has begun,
- * where `later` were counted that have not. `save` puts back what lies on the stack of operands. */
+/* The interpreter continues: with WAIT before `count` statements, which BEGIN has counted; with OUT
+ * at a step whose statement has begun, where `later` statements of the block have been counted but
+ * have not begun. `save` stores the operand stack in the frame. */
 #define WAIT(number, count, save) wait_##number: save left += count; at = 4 * number; goto leave;
 #define OUT(number, later, save) out_##number: save left += later; at = 4 * number + 2; goto leave;
-/* `at` is four times the step, and two more where the statement has begun: with one more, the C compiler would take
- * it from what says that a sum is too large, and would work that out as a number each time. */
+/* `at` is 4 times the step, plus 2 if the statement has begun. Not 1: the C compiler would derive
+ * that from the overflow flag of an addition, and force the flag into a register each time. */
 #define LEAVE()                                                                                    \
     machine->at = at >> 2;                                                                         \
     machine->is_begun = at & 2;                                                                    \
@@ -221,8 +235,8 @@ static inline void krl_stay(struct krl_machine *machine, int32_t at)
     machine->serial = serial;                                                                      \
     return (krl_ended){0}
 
-/* How many calls may be open within a function that is entered: as many as there are cells for, where each has the
- * `largest` frame of all that are called. */
+/* Returns how many calls may be open while native code runs: as many as there are cells for if each
+ * has the `largest` frame of all compiled routines, and at most MOST_NESTED more than now. */
 static inline int32_t krl_most_nested(const struct krl_machine *machine, int32_t largest)
 {
     int32_t cells = KRL_MAX_CELLS - machine->extent - machine->routines[machine->code].frame;
@@ -231,7 +245,8 @@ static inline int32_t krl_most_nested(const struct krl_machine *machine, int32_t
     return most < machine->most_calls ? most : machine->most_calls;
 }
 
-/* What the module looks for: a function, and what both have to agree on. */
+/* The symbols that the module looks up here: the function that enters native code, and the layout.
+ * Calls that native code has recorded get their `extent` here. */
 typedef void krl_entry_from_interpreter(PARAMETERS, int32_t at);
 #define PROGRAM(largest, ...)                                                                      \
     void krl_go(struct krl_machine *machine, int32_t at)                                           \
