@@ -148,13 +148,13 @@ enum { CALLED = -1 };
     }
 /* Tells the C compiler, at a target, the tag of a register that has a value on every path. */
 #define KNOWN(number, type) registers[number].tag = KRL_TAG_##type;
-/* GET_VALUE for a parameter, before the body. */
+/* The check of GET_VALUE for a parameter, where the interpreter enters. */
 #define NEED_VALUE(number, type)                                                                   \
     if (UNLIKELY(fp[number] == KRL_NOTHING)) {                                                     \
         krl_stay(machine, at);                                                                     \
         return;                                                                                    \
     }
-/* Returns to the interpreter at the step where it has entered. */
+/* Lets the interpreter execute the step at which it has entered. */
 static inline void krl_stay(struct krl_machine *machine, int32_t at)
 {
     machine->at = at;
@@ -182,7 +182,7 @@ static inline void krl_stay(struct krl_machine *machine, int32_t at)
 #define JUMP_TO(target)                                                                            \
     if (way == KRL_GO_JUMP)                                                                        \
         goto target;
-/* Jumps by all CASE steps from this one on that compare the same register. */
+/* Executes all CASE steps from this one on that compare the same register, as one switch. */
 #define SWITCH(number, out)                                                                        \
     if (UNLIKELY(!HAS_VALUE(registers[steps[number].b])))                                          \
         goto out_##out;                                                                            \

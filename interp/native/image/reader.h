@@ -57,7 +57,7 @@ int32_t krl_read_count(struct reader *reader);
 uint32_t krl_read_choice(struct reader *reader, uint32_t choices);
 int32_t krl_read_optional(struct reader *reader, int32_t count);
 
-/* Read the table of strings, and a reference to one of them. */
+/* Read the table of strings, and a string by its index. */
 void krl_read_strings(struct reader *reader, struct section section);
 struct krl_text krl_read_string(struct reader *reader);
 

@@ -166,6 +166,7 @@ int32_t krl_kind_at(const struct krl_program *program, int32_t type, int32_t off
  * row, or the whole. */
 int krl_has_part(const struct krl_program *program, int32_t whole, int32_t offset, int32_t wanted);
 
+/* Whether a type is a scalar or an enumeration. */
 int krl_is_plain(const struct krl_program *program, int32_t type);
 
 /* Whether a word is a valid value of a scalar or an enumeration; the cell for a valid word. */

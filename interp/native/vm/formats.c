@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-/* Maximum of widths and precisions; of values in a call; of the characters of a number, which are
- * the digits after the point and some before it. */
+/* Maximum of widths and precisions; of values in a call; and of the characters of a number: up to
+ * LONGEST after the point, and some before it. */
 enum { LONGEST = 2047, MOST_VALUES = 10, LONGEST_NUMBER = LONGEST + 64 };
 /* Maximum length of a constant with its #; Python writes longer ones. */
 enum { LONGEST_WORD = 256 };
@@ -67,8 +67,8 @@ static struct krl_letters cells_of(const struct krl_text_call *call, int32_t arg
     return (struct krl_letters){krl_referred(call, argument), call->machine->program.types[part->handed.type].size};
 }
 
-/* Whether all values and the offset are there, and no argument that is changed shares a cell with
- * another. */
+/* Whether all arguments by value and the offset have values, and no argument that is changed
+ * overlaps another. */
 static int are_apart(const struct krl_text_call *call)
 {
     const struct krl_entry *entry = call->entry;

@@ -120,8 +120,8 @@ struct krl_machine {
     int32_t fp;
     int32_t extent;
     int32_t statement;
-    int32_t serial;
-    int32_t serials;
+    int32_t serial;  /* number of the frame, by which actions and conditions find it; 0 for none */
+    int32_t serials; /* the last number that was assigned */
     int32_t open; /* number of open calls */
     int32_t most_calls;
     int32_t left; /* statements that may begin before the machine stops for Python, plus 1 */
@@ -138,7 +138,8 @@ struct krl_machine {
     int32_t most_nested;
 };
 
-/* Why a run has stopped; `at` is a step, except after a fault. */
+/* Why a run has stopped. `at` is the step where it has stopped, or 0 if a frame or the program has
+ * ended. */
 enum krl_stop {
     KRL_STOP_STEP,   /* Python has to execute the step */
     KRL_STOP_LINE,   /* `left` is used up: the statement of the step waits for Python */
@@ -160,12 +161,14 @@ enum krl_matter { KRL_MATTER_INSTRUCTION, KRL_MATTER_CALL, KRL_MATTER_LEAVE };
 
 /* ---------------------------------------------------------------------------- machine.c */
 
+/* Frees all that a machine owns. Memory that it shares is freed with its last user. */
 void krl_unload(struct krl_machine *machine);
 
 /* Allocates all memory of a machine, for at most `most_calls` open calls. Without `beside` it has
  * data lists of its own, with their initial values. Otherwise it shares the memory of that machine,
  * of the same image, and appends a range for its own frames: indices of cells stay valid, addresses
- * do not. Returns 0 if there is not enough memory, or the images differ. */
+ * do not. Returns 0 if there is not enough memory, `most_calls` is out of range, or the images
+ * differ. */
 int krl_give_memory(struct krl_machine *machine, int32_t most_calls, struct krl_machine *beside);
 
 /* Updates `cells` before a run. Returns 0 if there is not enough room for the open calls or the
