@@ -62,7 +62,8 @@ static inline int32_t krl_stack_cells(const struct krl_handed *handed)
     return 1 + handed->dimensions;
 }
 
-/* An argument of a predefined function. KRL_PART_OTHER stands for kinds that C does not use. */
+/* An argument of a predefined function, or a field of a request. KRL_PART_OTHER stands for kinds
+ * that C does not use. */
 enum krl_part_kind { KRL_PART_INPUT, KRL_PART_CHANGED, KRL_PART_STRING, KRL_PART_CHOICE, KRL_PART_OTHER };
 
 struct krl_part {

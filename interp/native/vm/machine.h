@@ -103,8 +103,8 @@ struct krl_machine {
     int32_t step_count;
     struct krl_array *arrays;
     int32_t array_count;
-    int32_t most_whole; /* the greatest `whole` of all routines; `most_stack` is that of their operand stacks */
-    int32_t most_stack;
+    int32_t most_whole; /* the greatest `whole` of all routines */
+    int32_t most_stack; /* the greatest operand stack of all routines, in cells */
 
     struct krl_memory *memory;
     krl_cell *cells; /* those of `memory`, set by krl_ready: they may move between runs */
@@ -125,9 +125,9 @@ struct krl_machine {
     int32_t open; /* number of open calls */
     int32_t most_calls;
     int32_t left; /* statements that may begin before the machine stops for Python, plus 1 */
-    int32_t quota; /* the initial value of `left`, plus what steps STOP, of which `stops` may pass, have added */
+    int32_t quota; /* the initial value of `left`, plus what STOP steps have added */
     int32_t whole; /* the value of `left` where a slice begins */
-    int32_t stops;
+    int32_t stops; /* STOP steps that may pass until Python has to execute one */
     int32_t last; /* the cell of the last assignment through a reference */
     int32_t top;  /* the cell after the operand stack in use; valid while the machine has stopped */
 
