@@ -234,9 +234,9 @@ static void damage(uint8_t *image, size_t length)
         case 0: put_word(place, draw(40)); break;
         case 1: put_word(place, draw(KRL_OPCODE_COUNT)); break;
         case 2: put_word(place, (uint32_t)-1 - draw(3)); break;
-        case 3: put_word(place, place[0] + draw(33) - 16); break;
+        case 3: put_word(place, krl_word_at(place) + draw(33) - 16); break;
         case 4: memcpy(place, image + 4 * (5 + draw(words - 5)), 4); break;
-        default: put_word(place, place[0] + draw(5) - 2); break;
+        default: put_word(place, krl_word_at(place) + draw(5) - 2); break;
         }
     }
 }

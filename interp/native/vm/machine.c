@@ -61,9 +61,11 @@ int krl_give_memory(struct krl_machine *machine, int32_t most_calls, struct krl_
     machine->most_calls = most_calls;
     machine->calls = calloc((size_t)frames, sizeof *machine->calls);
     machine->memory = beside != NULL ? beside->memory : calloc(1, sizeof *machine->memory);
-    if (machine->calls == NULL || machine->memory == NULL)
+    if (machine->memory == NULL)
         return 0;
-    machine->memory->users++;
+    machine->memory->users++; /* krl_unload releases it, also if the next allocation has failed */
+    if (machine->calls == NULL)
+        return 0;
     machine->call_capacity = (int32_t)frames;
     machine->first = beside != NULL ? machine->memory->count : machine->program.data_cells;
     if (!extend(machine->memory, machine->first + frames_need(machine, frames)))
