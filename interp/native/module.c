@@ -455,19 +455,19 @@ static PyObject *core_load(PyObject *self, PyObject *arguments)
 /* ---------------------------------------------------------------------------- the type */
 
 static PyMethodDef core_methods[] = {
-    {"begin", core_begin, METH_VARARGS, "begin(code): the first frame, without values."},
-    {"step", core_step, METH_VARARGS, "step(code, place): the step of an instruction that is a target."},
-    {"about", core_about, METH_VARARGS, "about(step): its matter, its instruction, its LINE or -1."},
-    {"run", core_run, METH_VARARGS, "run(step, is_begun): why it stopped, and 8 times where."},
-    {"snapshot", core_snapshot, METH_NOARGS, "snapshot(): all that it goes on from."},
-    {"open_frame", core_open, METH_VARARGS, "open_frame(code): whether there is room for it."},
-    {"close_frame", core_close, METH_NOARGS, "close_frame(): back to the frame before."},
+    {"begin", core_begin, METH_VARARGS, "begin(code): open the first frame, whose cells have no values."},
+    {"step", core_step, METH_VARARGS, "step(code, place): the step of an instruction, which must be a jump target."},
+    {"about", core_about, METH_VARARGS, "about(step): kind of stop, instruction, and LINE or -1."},
+    {"run", core_run, METH_VARARGS, "run(step, is_begun): 8 times the step where it stopped, plus the reason."},
+    {"snapshot", core_snapshot, METH_NOARGS, "snapshot(): the complete state as bytes: frame, calls, data, stack."},
+    {"open_frame", core_open, METH_VARARGS, "open_frame(code): open a frame; False if there is no room."},
+    {"close_frame", core_close, METH_NOARGS, "close_frame(): return to the previous frame."},
     {"call", core_call, METH_VARARGS, "call(number): code, first cell, statement, serial of an open call."},
-    {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): its first cell, or None."},
+    {"frame_of", core_frame_of, METH_VARARGS, "frame_of(serial): first cell of an open frame, or None."},
     {"steps", core_steps, METH_NOARGS, "steps(): name, a, b, c, d, tag, LINE and e of each step."},
     {"arrays", core_arrays, METH_NOARGS, "arrays(): base, width, dimensions, three sizes, register of the third index of each."},
-    {"break_at", core_break_at, METH_VARARGS, "break_at(steps): how many of them can be stopped before."},
-    {"load", core_load, METH_VARARGS, "load(library): run what was compiled from these steps."},
+    {"break_at", core_break_at, METH_VARARGS, "break_at(steps): set breakpoints; return how many could be set."},
+    {"load", core_load, METH_VARARGS, "load(library): run the native code of these steps."},
     {NULL, NULL, 0, NULL},
 };
 
@@ -481,7 +481,7 @@ static PyMemberDef core_members[] = {
 };
 
 static PyGetSetDef core_getset[] = {
-    {"floor", core_floor, NULL, "the first place on the stack of the frame that runs", NULL},
+    {"floor", core_floor, NULL, "the first cell of the operand stack of the running frame", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 

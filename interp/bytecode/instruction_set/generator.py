@@ -65,7 +65,7 @@ def _header() -> str:
         f"#define KRL_IMAGE_FORMAT {FORMAT}",
         f"#define KRL_MAX_CELLS {MAX_CELLS}",
         "",
-        "/* Kinds of operands, as bits of a byte each: the first operand lowest. */",
+        "/* Kinds of operands, packed in one byte each, the first operand lowest. */",
         "enum krl_operand {",
         *(
             f"    KRL_OPERAND_{kind.upper()} = {number}, /* {OPERAND_KINDS[kind].meaning} */"
@@ -82,8 +82,8 @@ def _header() -> str:
         f"    KRL_OPCODE_COUNT = {len(instructions())}",
         "};",
         "",
-        *_flag_test("ends", "Whether an instruction of this kind never goes on to the next one."),
-        *_flag_test("changes", "Whether no condition may have an instruction of this kind."),
+        *_flag_test("ends", "Whether execution never continues with the next instruction."),
+        *_flag_test("changes", "Whether this instruction is not allowed in a condition."),
         "/* The catalogue of faults. */",
         "enum krl_fault {",
         *(f"    KRL_FAULT_{slug.upper()} = {kind.code}," for slug, kind in FAULTS.items()),

@@ -50,11 +50,11 @@ class OperandKind:
 
 #: What operands are.
 OPERAND_KINDS: Mapping[str, OperandKind] = {
-    "int": OperandKind("a number with sign"),
-    "real": OperandKind("the bits of a single"),
+    "int": OperandKind("a signed integer"),
+    "real": OperandKind("the bits of a single-precision number"),
     "bool": OperandKind("0 or 1", 0, 2),
     "char": OperandKind("a code, 0 to 255", 0, 256),
-    "count": OperandKind("a number without sign", 0),
+    "count": OperandKind("an unsigned integer", 0),
     "line": OperandKind("a line of the source file, from 1 on", 1),
     "target": OperandKind(
         "an instruction of the same code object: its first word, counted from 0", 0, "length"

@@ -6,13 +6,13 @@
 #define KRL_IMAGE_FORMAT 4
 #define KRL_MAX_CELLS 1048576
 
-/* Kinds of operands, as bits of a byte each: the first operand lowest. */
+/* Kinds of operands, packed in one byte each, the first operand lowest. */
 enum krl_operand {
-    KRL_OPERAND_INT = 1, /* a number with sign */
-    KRL_OPERAND_REAL = 2, /* the bits of a single */
+    KRL_OPERAND_INT = 1, /* a signed integer */
+    KRL_OPERAND_REAL = 2, /* the bits of a single-precision number */
     KRL_OPERAND_BOOL = 3, /* 0 or 1 */
     KRL_OPERAND_CHAR = 4, /* a code, 0 to 255 */
-    KRL_OPERAND_COUNT = 5, /* a number without sign */
+    KRL_OPERAND_COUNT = 5, /* an unsigned integer */
     KRL_OPERAND_LINE = 6, /* a line of the source file, from 1 on */
     KRL_OPERAND_TARGET = 7, /* an instruction of the same code object: its first word, counted from 0 */
     KRL_OPERAND_LOCAL = 8, /* a cell of the frame */
@@ -246,13 +246,13 @@ enum krl_opcode {
     KRL_OPCODE_COUNT = 107
 };
 
-/* Whether an instruction of this kind never goes on to the next one. */
+/* Whether execution never continues with the next instruction. */
 static inline int krl_ends(uint32_t op)
 {
     return op == KRL_JUMP || op == KRL_RETURN || op == KRL_RETURN_VALUE || op == KRL_FAIL || op == KRL_UNLINKED;
 }
 
-/* Whether no condition may have an instruction of this kind. */
+/* Whether this instruction is not allowed in a condition. */
 static inline int krl_changes(uint32_t op)
 {
     return op == KRL_LINE || op == KRL_AT || op == KRL_PROCEED || op == KRL_STORE_DATA || op == KRL_STORE;
