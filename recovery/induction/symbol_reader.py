@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbols import BRACKETS, UNKNOWN, Operand, Symbol
+from recovery.induction.symbols import BRACKETS, UNKNOWN, Operand, Symbol, closer_of
 
 # Signs behind a name at the head of a line.
 _BEHIND_NAMES = frozenset({"=", ".", "[", "(", ":"})
@@ -129,14 +129,7 @@ class SymbolReader:
 
     def closer(self, tokens: Sequence[Token], at: int) -> int | None:
         """Return the index of the closing bracket for the one at an index, if there is one."""
-        opening = self.lexer.display[tokens[at][0]] if tokens[at][0] > 0 else ""
-        if opening not in BRACKETS:
-            return None
-        depth = 0
-        for place in range(at, len(tokens)):
-            kind = tokens[place][0]
-            shown = self.lexer.display[kind] if kind > 0 else ""
-            depth += (shown == opening) - (shown == BRACKETS[opening])
-            if not depth:
-                return place
-        return None
+        display = self.lexer.display
+        shown = (display[kind] if kind > 0 else "" for kind, _ in tokens[at:])
+        length = closer_of(shown, BRACKETS)
+        return None if length is None else at + length

@@ -165,8 +165,7 @@ def blend_of(
     settings = first.motion.settings, second.motion.settings
     in_t1 = reduced_paths(curve, machine, *settings)
     slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
-    ceiling = _ceiling(first, second, transition, (x, y, z), machine, slowest)
-    ceiling = ceiling.within(first.axis_limits.torques, curve)
+    ceiling = _ceiling(first, second, transition, curve, (x, y, z), machine, slowest)
     return Joint(zone, curve, ceiling, *_gears(transition))
 
 
@@ -174,14 +173,16 @@ def _ceiling(
     first: Track,
     second: Track,
     transition: Transition,
+    curve: Curve,
     rates: Rates,
     machine: MachineData,
     slowest: float = math.inf,
 ) -> Ceiling:
-    """Return the bounds of a blend with these derivatives of the axes.
+    """Return the bounds of a blend along a curve with these derivatives of the axes.
 
-    The tool is not faster than on both sides of the blend, and its acceleration does not exceed
-    that of the machine data [BLD-15]. Between PTP motions no axis exceeds its programmed speed.
+    No torque exceeds its limit. The tool is not faster than on both sides of the blend, and its
+    acceleration does not exceed that of the machine data [BLD-15]. Between PTP motions no axis
+    exceeds its programmed speed.
     """
     one, other = first.pieces[-1], second.pieces[0]
     (gear, bend), out = _gears(transition)
@@ -201,7 +202,8 @@ def _ceiling(
         programmed = min(programmed, float(speeds.min()))
     beside = _beside(one, other, (gear, bend), out)
     size = one.ceiling.stretches[-1].size / gear
-    return even_ceiling(rates, limits, beside, programmed, most, size)
+    ceiling = even_ceiling(rates, limits, beside, programmed, most, size)
+    return ceiling.within(first.axis_limits.torques, curve)
 
 
 def _straight_on(
@@ -270,9 +272,7 @@ def _soonest(
 
     def duration(transition: Transition) -> float:
         blend = BlendedAxes(one.curve, other.curve, transition)
-        rates = blend.rates(blend.grid)
-        ceiling = _ceiling(first, second, transition, rates, machine)
-        ceiling = ceiling.within(first.axis_limits.torques, blend)
+        ceiling = _ceiling(first, second, transition, blend, blend.rates(blend.grid), machine)
         return _duration(one, other, transition, ceiling)
 
     times = [duration(transition) for transition in choices]

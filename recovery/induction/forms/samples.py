@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from recovery.induction.forms.lists import LONG_LIST
 from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbols import CLOSERS, Operand, Symbol
+from recovery.induction.symbols import CLOSERS, Operand, Symbol, closer_of
 from recovery.tuning import MOST_SAMPLES
 
 
@@ -75,11 +75,11 @@ def _with_groups(
     place = 0
     while place < len(symbols):
         symbol = symbols[place]
-        close = _closing(symbols, place)
-        if close is not None:
-            inside = _with_groups(rules, symbols[place + 1 : close], is_line=False)
+        length = closer_of((s.text for s in symbols[place:]), CLOSERS)
+        if length is not None:
+            inside = _with_groups(rules, symbols[place + 1 : place + length], is_line=False)
             symbol = Symbol(symbol.text, None, inside)
-            place = close
+            place += length
         elif symbol.text in rules.type_words and (place or not is_line):
             symbol = Symbol("", Operand((rules.lexer.kind_of[symbol.text],)))
         rule = symbol.operand.rule if symbol.operand else symbol.text
@@ -89,15 +89,3 @@ def _with_groups(
             out.append(Symbol(rule) if rule in rules.following.values() else symbol)
         place += 1
     return tuple(out)
-
-
-def _closing(symbols: Sequence[Symbol], at: int) -> int | None:
-    """Return the index of the bracket that closes the one at an index; ``None`` without one."""
-    opening = symbols[at].text
-    depth = 0
-    for place in range(at, len(symbols) if opening in CLOSERS else at):
-        text = symbols[place].text
-        depth += (text == opening) - (text == CLOSERS[opening])
-        if not depth:
-            return place
-    return None
