@@ -1,20 +1,19 @@
-"""Approximate positioning: where a blend begins and ends, and its shape [BLD-01 to BLD-15].
+"""Approximate positioning: the shape of a blend, and the bounds along it [BLD-08 to BLD-15].
 
-A blend zone replaces a share of the path before the point and of the path after it, at most half of
-each [BLD-07]. The criteria of the first motion determine these shares. If both motions are CP
-motions in the same frames, the blend is a path of the tool, too; otherwise it is a curve of the
-axes. So a motion has up to three parts [MOT-17], and the point itself is not passed [BLD-08].
-Whether both sides are equal is not known [CON-08].
+A blend replaces the zone of two motions (`blend_zones`). If both are CP motions in the same frames,
+it is a path of the tool, too; otherwise it is a curve of the axes. So a motion has up to three
+parts [MOT-17], and the point itself is not passed [BLD-08]. Whether both sides are equal is not
+known [CON-08].
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from interp.robot.arm import Approximation, Motion
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.targets import check_path
 from interp.robot.path.axis_path import (
@@ -23,21 +22,17 @@ from interp.robot.path.axis_path import (
     Curve,
     PosePathCurve,
     Rates,
-    tool_tangents,
 )
 from interp.robot.path.pose_path import Blend, StraightLine
-from interp.robot.path.transition import Overlap, Rounding, Transition
-from interp.robot.path.way import Way
+from interp.robot.path.transition import Cubics, Overlap, Rounding, Transition
+from interp.robot.planning.blend_zones import Zone
+from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
 from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of, even_ceiling
-from interp.robot.planning.profile import Bounds, ramp
-from interp.robot.planning.schedule import AtRest, GearedStretch, alone, schedule
+from interp.robot.planning.schedule import schedule
 from interp.robot.planning.straight_run import StraightPart, StraightRun, extended, straight_through
 from interp.robot.planning.tracks import Piece, Track, reduced_paths
 from interp.values.faults import Fault
 
-_HALF = 0.5
-_SMALLEST = 1e-6
-"""Share of a path below which motions are not blended."""
 _METRE = 1000.0
 _PARABOLA, _SMOOTH = 1.0, 2.0
 """Slopes of roundings; the first is nearly a parabola, which BLD-12 states for lines."""
@@ -55,72 +50,20 @@ _GRID = np.linspace(0.0, 1.0, 65)
 _STEP = 1.0 / 64.0
 
 
-@dataclass(frozen=True, slots=True)
-class Zone:
-    """The shares of the first and the second path that a blend replaces."""
-
-    before: float
-    after: float
-
-
-def wants_blend(motion: Motion) -> bool:
-    """Return whether a motion is approximated, with a zone larger than zero."""
-    values = motion.settings.approximation
-    if not motion.criteria:
-        return False
-    match motion.criteria[0]:
-        case "C_PTP":
-            return values.cptp > 0.0
-        case "C_VEL":
-            return values.cvel > 0.0
-        case "C_ORI":
-            return values.cori > 0.0
-        case _:
-            return values.cdis > 0.0
-
-
-def zone_of(first: Track, second: Track) -> Zone | None:
-    """Return the zone between two motions, or ``None`` if they cannot be blended [BLD-14].
-
-    Between CP motions the first criterion determines both sides; after a PTP, the second criterion,
-    if there is one, determines the side of the CP motion that follows. On the side of a PTP, C_PTP
-    uses the value of the first motion before the point and that of the second after it [BLD-04];
-    C_DIS uses the value of the first for both [BLD-05]. SPTP uses the smaller of both zones
-    [SPL-09].
-    """
-    if first.is_still or second.is_still or not wants_blend(first.motion):
-        return None
-    values = first.motion.settings.approximation
-    main, *others = first.motion.criteria
-    if first.is_cp:
-        before = _path_share(first, main, values, at_end=True)
-    else:
-        before = _axis_share(first, main, values, values, at_end=True)
-    if second.is_cp:
-        criterion = main if first.is_cp else (others[0] if others else "C_DIS")
-        after = _path_share(second, criterion, values, at_end=False)
-    else:
-        criterion = main if not first.is_cp else (others[0] if others else "C_PTP")
-        own = second.motion.settings.approximation
-        after = _axis_share(second, criterion, values, own, at_end=False)
-    zone = Zone(min(before, _HALF), min(after, _HALF))
-    return zone if min(zone.before, zone.after) > _SMALLEST else None
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Joint:
     """A blend: its curve, the bounds along it, and its connection to both motions.
 
     ``zone`` is what it replaces of both, which may be less than the zone requested. ``into`` and
-    ``out`` are gear and bend at its start and at its end, as in `GearedStretch`. ``straight`` is
-    the straight run of which both motions are parts, if they are.
+    ``out`` are the junctions at its start and at its end. ``straight`` is the straight run of which
+    both motions are parts, if they are.
     """
 
     zone: Zone
     curve: Curve
     ceiling: Ceiling
-    into: tuple[float, float]
-    out: tuple[float, float]
+    into: Junction
+    out: Junction
     straight: StraightRun | None = None
 
 
@@ -166,7 +109,7 @@ def blend_of(
     in_t1 = reduced_paths(curve, machine, *settings)
     slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
     ceiling = _ceiling(first, second, transition, curve, (x, y, z), machine, slowest)
-    return Joint(zone, curve, ceiling, *_gears(transition))
+    return Joint(zone, curve, ceiling, *_junctions(transition))
 
 
 def _ceiling(
@@ -185,7 +128,7 @@ def _ceiling(
     exceeds its programmed speed.
     """
     one, other = first.pieces[-1], second.pieces[0]
-    (gear, bend), out = _gears(transition)
+    into, out = _junctions(transition)
     limits = first.axis_limits.merged(second.axis_limits, np.maximum)
     programmed, most = slowest, math.inf
     if (common := _common_curves(first, second)) is not None:
@@ -200,8 +143,9 @@ def _ceiling(
     elif not first.is_cp and not second.is_cp:
         speeds = limits.velocity / np.maximum(np.abs(rates[0]), _TINY)
         programmed = min(programmed, float(speeds.min()))
-    beside = _beside(one, other, (gear, bend), out)
-    size = one.ceiling.stretches[-1].size / gear
+    before, after = one.ceiling.stretches[-1].bounds(1.0), other.ceiling.stretches[0].bounds(1.0)
+    beside = before.scaled(into.gear), after.scaled(1.0 / out.gear)
+    size = one.ceiling.stretches[-1].size / into.gear
     ceiling = even_ceiling(rates, limits, beside, programmed, most, size)
     return ceiling.within(first.axis_limits.torques, curve)
 
@@ -241,8 +185,8 @@ def _straight_on(
             for x, y in zip(one.paths, other.paths, strict=True)
         )
         ceiling = ceiling_of(curve, limits, allowed, paths)
-    into, out = ways[0] / length, length / ways[1]
-    return Joint(zone, curve, ceiling, (into, 0.0), (out, 0.0), straight)
+    into, out = Junction(ways[0] / length), Junction(length / ways[1])
+    return Joint(zone, curve, ceiling, into, out, straight)
 
 
 def _soonest(
@@ -277,7 +221,7 @@ def _soonest(
 
     times = [duration(transition) for transition in choices]
     most = math.inf
-    ending, starting = alone(one.ceiling), alone(other.ceiling)
+    ending, starting = _parameter(one.ceiling), _parameter(other.ceiling)
     if ending is not None and starting is not None:
         exact = ending.duration + starting.duration
         if keeps_speed and min(times) < exact:
@@ -327,21 +271,37 @@ def _course(
 
 def _duration(one: Piece, other: Piece, transition: Transition, ceiling: Ceiling) -> float:
     """Return the duration of both pieces from rest to rest with a blend in these bounds."""
-    into, out = _gears(transition)
+    into, out = _junctions(transition)
     (zone,) = ceiling.stretches
     before = one.ceiling.between(0.0, 1.0 - transition.before)
     after = other.ceiling.between(transition.after, 1.0)
-    steps = [
-        *(GearedStretch(stretch, 1.0) for stretch in before),
-        GearedStretch(zone, *into),
-        *(GearedStretch(s, *((1.0, 0.0) if n else out)) for n, s in enumerate(after)),
+    stretches = [
+        *(JoinedStretch(stretch, SAME_CURVE) for stretch in before),
+        JoinedStretch(zone, into),
+        *(JoinedStretch(s, SAME_CURVE if place else out) for place, s in enumerate(after)),
     ]
-    profiles = schedule(steps, AtRest, 1.0)
+    profiles = schedule(stretches, AT_REST, 1.0)
     return math.inf if profiles is None else sum(profile.duration for profile in profiles)
 
 
-def _gears(transition: Transition) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return gear and bend at both ends of a blend."""
+@lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
+def _parameter(ceiling: Ceiling) -> Cubics | None:
+    """Return the parameter of a curve over time, from rest to rest, or ``None`` if impossible."""
+    stretches = [JoinedStretch(stretch, SAME_CURVE) for stretch in ceiling.stretches]
+    profiles = schedule(stretches, AT_REST, 1.0)
+    if profiles is None:
+        return None
+    knots, time = [], 0.0
+    for stretch, profile in zip(ceiling.stretches, profiles, strict=True):
+        start, size = stretch.start, stretch.size
+        for begin, place, *rates in profile.knots:
+            knots.append((time + begin, start + place / size, *(rate / size for rate in rates)))
+        time += profile.duration
+    return Cubics(np.array(knots), time)
+
+
+def _junctions(transition: Transition) -> tuple[Junction, Junction]:
+    """Return the junctions at both ends of a blend."""
     leaving, joining = transition.rates(np.array([0.0, 1.0]))
     gear_in, bend_in = 1.0 / leaving[0, 0], -leaving[1, 0] / leaving[0, 0] ** 3
     gear_out, bend_out = joining[0, 1], joining[1, 1]
@@ -349,15 +309,7 @@ def _gears(transition: Transition) -> tuple[tuple[float, float], tuple[float, fl
         bend_in = 0.0
     if abs(bend_out) < _EVEN * gear_out:
         bend_out = 0.0
-    return (float(gear_in), float(bend_in)), (float(gear_out), float(bend_out))
-
-
-def _beside(
-    one: Piece, other: Piece, into: tuple[float, float], out: tuple[float, float]
-) -> tuple[Bounds, Bounds]:
-    """Return the bounds on both sides in units of the blend."""
-    before, after = one.ceiling.stretches[-1].bounds(1.0), other.ceiling.stretches[0].bounds(1.0)
-    return before.scaled(into[0]), after.scaled(1.0 / out[0])
+    return Junction(float(gear_in), float(bend_in)), Junction(float(gear_out), float(bend_out))
 
 
 def _common_curves(first: Track, second: Track) -> tuple[PosePathCurve, PosePathCurve] | None:
@@ -372,71 +324,3 @@ def _common_curves(first: Track, second: Track) -> tuple[PosePathCurve, PosePath
     ):
         return one, other
     return None
-
-
-# ---------------------------------------------------------------------------------------- zones
-
-
-def _piece(track: Track, *, at_end: bool) -> Piece:
-    return track.pieces[-1 if at_end else 0]
-
-
-def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: bool) -> float:
-    """Return the share of a CP motion; 1 if it has no length for this criterion."""
-    curve = _piece(track, at_end=at_end).curve
-    pose_path = curve.pose_path
-    if pose_path is None and criterion not in {"C_VEL", "C_ORI"}:
-        return _way_share(curve, max(values.cdis, 0.0), at_end=at_end)
-    length = pose_path.length if pose_path is not None else 0.0
-    if criterion == "C_ORI":
-        angles = pose_path.angles if pose_path is not None else (0.0, 0.0)
-        length, size = math.degrees(max(angles)), values.cori
-    elif criterion == "C_VEL":
-        return _braking_share(track, values.cvel / 100.0, at_end=at_end)
-    else:
-        size = values.cdis
-    return max(size, 0.0) / length if length > 0.0 else 1.0
-
-
-def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
-    """Return the share on which a part of the programmed speed is lost or gained [BLD-13]."""
-    stretches = _piece(track, at_end=at_end).ceiling.stretches
-    stretch = stretches[-1] if at_end else stretches[0]
-    bounds = stretch.bounds(1.0)
-    speed = max(share, 0.0) * stretch.programmed
-    size = stretch.size
-    sized = Bounds(speed * size, bounds.acceleration * size, bounds.jerk * size)
-    return ramp(speed * size, 0.0, 0.0, sized).distance / size
-
-
-def _axis_share(
-    track: Track, criterion: str, values: Approximation, own: Approximation, *, at_end: bool
-) -> float:
-    """Return the share of a PTP: by $APO_DIS_PTP of each axis, distance of the tool, or both."""
-    curve = _piece(track, at_end=at_end).curve
-    by_way = criterion in {"C_DIS", "C_SPL"}
-    takes_both = track.motion.kind == "SPTP"
-    shares = []
-    if not by_way or takes_both:
-        shares.append(_turning_share(curve, min(max(own.cptp, 0.0), 100.0) / 100.0))
-    if by_way or (takes_both and values.cdis > 0.0):
-        shares.append(_way_share(curve, max(values.cdis, 0.0), at_end=at_end))
-    return min(shares)
-
-
-def _turning_share(curve: Curve, share: float) -> float:
-    """Return the share on which no axis is farther away than a part of $APO_DIS_PTP [BLD-03]."""
-    (travel,), _, _ = curve.rates(np.ones(1))
-    machine = curve.arm.machine
-    reach = np.array([axis.approximation for axis in (*machine.axes, *machine.externals)])
-    return float((share * reach / np.maximum(np.abs(travel), 1e-9)).min())
-
-
-def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
-    """Return the share on which the tool travels a distance."""
-    way = Way(lambda u: tool_tangents(curve, u))
-    if distance >= way.length:
-        return 1.0
-    wanted = way.length - distance if at_end else distance
-    (u,) = way.parameters(np.array([wanted]))
-    return float(1.0 - u if at_end else u)

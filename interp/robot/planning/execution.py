@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from interp.robot.planning.junctions import SAME_CURVE, JoinedStretch, PathState
 from interp.robot.planning.profile import standing
-from interp.robot.planning.schedule import GearedStretch, PathState, braking, schedule
+from interp.robot.planning.schedule import braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
 _THERE = 1e-9
@@ -14,8 +15,8 @@ _THERE = 1e-9
 _INSTANT = 2e-9
 """Seconds by which a time in whole microseconds may be before the event in it."""
 
-#: A section and a step of it; ``None`` for a motion of no length.
-Entry = tuple[Section, GearedStretch | None]
+#: A section and a stretch of it; ``None`` for a motion of no length.
+Entry = tuple[Section, JoinedStretch | None]
 
 
 class PathExecution:
@@ -158,14 +159,14 @@ class PathExecution:
         for is_strict in (True, False):
             for state, begins, rest in self._ahead_of(leg, route, time):
                 entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
-                profiles = braking(_steps(entries), state, is_hard=is_hard, is_strict=is_strict)
+                profiles = braking(_known(entries), state, is_hard=is_hard, is_strict=is_strict)
                 if profiles is None:
                     continue
                 legs, start = [], begins
-                for (section, step), profile in zip(entries, profiles, strict=False):
-                    if step is not None:
+                for (section, joined), profile in zip(entries, profiles, strict=False):
+                    if joined is not None:
                         ends = start + profile.duration
-                        legs.append(Leg(section, step.stretch, profile, start, ends))
+                        legs.append(Leg(section, joined.stretch, profile, start, ends))
                         start = ends
                 return begins, legs
         return self._timeline.end, []
@@ -180,23 +181,22 @@ class PathExecution:
     ) -> bool:
         """Schedule a route from a state and append its legs to the timeline."""
         entries = _entries(route, state.u)
-        steps = _steps(entries)
-        profiles = schedule(steps, state, override, is_strict=is_strict) if steps else []
+        profiles = schedule(_known(entries), state, override, is_strict=is_strict)
         if profiles is None:
             return False
         self._timeline.cut(begins)
         queue = iter(profiles)
-        for section, step in entries:
-            profile = standing(0.0) if step is None else next(queue)
-            stretch = step.stretch if step is not None else section.ceiling.stretches[0]
+        for section, joined in entries:
+            profile = standing(0.0) if joined is None else next(queue)
+            stretch = section.ceiling.stretches[0] if joined is None else joined.stretch
             ends = begins + profile.duration
             self._timeline.append(Leg(section, stretch, profile, begins, ends))
             begins = ends
         return True
 
 
-def _steps(entries: Sequence[Entry]) -> list[GearedStretch]:
-    return [step for _, step in entries if step is not None]
+def _known(entries: Sequence[Entry]) -> list[JoinedStretch]:
+    return [joined for _, joined in entries if joined is not None]
 
 
 def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], PathState]:
@@ -204,31 +204,28 @@ def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], Pa
     state = leg.state(leg.ends)
     if leg.last < route[0].end - _THERE:
         return tuple(route), replace(state, u=leg.last)
-    rest = list(route[1:])
-    while rest and rest[0].is_used_up:
-        used = rest.pop(0)
-        state = state.behind(used.start, used.gear, used.bend)
-    if not rest:
-        return (), PathState(leg.last, 0.0, 0.0)
-    return tuple(rest), state.behind(rest[0].start, rest[0].gear, rest[0].bend)
+    for place, section in enumerate(route[1:], start=1):
+        state = section.junction.passed(state, section.start)
+        if not section.is_used_up:
+            return tuple(route[place:]), state
+    return (), PathState(leg.last, 0.0, 0.0)
 
 
 def _entries(route: Sequence[Section], start: float) -> list[Entry]:
-    """Return the steps of a route from a parameter of its first section on.
+    """Return the stretches of a route from a parameter of its first section on.
 
-    A section that two blends have used up has no step; its gear is passed to the next step.
+    A section that two blends have used up has none; its junction is combined with the next one.
     """
     entries: list[Entry] = []
-    gear, bend = 1.0, 0.0
+    junction = SAME_CURVE
     for place, section in enumerate(route):
         if section.is_still:
             entries.append((section, None))
-            gear, bend = 1.0, 0.0
+            junction = SAME_CURVE
             continue
-        steps = section.steps(start if place == 0 else section.start)
-        gear, bend = gear * section.gear, section.gear * bend + section.bend * gear**2
-        for number, step in enumerate(steps):
-            first = replace(step, gear=gear, bend=bend) if number == 0 else step
-            entries.append((section, first))
-            gear, bend = 1.0, 0.0
+        junction = junction.then(section.junction)
+        stretches = section.stretches(section.start if place else start, junction)
+        if stretches:
+            entries += [(section, joined) for joined in stretches]
+            junction = SAME_CURVE
     return entries

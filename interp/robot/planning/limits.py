@@ -20,7 +20,7 @@ from interp.robot.arm import Load
 from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, Rates
-from interp.robot.planning.profile import Bounds
+from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.torque_limits import TorqueLimits, TorqueRoom
 
 _MARGIN = 0.97

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import ArmEvent, EventKind, Motion, Place
-from interp.robot.planning.blending import wants_blend
+from interp.robot.planning.blend_zones import wants_blend
 from interp.robot.planning.timeline import MICROSECOND, Key, Section, Timeline, micros
 
 _APEX = 0.5

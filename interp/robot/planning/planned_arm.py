@@ -21,8 +21,10 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_limits
 from interp.robot.path.axis_path import tool_tangents
 from interp.robot.path.targets_in_force import Programmed, check_numbers
-from interp.robot.planning.blending import blend_of, zone_of
+from interp.robot.planning.blend_zones import zone_of
+from interp.robot.planning.blending import blend_of
 from interp.robot.planning.execution import PathExecution
+from interp.robot.planning.junctions import Junction
 from interp.robot.planning.path_events import Passage, events_of
 from interp.robot.planning.spline_blocks import block
 from interp.robot.planning.straight_run import StraightRun
@@ -165,11 +167,9 @@ class PlannedArm:
             return False
         number = track.motion.number
         shorter = replace(body, end=1.0 - joint.zone.before)
-        gear, bend = joint.into
-        blend = Section(body.number, number, joint.curve, joint.ceiling, gear=gear, bend=bend)
+        blend = Section(body.number, number, joint.curve, joint.ceiling, junction=joint.into)
         first, *others = _sections(track)
-        gear, bend = joint.out
-        rest = (replace(first, start=joint.zone.after, gear=gear, bend=bend), *others)
+        rest = (replace(first, start=joint.zone.after, junction=joint.out), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
         if joint.straight is not None:
             route = tuple(joint.straight.bounded(section) for section in route)
@@ -436,7 +436,7 @@ def _sections(track: Track) -> tuple[Section, ...]:
             None,
             piece.curve,
             piece.ceiling,
-            gear=piece.gear,
+            junction=Junction(piece.gear),
             is_still=piece.is_still,
             part=part,
         )

@@ -7,15 +7,14 @@ times are in seconds.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
 import ruckig
 
 from interp.robot.kinematics.solver import Array
+from interp.robot.planning.ramps import NO_RAMP, Bounds, Ramp, ramp
 
 _SLACK = 1e-7
 """Relative difference within which a change of speed fills a length."""
@@ -23,27 +22,6 @@ _EXACT = 1e-9
 """Relative error of a length that is accepted from Ruckig."""
 _ROUNDS = 60
 _INSTANT = 1e-12  # seconds
-
-
-@dataclass(frozen=True, slots=True)
-class Bounds:
-    """The maximum speed, acceleration and jerk of a profile."""
-
-    velocity: float
-    acceleration: float
-    jerk: float
-
-    def merged(self, other: Bounds, choose: Callable[[float, float], float]) -> Bounds:
-        """Return the lower or the higher of each pair of bounds."""
-        return Bounds(
-            choose(self.velocity, other.velocity),
-            choose(self.acceleration, other.acceleration),
-            choose(self.jerk, other.jerk),
-        )
-
-    def scaled(self, share: float) -> Bounds:
-        """Return the bounds in another unit."""
-        return Bounds(self.velocity * share, self.acceleration * share, self.jerk * share)
 
 
 class SpeedProfile:
@@ -163,56 +141,6 @@ class SpeedProfile:
         return SpeedProfile(speed, pieces)
 
 
-@dataclass(frozen=True, slots=True)
-class Ramp:
-    """The fastest change of speed and acceleration.
-
-    ``pieces`` are up to three tuples of duration, initial acceleration, and jerk.
-    """
-
-    duration: float
-    distance: float
-    pieces: tuple[tuple[float, float, float], ...]
-
-
-_NONE = Ramp(0.0, 0.0, ())
-
-
-def ramp(
-    speed: float, acceleration: float, target: float, bounds: Bounds, final: float = 0.0
-) -> Ramp:
-    """Return the change from a speed and acceleration to a target speed and final acceleration.
-
-    If one of these accelerations exceeds its bound, it replaces the bound.
-    """
-    jerk, most = bounds.jerk, max(bounds.acceleration, abs(acceleration), abs(final))
-    slew = abs(final - acceleration) / jerk
-    sign = 1.0 if target >= speed + slew * (acceleration + final) / 2 else -1.0
-    start, end = sign * acceleration, sign * final  # as if speeding up
-    change = sign * (target - speed)
-    peak = math.sqrt(max(jerk * change + (start * start + end * end) / 2, 0.0))
-    hold = 0.0
-    if peak > most:
-        hold = (change - (2 * most * most - start * start - end * end) / (2 * jerk)) / most
-        peak = most
-    rise, fall = max(peak - start, 0.0) / jerk, max(peak - end, 0.0) / jerk
-    # Distances in the mirrored frame, from the speed at the start of each phase.
-    first = sign * speed
-    second = first + rise * (start + peak) / 2
-    third = second + hold * peak
-    travelled = (
-        rise * (first + rise * (start / 2 + rise * jerk / 6))
-        + hold * (second + hold * peak / 2)
-        + fall * (third + fall * (peak / 2 - fall * jerk / 6))
-    )
-    pieces = (
-        (rise, acceleration, sign * jerk),
-        (hold, sign * peak, 0.0),
-        (fall, sign * peak, -sign * jerk),
-    )
-    return Ramp(rise + hold + fall, sign * travelled, pieces)
-
-
 @lru_cache(maxsize=256)  # plans that differ in a blend have most of their spans in common
 def travel(
     length: float,
@@ -301,7 +229,7 @@ def _searched(
             low, high = (middle, high) if fits(middle) else (low, middle)
         ramps = parts(low)
     else:  # it brakes already, and all that is left over is travelled behind that
-        low, ramps = target, (ramp(speed, acceleration, target, bounds, final), _NONE)
+        low, ramps = target, (ramp(speed, acceleration, target, bounds, final), NO_RAMP)
     rest = max(length - sum(part.distance for part in ramps), 0.0)
     cruise = (rest / low if low > 0.0 else 0.0, 0.0, 0.0)
     return SpeedProfile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))

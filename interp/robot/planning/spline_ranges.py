@@ -14,9 +14,10 @@ import numpy as np
 from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
 from interp.robot.kinematics.solver import Array
+from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
 from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import SpeedProfile
-from interp.robot.planning.schedule import AtRest, GearedStretch, schedule
+from interp.robot.planning.schedule import schedule
 from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault
 
@@ -202,17 +203,17 @@ def _slower(piece: Piece, share: float) -> Piece:
 
 def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedProfile]]:
     """Yield the stretches of a block travelled from rest to rest, with the number of the piece."""
-    numbers, steps = [], []
+    numbers, stretches = [], []
     for number, piece in enumerate(pieces):
         if piece.is_still:
             continue
         for place, stretch in enumerate(piece.ceiling.stretches):
             numbers.append(number)
-            steps.append(GearedStretch(stretch, 1.0 if place else piece.gear))
-    profiles = schedule(steps, AtRest, 1.0) or []
-    for number, step, profile in zip(numbers, steps, profiles, strict=True):
-        if profile is not None:
-            yield number, step.stretch, profile
+            junction = SAME_CURVE if place else Junction(piece.gear)
+            stretches.append(JoinedStretch(stretch, junction))
+    profiles = schedule(stretches, AT_REST, 1.0) or []
+    for number, joined, profile in zip(numbers, stretches, profiles, strict=True):
+        yield number, joined.stretch, profile
 
 
 def _length(piece: Piece) -> float:

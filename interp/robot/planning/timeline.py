@@ -15,9 +15,9 @@ from interp.robot.arm import Samples
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, tool_tangents
 from interp.robot.path.way import Way
+from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import SpeedProfile
-from interp.robot.planning.schedule import GearedStretch, PathState
 
 MICROSECOND = 1e-6
 #: The number of a motion, whether it is the blend behind it, and the part of a spline block.
@@ -32,10 +32,9 @@ class Section:
 
     ``number`` is the number of the motion, or of the first motion of a blend; ``following`` is the
     second motion of a blend, otherwise ``None``. ``start`` and ``end`` are the parameters of the
-    curve between which it is travelled. ``gear`` and ``bend`` relate its speed and acceleration at
-    the start to those at the end of the previous section, as in `GearedStretch`. ``is_still`` marks
-    a motion of length zero, which takes no time. The segments of a spline block have a ``part``
-    from 0 on.
+    curve between which it is travelled, ``junction`` connects it to the previous section.
+    ``is_still`` marks a motion of length zero, which takes no time. The segments of a spline block
+    have a ``part`` from 0 on.
     """
 
     number: int
@@ -44,8 +43,7 @@ class Section:
     ceiling: Ceiling
     start: float = 0.0
     end: float = 1.0
-    gear: float = 0.0
-    bend: float = 0.0
+    junction: Junction = STOP
     is_still: bool = False
     part: int = 0
 
@@ -59,11 +57,11 @@ class Section:
         """Whether the blends on either side have left nothing of a motion."""
         return self.end - self.start <= _NOTHING and not self.is_still
 
-    def steps(self, start: float) -> list[GearedStretch]:
-        """Return the stretches from a parameter on; the first one has the gear of the section."""
+    def stretches(self, start: float, junction: Junction) -> list[JoinedStretch]:
+        """Return the stretches from a parameter on, the first one with a junction."""
         parts = () if self.is_used_up else self.ceiling.between(start, self.end)
         return [
-            GearedStretch(part, 1.0) if place else GearedStretch(part, self.gear, self.bend)
+            JoinedStretch(part, SAME_CURVE if place else junction)
             for place, part in enumerate(parts)
         ]
 

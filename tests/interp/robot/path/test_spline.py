@@ -77,7 +77,7 @@ def test_tangent_and_curvature_go_on(driver: Driver) -> None:
         before, behind = one.curve.pose_path, other.curve.pose_path
         assert before is not None
         assert behind is not None
-        assert before.length / behind.length == pytest.approx(other.gear)
+        assert before.length / behind.length == pytest.approx(other.junction.gear)
         first = before.tangents(np.array([1 - 2 * step, 1 - step, 1.0])) / before.length
         second = behind.tangents(np.array([0.0, step, 2 * step])) / behind.length
         assert np.allclose(first[2], second[0], atol=1e-9)
@@ -95,7 +95,7 @@ def test_external_axes_pass_their_points_smoothly(driver: Driver) -> None:
     rates = [
         section.curve.rates(np.array([u])) for section, u in zip(sections, (1.0, 0.0), strict=True)
     ]
-    gear = sections[1].gear
+    gear = sections[1].junction.gear
     assert rates[0][0][0, 6] == pytest.approx(rates[1][0][0, 6] * gear)
     assert 60.0 == pytest.approx(driver.samples().axes[-1, 6])
 
@@ -112,8 +112,8 @@ def test_a_block_of_ptp(driver: Driver) -> None:
             one.curve.rates(np.ones(1)),
             other.curve.rates(np.zeros(1)),
         )
-        assert np.allclose(first, second * other.gear)
-        assert np.allclose(bend, onward * other.gear**2)
+        assert np.allclose(first, second * other.junction.gear)
+        assert np.allclose(bend, onward * other.junction.gear**2)
 
 
 @pytest.mark.parametrize("kind", ["SPLINE", "PTP_SPLINE"])

@@ -15,7 +15,8 @@ from interp.robot.kinematics.placement import Placement
 from interp.robot.path.axis_path import BlendedAxes
 from interp.robot.path.pose_path import Blend
 from interp.robot.path.targets_in_force import Programmed
-from interp.robot.planning.blending import Zone, blend_of
+from interp.robot.planning.blend_zones import Zone
+from interp.robot.planning.blending import blend_of
 from interp.robot.planning.tracks import Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from interp.robot.planning.profile import Bounds, SpeedProfile, ramp, stop, travel
+from interp.robot.planning.profile import SpeedProfile, stop, travel
+from interp.robot.planning.ramps import Bounds, ramp
 
 BOUNDS = Bounds(1000.0, 2000.0, 20000.0)
 speeds = st.floats(0.0, 1000.0)

@@ -4,25 +4,27 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from interp.robot.planning.junctions import AT_REST, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import Stretch
 from interp.robot.planning.profile import SpeedProfile
-from interp.robot.planning.schedule import AtRest, GearedStretch, PathState, braking, schedule
+from interp.robot.planning.schedule import braking, schedule
 
 
-def stretch(
-    start: float, end: float, velocity: float, size: float = 1000.0, even: float = 0.0
-) -> Stretch:
+def joined(
+    gear: float, start: float, end: float, velocity: float, even: float = 0.0
+) -> JoinedStretch:
     """A stretch with a speed of its own, per unit of u; a blend where it has an even one."""
-    return Stretch(start, end, velocity, velocity, 2.0, 20.0, 4.0, 80.0, size, even)
+    stretch = Stretch(start, end, velocity, velocity, 2.0, 20.0, 4.0, 80.0, 1000.0, even)
+    return JoinedStretch(stretch, Junction(gear))
 
 
-def seams(steps: list[GearedStretch], profiles: list[SpeedProfile]) -> list[float]:
+def seams(steps: list[JoinedStretch], profiles: list[SpeedProfile]) -> list[float]:
     """The speeds in which the steps end, per unit of u."""
     return [p.final / step.stretch.size for step, p in zip(steps, profiles, strict=True)]
 
 
 def laid(
-    steps: list[GearedStretch], state: PathState = AtRest, override: float = 1.0
+    steps: list[JoinedStretch], state: PathState = AT_REST, override: float = 1.0
 ) -> list[SpeedProfile]:
     """The profiles of a schedule that can be."""
     profiles = schedule(steps, state, override)
@@ -33,9 +35,9 @@ def laid(
 def test_a_slow_stretch_between_fast_ones() -> None:
     """A stretch is entered and left with no more than its own speed, and travelled with it."""
     steps = [
-        GearedStretch(stretch(0.0, 0.4, 1.0), 0.0),
-        GearedStretch(stretch(0.4, 0.6, 0.2), 1.0),
-        GearedStretch(stretch(0.6, 1.0, 1.0), 1.0),
+        joined(0.0, 0.0, 0.4, 1.0),
+        joined(1.0, 0.4, 0.6, 0.2),
+        joined(1.0, 0.6, 1.0, 1.0),
     ]
     profiles = laid(steps)
     assert [0.2, 0.2, 0.0] == pytest.approx(seams(steps, profiles), abs=1e-6)
@@ -45,8 +47,8 @@ def test_a_slow_stretch_between_fast_ones() -> None:
 def test_what_comes_is_braked_for_in_time() -> None:
     """A stretch that is too short to brake in is entered slowly enough."""
     steps = [
-        GearedStretch(stretch(0.0, 0.99, 1.0), 0.0),
-        GearedStretch(stretch(0.99, 1.0, 1.0), 1.0),
+        joined(0.0, 0.0, 0.99, 1.0),
+        joined(1.0, 0.99, 1.0, 1.0),
     ]
     out, end = seams(steps, laid(steps))
     assert 0.0 < out < 0.3
@@ -55,7 +57,7 @@ def test_what_comes_is_braked_for_in_time() -> None:
 
 def test_units_change_with_the_gear() -> None:
     """The speed behind a seam is that before it, told in the next section's units."""
-    steps = [GearedStretch(stretch(0.0, 1.0, 0.5), 0.0), GearedStretch(stretch(0.0, 1.0, 3.0), 2.0)]
+    steps = [joined(0.0, 0.0, 1.0, 0.5), joined(2.0, 0.0, 1.0, 3.0)]
     profiles = laid(steps)
     assert 0.5 == pytest.approx(seams(steps, profiles)[0])
     assert 1.0 * 1000.0 == pytest.approx(profiles[1].knots[0][2])
@@ -63,13 +65,13 @@ def test_units_change_with_the_gear() -> None:
 
 def test_standing_between() -> None:
     """A gear of zero is a stop."""
-    steps = [GearedStretch(stretch(0.0, 1.0, 1.0), 0.0), GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)]
+    steps = [joined(0.0, 0.0, 1.0, 1.0), joined(0.0, 0.0, 1.0, 1.0)]
     assert [0.0, 0.0] == pytest.approx(seams(steps, laid(steps)), abs=1e-6)
 
 
 def test_too_late_to_brake() -> None:
     """What would be overrun cannot be laid strictly, and otherwise is passed as slow as can be."""
-    steps = [GearedStretch(stretch(0.0, 0.5, 1.0), 0.0), GearedStretch(stretch(0.5, 1.0, 0.1), 1.0)]
+    steps = [joined(0.0, 0.0, 0.5, 1.0), joined(1.0, 0.5, 1.0, 0.1)]
     state = PathState(0.45, 1.0, 0.0)
     assert schedule(steps, state, 1.0, is_strict=True) is None
     assert seams(steps, laid(steps, state))[0] > 0.5
@@ -78,10 +80,10 @@ def test_too_late_to_brake() -> None:
 def test_a_blend_is_braked_in_before_a_stop_is_overrun() -> None:
     """Where the one under way is too short to brake in, the next is not passed at one speed."""
     steps = [
-        GearedStretch(stretch(0.0, 1.0, 1.0, even=1.0), 0.0),
-        GearedStretch(stretch(0.0, 1.0, 1.0, even=1.0), 1.0),
-        GearedStretch(stretch(0.0, 0.01, 1.0), 1.0),
-        GearedStretch(stretch(0.0, 1.0, 1.0), 0.0),
+        joined(0.0, 0.0, 1.0, 1.0, even=1.0),
+        joined(1.0, 0.0, 1.0, 1.0, even=1.0),
+        joined(1.0, 0.0, 0.01, 1.0),
+        joined(0.0, 0.0, 1.0, 1.0),
     ]
     first, second, last, _ = seams(steps, laid(steps, PathState(0.95, 1.0, 0.0)))
     assert second < 0.5 < first
@@ -90,10 +92,7 @@ def test_a_blend_is_braked_in_before_a_stop_is_overrun() -> None:
 
 def test_an_acceleration_that_cannot_be_taken_back() -> None:
     """Too near to the end of a stretch nothing can be changed any more."""
-    assert (
-        schedule([GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)], PathState(0.9999, 0.5, 2.0), 1.0)
-        is None
-    )
+    assert schedule([joined(0.0, 0.0, 1.0, 1.0)], PathState(0.9999, 0.5, 2.0), 1.0) is None
 
 
 @given(
@@ -108,7 +107,7 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
         ends.append(ends[-1] + length)
     speeds = [data.draw(st.floats(0.01, 3.0)) for _ in lengths]
     steps = [
-        GearedStretch(stretch(start, end, speed), 1.0)
+        joined(1.0, start, end, speed)
         for start, end, speed in zip(ends, ends[1:], speeds, strict=False)
     ]
     before = 0.0
@@ -124,7 +123,7 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
 
 def test_braking_crosses_a_seam() -> None:
     """Who is too fast to stop within a stretch stops in the next one."""
-    steps = [GearedStretch(stretch(0.0, 0.5, 1.0), 0.0), GearedStretch(stretch(0.5, 1.0, 1.0), 1.0)]
+    steps = [joined(0.0, 0.0, 0.5, 1.0), joined(1.0, 0.5, 1.0, 1.0)]
     profiles = braking(steps, PathState(0.45, 1.0, 0.0), is_hard=False)
     assert profiles is not None
     assert 2 == len(profiles)
@@ -134,7 +133,7 @@ def test_braking_crosses_a_seam() -> None:
 
 def test_the_hardest_ramp_is_the_shortest() -> None:
     """BRAKE F stops sooner than BRAKE [INT-09]."""
-    steps = [GearedStretch(stretch(0.0, 1.0, 1.0), 0.0)]
+    steps = [joined(0.0, 0.0, 1.0, 1.0)]
     lengths = []
     for is_hard in (False, True):
         profiles = braking(steps, PathState(0.0, 1.0, 0.0), is_hard=is_hard)

@@ -1,0 +1,138 @@
+"""Blend zones: the shares of two paths that a blend replaces [BLD-01 to BLD-07].
+
+The criteria of the first motion determine them; each is at most half of its path [BLD-07].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from interp.robot.arm import Approximation, Motion
+from interp.robot.path.axis_path import Curve, tool_tangents
+from interp.robot.path.way import Way
+from interp.robot.planning.ramps import Bounds, ramp
+from interp.robot.planning.tracks import Piece, Track
+
+_HALF = 0.5
+_SMALLEST = 1e-6
+"""Share of a path below which motions are not blended."""
+
+
+@dataclass(frozen=True, slots=True)
+class Zone:
+    """The shares of the first and the second path that a blend replaces."""
+
+    before: float
+    after: float
+
+
+def wants_blend(motion: Motion) -> bool:
+    """Return whether a motion is approximated, with a zone larger than zero."""
+    values = motion.settings.approximation
+    if not motion.criteria:
+        return False
+    match motion.criteria[0]:
+        case "C_PTP":
+            return values.cptp > 0.0
+        case "C_VEL":
+            return values.cvel > 0.0
+        case "C_ORI":
+            return values.cori > 0.0
+        case _:
+            return values.cdis > 0.0
+
+
+def zone_of(first: Track, second: Track) -> Zone | None:
+    """Return the zone between two motions, or ``None`` if they cannot be blended [BLD-14].
+
+    Between CP motions the first criterion determines both sides; after a PTP, the second criterion,
+    if there is one, determines the side of the CP motion that follows. On the side of a PTP, C_PTP
+    uses the value of the first motion before the point and that of the second after it [BLD-04];
+    C_DIS uses the value of the first for both [BLD-05]. SPTP uses the smaller of both zones
+    [SPL-09].
+    """
+    if first.is_still or second.is_still or not wants_blend(first.motion):
+        return None
+    values = first.motion.settings.approximation
+    main, *others = first.motion.criteria
+    if first.is_cp:
+        before = _path_share(first, main, values, at_end=True)
+    else:
+        before = _axis_share(first, main, values, values, at_end=True)
+    if second.is_cp:
+        criterion = main if first.is_cp else (others[0] if others else "C_DIS")
+        after = _path_share(second, criterion, values, at_end=False)
+    else:
+        criterion = main if not first.is_cp else (others[0] if others else "C_PTP")
+        own = second.motion.settings.approximation
+        after = _axis_share(second, criterion, values, own, at_end=False)
+    zone = Zone(min(before, _HALF), min(after, _HALF))
+    return zone if min(zone.before, zone.after) > _SMALLEST else None
+
+
+def _piece(track: Track, *, at_end: bool) -> Piece:
+    return track.pieces[-1 if at_end else 0]
+
+
+def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: bool) -> float:
+    """Return the share of a CP motion; 1 if it has no length for this criterion."""
+    curve = _piece(track, at_end=at_end).curve
+    pose_path = curve.pose_path
+    if pose_path is None and criterion not in {"C_VEL", "C_ORI"}:
+        return _way_share(curve, max(values.cdis, 0.0), at_end=at_end)
+    length = pose_path.length if pose_path is not None else 0.0
+    if criterion == "C_ORI":
+        angles = pose_path.angles if pose_path is not None else (0.0, 0.0)
+        length, size = math.degrees(max(angles)), values.cori
+    elif criterion == "C_VEL":
+        return _braking_share(track, values.cvel / 100.0, at_end=at_end)
+    else:
+        size = values.cdis
+    return max(size, 0.0) / length if length > 0.0 else 1.0
+
+
+def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
+    """Return the share on which a part of the programmed speed is lost or gained [BLD-13]."""
+    stretches = _piece(track, at_end=at_end).ceiling.stretches
+    stretch = stretches[-1] if at_end else stretches[0]
+    bounds = stretch.bounds(1.0)
+    speed = max(share, 0.0) * stretch.programmed
+    size = stretch.size
+    sized = Bounds(speed * size, bounds.acceleration * size, bounds.jerk * size)
+    return ramp(speed * size, 0.0, 0.0, sized).distance / size
+
+
+def _axis_share(
+    track: Track, criterion: str, values: Approximation, own: Approximation, *, at_end: bool
+) -> float:
+    """Return the share of a PTP: by $APO_DIS_PTP of each axis, distance of the tool, or both."""
+    curve = _piece(track, at_end=at_end).curve
+    by_way = criterion in {"C_DIS", "C_SPL"}
+    takes_both = track.motion.kind == "SPTP"
+    shares = []
+    if not by_way or takes_both:
+        shares.append(_turning_share(curve, min(max(own.cptp, 0.0), 100.0) / 100.0))
+    if by_way or (takes_both and values.cdis > 0.0):
+        shares.append(_way_share(curve, max(values.cdis, 0.0), at_end=at_end))
+    return min(shares)
+
+
+def _turning_share(curve: Curve, share: float) -> float:
+    """Return the share on which no axis is farther away than a part of $APO_DIS_PTP [BLD-03]."""
+    (travel,), _, _ = curve.rates(np.ones(1))
+    machine = curve.arm.machine
+    reach = np.array([axis.approximation for axis in (*machine.axes, *machine.externals)])
+    return float((share * reach / np.maximum(np.abs(travel), 1e-9)).min())
+
+
+def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
+    """Return the share on which the tool travels a distance."""
+    way = Way(lambda u: tool_tangents(curve, u))
+    if distance >= way.length:
+        return 1.0
+    wanted = way.length - distance if at_end else distance
+    (u,) = way.parameters(np.array([wanted]))
+    return float(1.0 - u if at_end else u)

@@ -1,0 +1,105 @@
+"""Ramps: the fastest changes of speed under bounds of acceleration and jerk.
+
+Lengths are in the unit of the caller, times in seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """The maximum speed, acceleration and jerk of a profile."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+    def merged(self, other: Bounds, choose: Callable[[float, float], float]) -> Bounds:
+        """Return the lower or the higher of each pair of bounds."""
+        return Bounds(
+            choose(self.velocity, other.velocity),
+            choose(self.acceleration, other.acceleration),
+            choose(self.jerk, other.jerk),
+        )
+
+    def scaled(self, share: float) -> Bounds:
+        """Return the bounds in another unit."""
+        return Bounds(self.velocity * share, self.acceleration * share, self.jerk * share)
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """The fastest change of speed and acceleration.
+
+    ``pieces`` are up to three tuples of duration, initial acceleration, and jerk.
+    """
+
+    duration: float
+    distance: float
+    pieces: tuple[tuple[float, float, float], ...]
+
+
+NO_RAMP = Ramp(0.0, 0.0, ())
+
+
+def ramp(
+    speed: float, acceleration: float, target: float, bounds: Bounds, final: float = 0.0
+) -> Ramp:
+    """Return the change from a speed and acceleration to a target speed and final acceleration.
+
+    If one of these accelerations exceeds its bound, it replaces the bound.
+    """
+    jerk, most = bounds.jerk, max(bounds.acceleration, abs(acceleration), abs(final))
+    slew = abs(final - acceleration) / jerk
+    sign = 1.0 if target >= speed + slew * (acceleration + final) / 2 else -1.0
+    start, end = sign * acceleration, sign * final  # as if speeding up
+    change = sign * (target - speed)
+    peak = math.sqrt(max(jerk * change + (start * start + end * end) / 2, 0.0))
+    hold = 0.0
+    if peak > most:
+        hold = (change - (2 * most * most - start * start - end * end) / (2 * jerk)) / most
+        peak = most
+    rise, fall = max(peak - start, 0.0) / jerk, max(peak - end, 0.0) / jerk
+    # Distances in the mirrored frame, from the speed at the start of each phase.
+    first = sign * speed
+    second = first + rise * (start + peak) / 2
+    third = second + hold * peak
+    travelled = (
+        rise * (first + rise * (start / 2 + rise * jerk / 6))
+        + hold * (second + hold * peak / 2)
+        + fall * (third + fall * (peak / 2 - fall * jerk / 6))
+    )
+    pieces = (
+        (rise, acceleration, sign * jerk),
+        (hold, sign * peak, 0.0),
+        (fall, sign * peak, -sign * jerk),
+    )
+    return Ramp(rise + hold + fall, sign * travelled, pieces)
+
+
+def speed_after(speed: float, acceleration: float, final: float, jerk: float) -> float:
+    """Return the speed once a maximum jerk has changed one acceleration to another."""
+    return speed + (final + acceleration) * abs(final - acceleration) / (2.0 * jerk)
+
+
+def largest_speed(speed: float, length: float, bounds: Bounds) -> float:
+    """Return the largest speed at one end of a length, given the speed at the other end.
+
+    The acceleration is zero at both ends. A change of speed Δ takes ``2·√(Δ/j)`` seconds up to
+    a²/j, and ``Δ/a + a/j`` above that, at the mean of both speeds.
+    """
+    a, j = bounds.acceleration, bounds.jerk
+    threshold = a * a / j
+    if (2.0 * speed + threshold) * a / j >= length:
+        # x³ + 2·speed·x = length·√j with x = √Δ, which has one root.
+        third, half = 2.0 * speed / 3.0, length * math.sqrt(j) / 2.0
+        root = math.cbrt(half + math.sqrt(half * half + third**3))
+        x = root - third / root if root > 0.0 else 0.0
+        return speed + x * x
+    b = speed / a + a / (2.0 * j)
+    c = speed * a / j - length
+    return speed + a * (math.sqrt(b * b - 2.0 * c / a) - b)

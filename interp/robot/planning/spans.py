@@ -1,0 +1,259 @@
+"""Spans: stretches of a path that are travelled as one, and the speeds possible at their ends.
+
+A span is a row of stretches with similar bounds, over any number of motions. Within it the arm
+accelerates and brakes as if it were one stretch; the acceleration is zero at its ends. A blend is a
+span of its own. A curved one is passed at constant speed; one that overlaps the end of a motion
+with the start of the next is entered while braking and left while accelerating.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from interp.robot.planning.junctions import JoinedStretch, PathState
+from interp.robot.planning.profile import SpeedProfile, stop, travel
+from interp.robot.planning.ramps import Bounds, largest_speed, ramp, speed_after
+
+_SPARE = 1.0 - 1e-6
+"""Share of a length that changes of speed may use, so that rounding makes none impossible."""
+_ALIKE = 1.0 - 1e-3
+"""Ratio above which two speeds count as equal."""
+_LOOSE = 0.6
+"""Ratio of speeds above which the lower one may cost nothing, as neither is reached."""
+_ABOUT = 0.8
+"""Ratio of accelerations or jerks above which the lower one is better than another span."""
+_JUMP = 0.01
+"""Share of the maximum acceleration by which it may jump where two blends meet."""
+_HALVINGS = 48
+
+
+@dataclass(slots=True)
+class Span:
+    """Stretches that are travelled as one, in the unit of the first span after a stop.
+
+    ``scales`` convert the parameters of its stretches to that unit, ``ends`` are the positions of
+    their ends. The acceleration is ``entry_bend`` times the square of the speed at the start, and
+    ``exit_bend`` times at the end; both are 0 except beside a blend. At the start of the first span
+    it is ``acceleration``. Where two blends meet, it jumps by ``jump`` times the square of the
+    speed. ``stands`` if the arm stops before the span.
+
+    A blend that ``is_constant`` is passed at constant speed up to ``constant.velocity``. If its
+    speed changes, it has the other ``bounds``, unless it is entered faster than ``eased``.
+    """
+
+    bounds: Bounds
+    constant: Bounds
+    eased: float
+    is_blend: bool
+    is_constant: bool
+    stands: bool
+    acceleration: float = 0.0
+    entry_bend: float = 0.0
+    exit_bend: float = 0.0
+    jump: float = 0.0
+    scales: list[float] = field(default_factory=list)
+    ends: list[float] = field(default_factory=list)
+
+    @property
+    def length(self) -> float:
+        """The distance from its start to its end."""
+        return self.ends[-1]
+
+    @property
+    def _fastest(self) -> float:
+        return self.constant.velocity if self.is_constant else self.bounds.velocity
+
+    def add(self, scale: float, length: float) -> None:
+        """Append a stretch."""
+        self.scales.append(scale)
+        self.ends.append((self.ends[-1] if self.ends else 0.0) + length)
+
+    def follow(self, before: Span, bend: float) -> None:
+        """Set the accelerations where it follows a span, in which they jump by bend·speed²."""
+        if self.is_blend is before.is_blend:
+            self.jump = bend
+        elif self.is_blend:
+            before.exit_bend = -bend
+        else:
+            self.entry_bend = bend
+
+    # ------------------------------------------------------------------- speeds and profiles
+
+    def fastest_entry(self) -> float:
+        """Return the largest speed at which its bounds allow to enter it."""
+        most = min(self._fastest, _largest_with(self.entry_bend, self.bounds))
+        if self.jump:
+            most = min(most, math.sqrt(_JUMP * self.bounds.acceleration / abs(self.jump)))
+        return most
+
+    def fastest_exit(self) -> float:
+        """Return the largest speed at which its bounds allow to leave it."""
+        return min(self._fastest, _largest_with(self.exit_bend, self.bounds))
+
+    def entry_speed(self, wanted: float, most: float) -> float:
+        """Return the largest speed, at most ``most``, to enter it and leave it at ``wanted``."""
+        if self.is_constant:
+            return min(wanted, most)
+        if not self.entry_bend and not self.exit_bend:
+            return min(largest_speed(wanted, self.length * _SPARE, self.bounds), most)
+
+        def fits(speed: float) -> bool:
+            change = self._distance(speed, self.entry_bend * speed**2, min(wanted, speed))
+            return at_most(change, self.length * _SPARE)
+
+        return most if fits(most) else _bisected(fits, 0.0, most)
+
+    def exit_speed(
+        self, speed: float, wanted: float, *, has_no_alternative: bool = False
+    ) -> float | None:
+        """Return the speed at its end if entered at ``speed``: ``wanted``, or the nearest possible.
+
+        A lower speed is preferred. Return ``None`` if not even the acceleration can be reduced to
+        zero. If the span ``has_no_alternative``, more speeds are tried.
+        """
+        if self.is_constant:
+            return speed
+        acceleration = self._entry_acceleration(speed)
+
+        def fits(target: float) -> bool:
+            return at_most(self._distance(speed, acceleration, target), self.length)
+
+        if fits(wanted):
+            return wanted
+        if acceleration == 0.0 and wanted > speed and not self.exit_bend:
+            return max(largest_speed(speed, self.length * _SPARE, self.bounds), speed)
+        # Not every speed between two that can be reached can be reached: braking hard, it may take
+        # longer to ease off the brake at some speed than to stand still.
+        jerk = self.bounds.jerk
+        candidates = [0.0, speed_after(speed, acceleration, 0.0, jerk)]
+        if has_no_alternative:  # before an overlap the shortest way is to brake at once
+
+            def is_slower(target: float) -> bool:
+                final = self.exit_bend * target**2
+                return target <= speed_after(speed, acceleration, final, jerk)
+
+            candidates.append(_bisected(is_slower, 0.0, max(speed, wanted)))
+        within = next((one for one in candidates if one >= 0.0 and fits(one)), None)
+        return None if within is None else _bisected(fits, within, wanted)
+
+    def profiles(self, speed: float, final: float) -> list[SpeedProfile]:
+        """Return the profile of each stretch between the speeds at both ends of the span."""
+        if self.is_constant:
+            pieces = ((self.length / speed, 0.0, 0.0),) if speed > 0.0 else ()
+            profile = SpeedProfile(speed, pieces)
+        else:
+            start, end = self._entry_acceleration(speed), self.exit_bend * final**2
+            profile = travel(self.length, speed, start, final, self.bounds, end)
+        return profile.split(self.ends) if len(self.ends) > 1 else [profile]
+
+    def stop(self, speed: float) -> list[SpeedProfile] | None:
+        """Return the profiles up to a stop within the span, or ``None`` if it is too short."""
+        acceleration = self._entry_acceleration(speed)
+        way = ramp(speed, acceleration, 0.0, self.bounds).distance
+        if not at_most(way, self.length):
+            return None
+        whole = stop(speed, acceleration, self.bounds)
+        last = next(place for place, end in enumerate(self.ends) if at_most(way, end))
+        return whole.split([*self.ends[:last], whole.length])
+
+    def _entry_acceleration(self, speed: float) -> float:
+        return self.acceleration + self.entry_bend * speed**2
+
+    def _distance(self, speed: float, acceleration: float, final: float) -> float:
+        """Return the distance on which the speed changes to a final one."""
+        return ramp(speed, acceleration, final, self.bounds, self.exit_bend * final**2).distance
+
+
+def spans_of(
+    stretches: Sequence[JoinedStretch],
+    state: PathState,
+    override: float,
+    *,
+    is_hard: bool = False,
+    is_loose: bool = True,
+) -> list[Span]:
+    """Return the spans of a row of stretches, from a state on the first one.
+
+    If ``is_loose``, stretches with less similar bounds are joined: a lower speed for fewer spans.
+    """
+    ratio = _LOOSE if is_loose else _ALIKE
+    spans: list[Span] = []
+    scale, highest = 0.0, Bounds(0.0, 0.0, 0.0)
+    for place, joined in enumerate(stretches):
+        stretch, junction = joined.stretch, joined.junction
+        is_first, is_blend = place == 0, stretch.even > 0.0
+        stands = not is_first and junction.gear <= 0.0
+        if is_first or stands:
+            scale, bend = stretch.size, 0.0
+        else:
+            before, scale = scale, scale / junction.gear
+            bend = scale * junction.bend / before**2
+        own = stretch.bounds(override, is_hard)
+        if is_blend and is_first and state.speed * _ALIKE > stretch.velocity:
+            own = stretch.even_bounds(override)
+        bounds = own.scaled(scale)
+        last = spans[-1] if spans else None
+        if (
+            last is not None
+            and not (stands or is_blend or last.is_blend)
+            and _is_about(highest, bounds, ratio)
+            and _is_about(bounds, last.bounds, ratio)
+        ):
+            highest = highest.merged(bounds, max)
+            last.bounds = last.bounds.merged(bounds, min)
+        else:
+            highest = bounds
+            constant, eased = stretch.even_bounds(override).scaled(scale), stretch.velocity * scale
+            is_constant = is_blend and not is_first
+            spans.append(Span(bounds, constant, eased, is_blend, is_constant, stands))
+            if last is not None:
+                spans[-1].follow(last, bend)
+        start = state.u if is_first else stretch.start
+        spans[-1].add(scale, (stretch.end - start) * scale)
+    spans[0].acceleration = state.acceleration * spans[0].scales[0]
+    return spans
+
+
+def at_most(value: float, limit: float, tolerance: float = 1e-9) -> bool:
+    """Return whether a length or speed is not above a limit, up to rounding errors."""
+    return value <= limit * (1.0 + tolerance) + 1e-9
+
+
+def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
+    """Return whether bounds exceed others only by differences that are not worth another span."""
+    return (
+        inner.velocity * ratio <= outer.velocity
+        and inner.acceleration * _ABOUT <= outer.acceleration
+        and inner.jerk * _ABOUT <= outer.jerk
+    )
+
+
+def _largest_with(bend: float, bounds: Bounds) -> float:
+    """Return the largest speed at which an acceleration of bend·speed² can be reduced to zero.
+
+    The speed must not exceed its bound meanwhile.
+    """
+    if not bend:
+        return math.inf
+
+    def fits(speed: float) -> bool:
+        gain = abs(bend) * speed**2
+        return (
+            gain * _SPARE <= bounds.acceleration
+            and (speed + gain**2 / (2.0 * bounds.jerk)) * _SPARE <= bounds.velocity
+        )
+
+    return bounds.velocity if fits(bounds.velocity) else _bisected(fits, 0.0, bounds.velocity)
+
+
+def _bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
+    """Return the speed that still fits and is nearest to one that does not."""
+    for _ in range(_HALVINGS):
+        middle = (beyond + within) / 2.0
+        if fits(middle):
+            within = middle
+        else:
+            beyond = middle
+    return within
