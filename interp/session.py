@@ -223,7 +223,7 @@ def run_program(
         submit=submit,
         submit_sink=submit_sink,
         machine=machine,
-        values=values,
+        values={**values, "$EX_AX_NUM": len(machine.externals)},  # of the arm that runs
         tracking=tracking,
     )
     if debugger is not None:

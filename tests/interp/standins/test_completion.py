@@ -3,15 +3,20 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from conformance.suite.case import CASES
 from grammar.syntax.source import Source
 from interp.controller.state.profile import Profile
 from interp.program.load import CheckedProgram, load
+from interp.robot.kinematics.machine_data import read_machine
 from interp.session import EXECUTORS, RunResult, RunSetup, run_program
 
+WITH_TABLE = CASES / "motion" / "$machine.dat"
+"""An arm with a slide, E1, and a turntable, E2."""
 HOME = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\n"
 
 
@@ -80,6 +85,49 @@ def test_inline_forms(executor: str) -> None:
     run = _run(_main(body), executor)
     moved = _planned(run)
     assert (("end", ""), ["PTP", "PTP", "LIN"]) == (_outcome(run), moved)
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_groups_and_bases_on_external_axes(executor: str) -> None:
+    """A base turns with the table that $config.dat gives it; groups and speeds have a value each.
+
+    The tables MACHINE_DEF and MACHINE_FRAME_DAT have this meaning in BAS of four public archives.
+    """
+    kinds = {1: "#ROBOT", 2: "#EASYS", 3: "#NONE"}
+    config = "DEFDAT $CONFIG PUBLIC\nDECL GLOBAL MACHINE_DEF_T MACHINE_DEF[3]\n" + "".join(
+        f"MACHINE_DEF[{n}]={{COOP_KRC_INDEX 1,ROOT {{X 400.0,Y 0.0,Z 300.0,A 0.0,B 0.0,C 0.0}},"
+        f"MECH_TYPE {kind}}}\n"
+        for n, kind in kinds.items()
+    )
+    config += "DECL GLOBAL MACHINE_FRAME_T MACHINE_FRAME_DAT[3]\nDECL GLOBAL FRAME BASE_DATA[3]\n"
+    for number, system in enumerate((2, 1, 0), start=1):
+        config += f"MACHINE_FRAME_DAT[{number}]={{MACH_DEF_INDEX {system}}}\n"
+        config += f"BASE_DATA[{number}]={{X 70.0,Y 0.0,Z {number}.0,A 0.0,B 0.0,C 0.0}}\n"
+    config += "INT DEF_GROUP[2]\nDEF_GROUP[1]='B11'\nDEF_GROUP[2]='B01'\nENDDAT\n"
+    body = (
+        "BAS (#INITMOV,0 )\n$ANOUT[1]=$ACT_GROUP/10.0\nBAS (#GROUP,2 )\n$ANOUT[2]=$ACT_GROUP/10.0\n"
+        "PTP {A1 0,A2 -90,A3 100,A4 0,A5 60,A6 0,E1 0,E2 90}\n"
+        "FDAT_ACT={TOOL_NO 0,BASE_NO 1,IPO_FRAME #BASE}\nBAS (#CP_PARAMS,0.2 )\n"
+        "$ORI_TYPE=#CONSTANT\n"
+        "LIN {X 0,Y 0,Z 250}\nLIN {E2 60}\nWAIT SEC 0\n$ANOUT[3]=$ACT_BASE/10.0\n"
+        "BAS (#EX_BASE,2 )\n$ANOUT[4]=$BASE.Z/10.0\nBAS (#FRAMES,0 )\nBAS (#EX_BASE,3 )\n"
+        "$ANOUT[5]=$BASE.Z/10.0\n$ANOUT[6]=$ACT_EX_AX/10.0\n"
+        "BAS (#VEL_PTP,10 )\n$ANOUT[7]=$VEL_EXTAX[2]/100.0\n"
+        "BAS (#ACC_PTP,20 )\n$ANOUT[8]=$ACC_EXTAX[2]/100.0\n"
+    )
+    program = _program({"main.src": f"DEF main ( )\n{body}END\n", "$config.dat": config})
+    machine = read_machine(WITH_TABLE.read_text())
+    run = run_program(
+        program, RunSetup(executor=executor, robot="kinematic", machine=machine, is_full=True)
+    )
+    assert ("end", "") == _outcome(run)
+    values = [float(str(e.fields["value"])) for e in run.events if e.kind == "anout"]
+    assert [0.7, 0.1, 0.1, 0.2, 0.3, -0.1, 0.1, 0.2] == pytest.approx(values)
+    assert run.path is not None
+    turned = slice(np.flatnonzero(run.path.axes[:, 7] == 90.0)[-1], None)
+    points = run.path.points[turned, :3]
+    assert len(points) > 20
+    np.testing.assert_allclose(points, np.full_like(points, 250.0) * (0, 0, 1), atol=0.1)
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
