@@ -37,7 +37,8 @@ _FRICTION = 4.0  # 1/s: torque per speed, as a fraction of the rotor's inertia
 def mjcf_of(machine: MachineData) -> str:
     """Return the model as text; joints and actuators have the names of their axes.
 
-    Joints are in the order of the axes, external axes last. An actuator applies the torque at its
+    Joints are in the order of the axes: first those that carry the robot, then its own, then other
+    external axes. Actuators are in the order of the joints. An actuator applies the torque at its
     input to its joint, plus the bias that a controller configures
     (`interp.robot.simulation.mujoco`).
     """
@@ -45,6 +46,7 @@ def mjcf_of(machine: MachineData) -> str:
     links = links_of(machine)
     names = [link.name for link in links if link.touches]
     axes = (*machine.axes, *machine.externals)
+    driven = [axes[link.joint].name for link in links if link.joint is not None]
     lines = [
         f'<mujoco model="{_escaped(machine.name) or "arm"}">',
         '  <compiler angle="radian" autolimits="true"/>',
@@ -77,10 +79,7 @@ def mjcf_of(machine: MachineData) -> str:
         ),
         "  </contact>",
         "  <actuator>",
-        *(
-            f'    <general name="{axis.name}" joint="{axis.name}" biastype="affine"/>'
-            for axis in axes
-        ),
+        *(f'    <general name="{name}" joint="{name}" biastype="affine"/>' for name in driven),
         "  </actuator>",
         "</mujoco>",
     ]

@@ -94,9 +94,14 @@ def test_the_size_of_a_chunk_does_not_matter_much() -> None:
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-3)
 
 
-def test_external_axes_follow(machine_text: Callable[..., str]) -> None:
-    """A track follows in mm."""
-    machine = read_machine(machine_text("INT $EX_AX_NUM=1", "$AXIS_TYPE[7]=1"))
+@pytest.mark.parametrize(
+    "carried",
+    [(), ("DECL EX_KIN $EX_KIN={ET1 #ERSYS}", "DECL ET_AX $ET1_AX={TR_A1 #E1}")],
+    ids=["beside", "below"],
+)
+def test_external_axes_follow(machine_text: Callable[..., str], carried: tuple[str, ...]) -> None:
+    """A track follows in mm, beside the arm and below it."""
+    machine = read_machine(machine_text("INT $EX_AX_NUM=1", "$AXIS_TYPE[7]=1", *carried))
     robot = MujocoRobot(Cell(machine))
     robot.stand((*HOME, 100.0))
     axes = np.tile((*HOME, 100.0), (500, 1))
