@@ -21,7 +21,7 @@ from conformance.evaluation.motions import (
     EndedMotion,
     follows,
 )
-from conformance.evaluation.path_geometry import change_rates, refined
+from conformance.evaluation.path_geometry import arc_length, change_rates
 from conformance.evaluation.place_laws import axes_of
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
@@ -29,6 +29,9 @@ from interp.robot.kinematics.placement import IpoMode
 #: Fraction and seconds by which a duration may be shorter or longer than computed: ends lie between
 #: two samples, so the computed length may be too large.
 _SHORTER, _LONGER = (1e-4, 1e-4), (1e-5, 2e-5)
+#: Fraction of a cycle by which a duration differs whose ramps are shorter than a cycle: the cubic
+#: between samples misses the ends of the motion. The error falls with the square of longer ramps.
+_BESIDE: Final = 0.4
 #: Seconds by which rounding to microseconds may change a duration between known ends.
 _ROUNDED: Final = 1.5e-6
 #: Seconds below which a motion is not checked: there are too few samples between its ends.
@@ -42,12 +45,15 @@ _FAR_DEGREES: Final = 5.0
 _SLOWER, _STRAIGHT = 1.001, 1.05
 #: Fraction of the limits of all axes below which no axis can slow a path down.
 _IDLE: Final = 0.15
-#: The smallest numbers of samples that show the load of the axes, and points of an arc per sample.
-_OF_LINE, _OF_CIRCLE, _FINER = 5, 40, 20
+#: The smallest numbers of samples that show the load of the axes.
+_OF_LINE, _OF_CIRCLE = 5, 40
 #: Jerk of spline motions in mm/s³ and deg/s³, and seconds in which other motions build up
 #: acceleration.
 _SPLINE_JERKS: Final = (500e3, 50e3)
 _RAMP: Final = 0.08
+
+#: Speed, acceleration and jerk.
+_Limits = tuple[float, float, float]
 
 
 def duration_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
@@ -60,19 +66,22 @@ def duration_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
 
 def seconds_of(length: float, speed: float, acceleration: float, jerk: float) -> float:
     """Return the shortest time in s for a length from rest to rest, with limited jerk."""
-
-    def ramp(reached: float) -> float:
-        if reached < acceleration**2 / jerk:
-            return 2.0 * math.sqrt(reached / jerk)
-        return reached / acceleration + acceleration / jerk
-
-    if ramp(speed) * speed <= length:
-        return 2.0 * ramp(speed) + (length - ramp(speed) * speed) / speed
+    ramp = ramp_seconds(speed, acceleration, jerk)
+    if ramp * speed <= length:
+        return 2.0 * ramp + (length - ramp * speed) / speed
     low, high = 0.0, speed
     for _ in range(100):
         middle = (low + high) / 2.0
-        low, high = (middle, high) if ramp(middle) * middle <= length else (low, middle)
-    return 2.0 * ramp(low)
+        is_reached = ramp_seconds(middle, acceleration, jerk) * middle <= length
+        low, high = (middle, high) if is_reached else (low, middle)
+    return 2.0 * ramp_seconds(low, acceleration, jerk)
+
+
+def ramp_seconds(speed: float, acceleration: float, jerk: float) -> float:
+    """Return the shortest time in s from rest to a speed, with limited jerk."""
+    if speed < acceleration**2 / jerk:
+        return 2.0 * math.sqrt(speed / jerk)
+    return speed / acceleration + acceleration / jerk
 
 
 def _start_violations(before: EndedMotion | None, one: EndedMotion) -> Iterator[Violation]:
@@ -103,26 +112,25 @@ def _motion_violations(one: EndedMotion, way: Array | None) -> Iterator[Violatio
         return
     is_free = True
     if motion.kind in ("PTP", "SPTP"):
-        wanted, law, rule = (
-            _seconds_of_axes(one, one.ends[1] - one.ends[0] if way is None else way),
-            "a PTP is as quick as its axes allow",
-            "MOT-20",
-        )
+        limits = _limits_of_axes(one, one.ends[1] - one.ends[0] if way is None else way)
+        law, rule = "a PTP is as quick as its axes allow", "MOT-20"
         is_free = not motion.settings.is_reduced
     else:
-        wanted, law, rule = (
-            _seconds_of_path(one),
-            "a path takes what its speed and acceleration allow",
-            "",
-        )
+        limits = _limits_of_path(one)
+        law, rule = "a path takes what its speed and acceleration allow", ""
         # The jerk of S motions ends within a sample, so axes may limit it unseen.
-        is_free = took > wanted and motion.kind[0] != "S" and _largest_load(one) < _IDLE
-    shorter, longer = (fraction * wanted + ends for fraction, ends in (_SHORTER, _LONGER))
+        is_free = motion.kind[0] != "S" and _largest_load(one) < _IDLE
+    if limits is None:
+        return
+    wanted = seconds_of(1.0, *limits)
+    cycle = np.diff(one.path.times[-2:]).item() / 1e6
+    beside = _BESIDE * cycle * min((cycle / ramp_seconds(*limits)) ** 2, 1.0)
+    shorter, longer = (part * wanted + ends + beside for part, ends in (_SHORTER, _LONGER))
     if way is not None:
         shorter = longer = _ROUNDED
     elif max(took, wanted) < _SHORTEST:
         return
-    if wanted and (took < wanted - shorter or (is_free and took > wanted + longer)):
+    if took < wanted - shorter or (is_free and took > wanted + longer):
         yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
 
 
@@ -139,30 +147,35 @@ def _known_way(before: EndedMotion, one: EndedMotion) -> Array | None:
     return None if way is None or np.isnan(way).any() else way
 
 
-def _seconds_of_axes(one: EndedMotion, way: Array) -> float:
-    """Return the seconds that the slowest axis needs; 0 if unknown."""
+def _limits_of_axes(one: EndedMotion, way: Array) -> _Limits | None:
+    """Return the limits of a PTP, whose length is 1, by its slowest axes; ``None`` if unknown."""
     most, way = one.axis_rates, np.abs(way)
     moved = way > ROUNDING
     if most is None or not moved.any():
-        return 0.0
-    return seconds_of(1.0, *(float((row[moved] / way[moved]).min()) for row in most))
+        return None
+    v, a, j = (float((row[moved] / way[moved]).min()) for row in most)
+    return v, a, j
 
 
-def _seconds_of_path(one: EndedMotion) -> float:
-    """Return the seconds of a path: of translation, swivel or rotation; 0 if unknown."""
+def _limits_of_path(one: EndedMotion) -> _Limits | None:
+    """Return the limits of a path, whose length is 1; ``None`` if unknown.
+
+    They are the smallest ones of translation, swivel and rotation.
+    """
     motion, settings, most = one.motion, one.motion.settings, one.machine
     first, last = one.poses(one.ends)
-    poses = np.concatenate((first[None], one.tools, last[None]))
-    if "CIRC" in motion.kind:  # chords between samples are shorter than arcs
-        count = _FINER * len(one.tools) + 2
-        poses = one.poses(refined(one.path.times, one.path.axes, one.start, one.end, count))
-    way = float(np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).sum())
+    # The sum of the steps between samples would be longer: rounding adds to each of them.
+    way = (
+        arc_length(np.concatenate((first[None], one.tools, last[None]))[:, :3, 3])
+        if "CIRC" in motion.kind
+        else float(np.linalg.norm(last[:3, 3] - first[:3, 3]))
+    )
     turned = first[:3, :3].T @ last[:3, :3]
     swivel = math.degrees(math.acos(min(max(turned[0, 0], -1.0), 1.0)))
     twist = 2.0 * math.atan2(abs(turned[2, 1] - turned[1, 2]), 1.0 + np.trace(turned))
     is_known = settings.placement.mode is IpoMode.BASE and settings.orientation != "#JOINT"
     if not is_known or way < 1.0 or ("CIRC" in motion.kind and swivel + twist > ROUNDING):
-        return 0.0
+        return None
     speed = min(settings.velocity, most.velocity.path)
     if settings.is_reduced:
         speed = min(speed, most.t1_speed)
@@ -180,7 +193,7 @@ def _seconds_of_path(one: EndedMotion) -> float:
         if angle > ROUNDING:
             limits.append((angle, min(fastest, turn), min(steepest, turn_gain), _SPLINE_JERKS[1]))
     v, a, j = (min(row[place] / row[0] for row in limits) for place in (1, 2, 3))
-    return seconds_of(1.0, v, a, j if motion.kind[0] == "S" else a / _RAMP)
+    return v, a, j if motion.kind[0] == "S" else a / _RAMP
 
 
 def _largest_load(one: EndedMotion) -> float:

@@ -85,6 +85,20 @@ def from_circle(points: Array, first: Array, second: Array, third: Array) -> Arr
     return np.asarray(np.hypot(flat - radius, height))
 
 
+def arc_length(points: Array) -> float:
+    """Return the length of the arc along points (n, 3), by the circle that fits them best.
+
+    Neighbours are less than half a turn apart; there may be several turns.
+    """
+    off = points - points.mean(axis=0)
+    flat = off @ np.linalg.svd(off, full_matrices=False)[2][:2].T
+    (x, y, rest), *_ = np.linalg.lstsq(
+        np.column_stack((2.0 * flat, np.ones(len(flat)))), (flat**2).sum(axis=1), rcond=None
+    )
+    angles = np.unwrap(np.arctan2(flat[:, 1] - y, flat[:, 0] - x))
+    return float(np.sqrt(rest + x**2 + y**2) * abs(angles[-1] - angles[0]))
+
+
 def from_arc(points: Array, start: Array, corner: Array, end: Array) -> Array:
     """Return the distance of each point from the parabola of a blend between two lines.
 

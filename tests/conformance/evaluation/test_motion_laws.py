@@ -65,6 +65,21 @@ _SHORT: Final = """DEF a()
 END
 """
 
+#: Motions whose ramps are shorter than a cycle, and slow ones whose ramps are hardly longer.
+_SLOW: Final = """DEF a()
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}
+  $VEL.CP = 0.001
+  LIN_REL {Y 4}
+  CIRC_REL {X 1, Z 1}, {X 2}
+  $VEL.CP = 0.01
+  LIN_REL {X -7.49, Y -6.37, Z -0.19}
+  CIRC_REL {X 2, Y 2}, {Y 5}
+  CIRC_REL {X 2, Y 2}, {Y 5}, CA 720
+END
+"""
+
 
 @cache
 def seen(program: str = _PROGRAM) -> Observation:
@@ -75,14 +90,14 @@ def seen(program: str = _PROGRAM) -> Observation:
     return observe(case, Setup("tree", "kinematic"))
 
 
-def with_path(change: Callable[[PathRecord], PathRecord]) -> Observation:
+def with_path(change: Callable[[PathRecord], PathRecord], program: str = _PROGRAM) -> Observation:
     """The run with another path."""
-    path = seen().path
+    path = seen(program).path
     assert path is not None
-    return replace(seen(), path=change(path))
+    return replace(seen(program), path=change(path))
 
 
-def with_motion(line: int, **changed: object) -> Observation:
+def with_motion(line: int, program: str = _PROGRAM, **changed: object) -> Observation:
     """The run as if something else had been programmed in a line."""
 
     def change(path: PathRecord) -> PathRecord:
@@ -92,15 +107,15 @@ def with_motion(line: int, **changed: object) -> Observation:
         )
         return replace(path, motions=tuple(motions))
 
-    return with_path(change)
+    return with_path(change, program)
 
 
-def settings_of(line: int, **changed: object) -> Observation:
+def settings_of(line: int, program: str = _PROGRAM, **changed: object) -> Observation:
     """The run as if other values had been in force in a line."""
-    path = seen().path
+    path = seen(program).path
     assert path is not None
     settings = next(motion.settings for _, motion in path.motions if motion.at.line == line)
-    return with_motion(line, settings=replace(settings, **changed))  # type: ignore[arg-type]
+    return with_motion(line, program, settings=replace(settings, **changed))  # type: ignore[arg-type]
 
 
 def broken(run: Observation) -> list[tuple[str, int]]:
@@ -117,7 +132,7 @@ def broken(run: Observation) -> list[tuple[str, int]]:
     return [(one.rule, one.event.line if one.event else 0) for one in found]
 
 
-@pytest.mark.parametrize("program", [_PROGRAM, _SHORT])
+@pytest.mark.parametrize("program", [_PROGRAM, _SHORT, _SLOW])
 def test_a_right_run_breaks_none(program: str) -> None:
     """And it has motions of all kinds, or some that are too short to be judged."""
     assert "end" == seen(program).ending
@@ -179,6 +194,17 @@ def test_a_path_keeps_speed_and_acceleration() -> None:
     assert ("MOT-04", 8) in broken(settings_of(8, acceleration=0.1))
     assert [("", 8)] == broken(settings_of(8, velocity=0.055))
     assert [("", 9)] == broken(settings_of(9, velocity=0.055))
+
+
+@pytest.mark.parametrize(
+    ("line", "factor"), [(6, 0.995), (6, 1.005), (7, 0.995), (7, 1.005), (9, 0.995), (11, 0.995)]
+)
+def test_a_slow_path_keeps_speed(line: int, factor: float) -> None:
+    """Set-points are rounded, and ends lie between them, but half a per cent is noticed."""
+    path = seen(_SLOW).path
+    assert path is not None
+    speed = next(motion.settings.velocity for _, motion in path.motions if motion.at.line == line)
+    assert line in [at for _, at in broken(settings_of(line, _SLOW, velocity=speed * factor))]
 
 
 def test_a_ptp_is_as_quick_as_its_axes() -> None:
