@@ -26,9 +26,9 @@ from conformance.evaluation.place_laws import axes_of
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
 
-#: Fraction and seconds by which a duration may be shorter or longer than computed: ends lie between
-#: two samples, so the computed length may be too large.
-_SHORTER, _LONGER = (1e-4, 1e-4), (1e-5, 2e-5)
+#: Fractions by which a duration may be shorter or longer than computed, and seconds: ends lie
+#: between two samples.
+_SHORTER, _LONGER, _AT_ENDS = 1e-4, 1e-5, 1e-4
 #: Fraction of a cycle by which a duration differs whose ramps are shorter than a cycle: the cubic
 #: between samples misses the ends of the motion. The error falls with the square of longer ramps.
 _BESIDE: Final = 0.4
@@ -125,7 +125,7 @@ def _motion_violations(one: EndedMotion, way: Array | None) -> Iterator[Violatio
     wanted = seconds_of(1.0, *limits)
     cycle = np.diff(one.path.times[-2:]).item() / 1e6
     beside = _BESIDE * cycle * min((cycle / ramp_seconds(*limits)) ** 2, 1.0)
-    shorter, longer = (part * wanted + ends + beside for part, ends in (_SHORTER, _LONGER))
+    shorter, longer = (part * wanted + _AT_ENDS + beside for part in (_SHORTER, _LONGER))
     if way is not None:
         shorter = longer = _ROUNDED
     elif max(took, wanted) < _SHORTEST:
