@@ -194,7 +194,8 @@ def _missed_points(one: EndedMotion) -> Iterator[Violation]:
     parts = motion.parts if one.stops else motion.parts[:-1]  # a blend may cut the last part
     if motion.kind != "SPLINE" or motion.settings.placement.mode is not IpoMode.BASE:
         return
-    targets = [target for part in parts for target in (part.auxiliary, part.target) if target]
+    known = (part for part in parts if not part.is_relative)
+    targets = [target for part in known for target in (part.auxiliary, part.target) if target]
     rows = refined(one.path.times, one.path.axes, one.start, one.end, 8 * len(one.tools) + 2)
     points = one.poses(rows)[:, :3, 3]
     for target in targets:

@@ -62,7 +62,10 @@ class _Segment:
 def spline_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield spline blocks from rest to rest that have another shape than docs/motion.md says."""
     for one in motions:
-        if not (one.motion.parts and one.begins and one.stops) or len(one.tools) < 2:
+        parts = one.motion.parts
+        if not (parts and one.begins and one.stops) or len(one.tools) < 2:
+            continue
+        if any(part.is_relative for part in parts):
             continue
         off = _off_ptp_block(one) if one.motion.kind == "PTP_SPLINE" else _off_block(one)
         if off:
@@ -295,7 +298,7 @@ def _rotations(start: Array, one: EndedMotion) -> Array | None:
     found = [start]
     for part in one.motion.parts:
         given = set(_ANGLES) & set(part.target)
-        if one.motion.settings.orientation == "#CONSTANT" or not given:
+        if (part.settings or one.motion.settings).orientation == "#CONSTANT" or not given:
             found.append(found[-1])
         elif len(given) == len(_ANGLES):
             pose = Pose.of(0.0, 0.0, 0.0, *(part.target[name] for name in _ANGLES))

@@ -103,7 +103,7 @@ class SplinePart:
     """One segment of a spline block, with the ranges and places written before it.
 
     Places are relative to its end, or to its start. ``settings`` is ``None`` if the segment uses
-    those of the block.
+    those of the block. ``is_relative`` and ``reference`` are as in `Motion`.
     """
 
     kind: str
@@ -111,6 +111,8 @@ class SplinePart:
     auxiliary: Target | None = None
     angle: float | None = None
     settings: Settings | None = None
+    is_relative: bool = False
+    reference: str | None = None
     ranges: tuple[SplineRange, ...] = ()
     places: tuple[Place, ...] = ()
     stop_places: tuple[Place, ...] = ()

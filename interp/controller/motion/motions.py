@@ -99,6 +99,11 @@ def _pair(velocity: Any, acceleration: Any, name: str) -> tuple[float, float]:
     return _number(velocity, name), _number(acceleration, name)
 
 
+def _reference(request: Move) -> str | None:
+    """Return the reference of a relative motion, ``#BASE`` or ``#TOOL``, if it names one."""
+    return None if request.reference is None else f"#{request.reference.lstrip('#')}"
+
+
 def _begins_completely(block: MoveSpline) -> bool:
     """Return whether a block may be the first motion: its first segment is a complete SPTP."""
     first = next((item for item in block.items if isinstance(item, Move)), None)
@@ -158,7 +163,7 @@ class MotionBuilder:
             auxiliary,
             angle,
             bool(suffix),
-            None if request.reference is None else f"#{request.reference.lstrip('#')}",
+            _reference(request),
             criteria,
         )
         built = PlannedMotion(motion, snapshot)
@@ -241,12 +246,15 @@ class MotionBuilder:
         snapshot = self._variables.snapshot((*block.values, *item.values))
         target = target_of(item.target)
         self._check_frames(snapshot, item.kind, target)
+        kind, _, suffix = item.kind.partition("_")
         return SplinePart(
-            item.kind,
+            kind,
             target,
             None if item.auxiliary is None else target_of(item.auxiliary),
             item.angle,
             self._settings(snapshot),
+            bool(suffix),
+            _reference(item),
             tuple(ranges),
             tuple(places),
         )

@@ -16,7 +16,7 @@ from interp.robot.arm import Motion, Target
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Array, Kinematics
-from interp.robot.kinematics.targets import Singularity, TargetStatus, check_limits, ptp_target
+from interp.robot.kinematics.targets import TargetStatus, check_limits, ptp_target
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
@@ -123,7 +123,7 @@ class Programmed:
             turn=_bits(target, "T") if not motion.is_relative else None,
             preference=TargetStatus(motion.settings.target_status),
         )
-        is_singular = bool({Singularity.OVERHEAD, Singularity.WRIST} & set(found.singularities))
+        is_singular = bool(found.singularities)
         return Goal(np.concatenate((found.axes, externals)), components, is_singular)
 
     def _axes(self, target: Target, is_relative: bool) -> Array:

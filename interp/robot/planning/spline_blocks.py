@@ -65,10 +65,12 @@ def _cp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track
     knot = _knot(placement.in_path(before.pose_in(placement)))
     target, segments, externals = before, [], [before.axes[ROBOT_AXES:]]
     for part in motion.parts:
-        components = target.components_of(part.target, placement)
+        components = target.components_of(part.target, placement, part.is_relative, part.reference)
         following = _knot(placement.in_path(Pose.of(*components)))
+        if (part.settings or settings).orientation == "#CONSTANT":
+            following = Knot(following.position, knot.rotation)
         segment = _segment(part, knot, following, target, settings)
-        externals.append(target.externals(part.target, False))
+        externals.append(target.externals(part.target, part.is_relative))
         axes = np.concatenate((target.axes[:ROBOT_AXES], externals[-1]))
         target, knot = target.reached(axes, components, placement), segment.end
         segments.append(segment)
@@ -87,7 +89,9 @@ def _segment(
     if part.kind != "SCIRC":
         return Segment(part.kind, start, end)
     placement = settings.placement
-    components = before.components_of(part.auxiliary or {}, placement)
+    components = before.components_of(
+        part.auxiliary or {}, placement, part.is_relative, part.reference
+    )
     middle = placement.in_path(Pose.of(*components))
     circle = circle_through(start.position, np.array(middle.position), end.position, part.angle)
     (place,) = circle.at(np.ones(1))
@@ -98,12 +102,10 @@ def _pieces(
     tracks: Tracks, motion: Motion, segments: Sequence[Segment], externals: Array, start: Array
 ) -> tuple[Piece, ...]:
     """Return a piece for each segment, continuous from the axes at the start on."""
-    keeps = motion.settings.orientation == "#CONSTANT"
     pieces: list[Piece] = []
     axes = start[:ROBOT_AXES]
     number = 0
-    for row in chains_of(segments):
-        chain = _kept(row, segments[0].start) if keeps else row
+    for chain in chains_of(segments):
         pose_paths = pose_paths_of(chain)
         travelled = externals[number : number + len(chain) + 1]
         for place, pose_path in enumerate(pose_paths):
@@ -126,18 +128,6 @@ def _pieces(
             pieces.append(piece)
             number += 1
     return tuple(pieces)
-
-
-def _kept(chain: Sequence[Segment], first: Knot) -> list[Segment]:
-    """Return the segments with the orientation at the start of the block."""
-    return [
-        replace(
-            segment,
-            start=Knot(segment.start.position, first.rotation),
-            end=Knot(segment.end.position, first.rotation),
-        )
-        for segment in chain
-    ]
 
 
 def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> Others:
@@ -164,7 +154,8 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
     target, points, spans = before, [before.axes], []
     for part in motion.parts:
         own = part.settings or motion.settings
-        goal = target.goal(motion, part.target, motion.settings.placement)
+        own_motion = replace(motion, is_relative=part.is_relative, reference=part.reference)
+        goal = target.goal(own_motion, part.target, motion.settings.placement)
         travel = np.abs(goal.axes - points[-1])
         is_still = bool(travel.max() < _STILL)
         spans.append(0.0 if is_still else float((travel / tracks.programmed(own).velocity).max()))
