@@ -83,8 +83,8 @@ static void check_cells(const struct krl_machine *machine)
     for (int32_t i = 0; i < program->data_count; i++)
         check_variable(machine, program->data[i].address, program->data[i].type);
     for (int32_t i = 0; i < code->slot_count; i++)
-        if (code->slots[i].handed.mode == KRL_BY_VALUE)
-            check_variable(machine, machine->fp + code->slots[i].offset, code->slots[i].handed.type);
+        if (code->slots[i].passed.mode == KRL_BY_VALUE)
+            check_variable(machine, machine->fp + code->slots[i].offset, code->slots[i].passed.type);
 }
 
 /* ---------------------------------------------------------------------------- requests and interrupts */

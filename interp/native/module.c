@@ -56,8 +56,8 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
         PyErr_SetString(PyExc_TypeError, "beside is a machine or None");
         return NULL;
     }
-    allocfunc allot = (allocfunc)PyType_GetSlot(type, Py_tp_alloc);
-    struct core *core = (struct core *)allot(type, 0);
+    allocfunc allocate = (allocfunc)PyType_GetSlot(type, Py_tp_alloc);
+    struct core *core = (struct core *)allocate(type, 0);
     if (core == NULL)
         return NULL;
     if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, traced, &why)) {

@@ -27,7 +27,7 @@ class CellTypes:
         """Return the parameter or local variable to which a cell of the frame belongs."""
         number = bisect_right(self._starts, place) - 1
         if number < 0 or place >= self._slots[number].offset + self._slots[number].cells:
-            raise Refused("there is no such cell in the frame")
+            raise Refused("the frame has no such cell")
         return self._slots[number]
 
     def _variable(self, place: int) -> tuple[Type, int]:
@@ -40,7 +40,7 @@ class CellTypes:
     def _data_variable(self, address: int) -> tuple[Type, int]:
         number = self._program.data_at(address)
         if number is None:
-            raise Refused("there is no such cell in the data lists")
+            raise Refused("the data lists have no such cell")
         type_ = self._types[self._program.data[number].type]
         return type_, address - self._program.addresses[number]
 
@@ -63,23 +63,23 @@ class CellTypes:
     def check_part(self, whole: Type, offset: int, number: int) -> None:
         """Check that a part of this type begins at an offset in a type."""
         if path_to(whole, offset, self._types[number]) is None:
-            raise Refused(f"no {self._types[number]} is there")
+            raise Refused(f"no part of this type begins here: {self._types[number]}")
 
     def parameter(self, place: int, mode: Mode) -> StackItem:
         """Return the reference or view that is passed for the parameter at a cell."""
         slot = self.slot(place)
         parameter = slot.variable
         if slot.offset != place or not isinstance(parameter, Parameter):
-            raise Refused("no parameter begins there")
+            raise Refused("no parameter begins at this cell")
         if parameter.mode is not mode:
-            raise Refused(f"the parameter is no {mode.value}")
+            raise Refused("the parameter is passed in another way")
         return item_of(parameter)
 
     def array(self, number: int) -> Array:
         """Return the array type with this number."""
         type_ = self._types[number]
         if not isinstance(type_, Array):
-            raise Refused(f"{type_} is no array")
+            raise Refused(f"an array is required: {type_}")
         return type_
 
     def element(self, array: Array) -> int:

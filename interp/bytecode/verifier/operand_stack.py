@@ -13,7 +13,7 @@ from interp.bytecode.program import Code, Program
 from interp.bytecode.verifier.stack_effects import StackEffects
 from interp.bytecode.verifier.stack_types import Refused, Stack
 from interp.bytecode.verifier.successors import ENDS, targets
-from interp.bytecode.verifier.wellformed import VerificationError
+from interp.bytecode.verifier.wellformed import error_at
 
 
 class Flow:
@@ -38,13 +38,13 @@ class Flow:
             assert before is not None, "only what is reached is looked at"
             for after, stack in self._after(place, before):
                 if after >= len(instructions):
-                    raise self._error(place, "the code object ends without RETURN")
+                    raise error_at(self._code, place, "the code object ends without RETURN")
                 if found[after] is None:
                     found[after] = stack
                     todo.append(after)
                 elif found[after] is not stack:
-                    raise self._error(
-                        place, f"the stack differs from that of another way to {after}"
+                    raise error_at(
+                        self._code, place, f"paths meet with different stacks: at {after}"
                     )
         return found
 
@@ -58,12 +58,8 @@ class Flow:
         try:
             stack = self._effects.after(instruction, before)
         except Refused as refused:
-            raise self._error(place, str(refused)) from None
+            raise error_at(self._code, place, str(refused)) from None
         for target in targets(instruction):
             yield target, self._effects.at_target(instruction.op, stack)
         if instruction.op not in ENDS:
             yield place + 1, stack
-
-    def _error(self, place: int, reason: str) -> VerificationError:
-        op = self._code.instructions[place].op
-        return VerificationError(f"{self._code.name}, instruction {place} ({op.name}): {reason}")

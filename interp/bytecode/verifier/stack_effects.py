@@ -83,8 +83,8 @@ class StackEffects:
             self._push(getattr(self, step.name)(*given))
 
     def _take(self, wanted: StackItem) -> None:
-        if self._stack.below is None or self._pop() != wanted:
-            raise Refused("the stack does not hold what it takes")
+        if self._pop() != wanted:
+            raise Refused("an operand has the wrong type")
 
     def _pop(self) -> StackItem:
         stack = self._stack
@@ -184,7 +184,7 @@ class StackEffects:
     def _cell_of(self, item: StackItem) -> StackItem:
         """Return the value in the cell that a reference refers to."""
         if item.mode is not Mode.REF or not isinstance(self._types[item.type], Plain):
-            raise Refused("a reference to a cell is needed")
+            raise Refused("a reference to a single cell is required")
         return StackItem(Mode.IN, item.type)
 
     # ----------------------------------------------------------------------- taken by rules
@@ -193,20 +193,22 @@ class StackEffects:
         """Pop a value of any type."""
         self._same = self._pop()
         if self._same.mode is not Mode.IN or self._same == NOTHING:
-            raise Refused("a value is needed")
+            raise Refused("a value is required")
 
     def take_enumeration(self) -> None:
         """Pop a constant of any enumeration."""
         self.take_any()
         if not isinstance(self._types[self._same.type], Enumeration):
-            raise Refused("constants of enumerations are needed")
+            raise Refused("a constant of an enumeration is required")
 
     def take_like(self, constant: int) -> None:
         """Pop a value whose type includes this constant."""
         self.take_any()
         type_ = self._types[self._same.type]
-        if type_ in (REAL, BOOL) or not isinstance(type_, Plain) or not is_word_of(constant, type_):
-            raise Refused(f"{constant} is no constant for {type_}")
+        if type_ in (REAL, BOOL) or not isinstance(type_, Plain):
+            raise Refused("an INT, a CHAR or a constant of an enumeration is required")
+        if not is_word_of(constant, type_):
+            raise Refused(f"{constant} is not a value of {type_}")
 
     def take_reference_to_cell(self) -> None:
         """Pop a reference to a cell of any type."""
@@ -215,13 +217,13 @@ class StackEffects:
     def take_reference_to_same(self) -> None:
         """Pop a reference to a cell of the type of the value that was popped before."""
         if self._cell_of(self._pop()) != self._same:
-            raise Refused("the value is of another kind")
+            raise Refused("the value and the cell have different types")
 
     def take_whole(self, offset: int, number: int) -> None:
         """Pop a reference to a variable that has a part of this type at an offset in cells."""
         item = self._pop()
         if item.mode is not Mode.REF:
-            raise Refused("a reference is needed")
+            raise Refused("a reference is required")
         self._cells.check_part(self._types[item.type], offset, number)
 
     def take_integers(self, count: int) -> None:
@@ -243,13 +245,13 @@ class StackEffects:
         """Pop the arguments of a routine."""
         callee = self._program.codes[number]
         if callee.kind is not CodeKind.ROUTINE:
-            raise Refused(f"{callee.name} is no routine")
+            raise Refused(f"only a routine can be called: {callee.name}")
         for parameter in reversed(callee.parameters):
             item = self._pop()
             wanted = self._argument(parameter)
             is_left_out = item == NOTHING and wanted.mode is Mode.IN
             if replace(item, is_missing=False) != wanted and not is_left_out:
-                raise Refused(f"the argument for {parameter.name} is of another kind")
+                raise Refused(f"an argument has the wrong type: {parameter.name}")
 
     def _argument(self, parameter: Parameter) -> StackItem:
         """Return the item for an argument; a structure is passed by reference."""
@@ -292,7 +294,7 @@ class StackEffects:
         for given, is_text in zip_longest(reversed(inputs), reversed(missing)):
             item = self._pop()
             if (replace(item, is_missing=False) if is_text else item) != item_of(given):
-                raise Refused("an input is of another kind")
+                raise Refused("an input has the wrong type")
 
     def _push_entry(self, entry: Ask | Builtin) -> None:
         if entry.result is not None and isinstance(self._types[entry.result], Plain):
@@ -301,39 +303,39 @@ class StackEffects:
     def take_own_result(self) -> None:
         """Pop the result of this code object; raises `Refused` if the stack is not empty then."""
         if self._code.result is None:
-            raise Refused("there is no result")
+            raise Refused("the code object has no result")
         self._take(self.value(self._code.result))
         if self._stack is not self.empty:
-            raise Refused("more than the result is on the stack")
+            raise Refused("the stack must be empty here")
 
     # ----------------------------------------------------------------------- checks
 
     def check_empty(self) -> None:
         """Check that the stack is empty."""
         if self._stack is not self.empty:
-            raise Refused("a statement begins with an empty stack")
+            raise Refused("the stack must be empty here")
 
     def check_no_result(self) -> None:
         """Check that this code object has no result and that the stack is empty."""
         if self._code.result is not None or self._code.kind is CodeKind.CONDITION:
-            raise Refused("a result is needed")
+            raise Refused("the code object must return a result")
         self.check_empty()
 
     def check_constant(self, number: int, place: int) -> None:
         """Check that an enumeration has a constant with this number."""
         type_ = self._types[number]
         if not isinstance(type_, Enumeration) or not place < len(type_.constants):
-            raise Refused("there is no such constant")
+            raise Refused("the enumeration has no such constant")
 
     def check_rank(self, dimensions: int, least: int = 1) -> None:
         """Check that arrays can have this number of dimensions."""
         if not least <= dimensions <= _MOST_DIMENSIONS:
-            raise Refused(f"arrays have no {dimensions} dimensions")
+            raise Refused(f"an array has 1 to {_MOST_DIMENSIONS} dimensions")
 
     def check_element(self, number: int) -> None:
         """Check that an array can have elements of this type."""
         if isinstance(self._types[number], Array):
-            raise Refused("elements are no arrays")
+            raise Refused("the elements of an array cannot be arrays")
 
     def check_array(self, number: int) -> None:
         """Check that a type is an array."""
@@ -358,13 +360,13 @@ class StackEffects:
     def check_positions(self, to: int, of: int) -> None:
         """Check that values of both types can be assigned to each other as positions."""
         if shared_cells(self._types[to], self._types[of]) is None:
-            raise Refused("positions of one family are needed")
+            raise Refused("positions of the same family are required")
 
     def check_poses(self, left: int, right: int) -> None:
         """Check that both types are cartesian positions."""
         types = self._types[left], self._types[right]
         if not all(map(is_cartesian, types)) or shared_cells(*types) is None:
-            raise Refused("poses are needed")
+            raise Refused("Cartesian positions are required")
 
     def check_for_local(self, counter: int, limit: int, step: int) -> None:
         """Check that a FOR loop can count in a cell of the frame."""
@@ -377,7 +379,7 @@ class StackEffects:
     def _check_counter(self, counter: StackItem, limit: int, step: int) -> None:
         integer = self.value(_INT)
         if counter != integer or self.local(limit) != integer or step == 0:
-            raise Refused("a counter and a limit that are INT and a step that is not 0 are needed")
+            raise Refused("counter and limit must be INT, and the step must not be 0")
 
     def check_told(self, place: int, dimensions: int) -> None:
         """Check that the trace can name the :OUT parameter through which something was assigned."""
@@ -388,7 +390,7 @@ class StackEffects:
             or not isinstance(slot.variable, Parameter)
             or slot.variable.mode is Mode.IN
         ):
-            raise Refused("no parameter :OUT begins there")
+            raise Refused("no parameter :OUT begins at this cell")
 
     def check_told_rank(self, dimensions: int) -> None:
         """Check the number of dimensions of an assigned array; 0 stands for a single value."""
@@ -397,7 +399,7 @@ class StackEffects:
 
 def _check_indices(count: int, dimensions: int) -> None:
     if not 1 <= count < dimensions:
-        raise Refused("a row has one index at least and not all of them")
+        raise Refused("a row needs at least one index, but not all of them")
 
 
 def _handles_of(parts: Sequence[Argument]) -> Iterator[Handle]:

@@ -36,7 +36,7 @@ from interp.bytecode.program import Code, CodeKind, Program
 from interp.bytecode.verifier.operand_stack import Flow
 from interp.bytecode.verifier.stack_types import Stack
 from interp.bytecode.verifier.successors import successors, targets
-from interp.bytecode.verifier.wellformed import VerificationError, check_form
+from interp.bytecode.verifier.wellformed import VerificationError, check_form, error_at
 
 __all__ = ["VerificationError", "Verified", "measured", "stacks_needed", "verify"]
 
@@ -105,23 +105,22 @@ def _checked_body(program: Program, code: Code) -> list[Stack | None]:
     if needed > _LONGEST_STACK:
         raise VerificationError(f"{code.name}: the stack is too large")
     if needed != code.stack:
-        raise VerificationError(f"{code.name}: the stack has {needed} cells, not {code.stack}")
+        raise VerificationError(f"{code.name}: the stack needs {needed} cells: not {code.stack}")
     if code.kind is CodeKind.CONDITION:
         _check_condition(code)
     else:
         _check_start(code)
-        _check_circles(code, stacks)
+        _check_cycles(code, stacks)
     return stacks
 
 
 def _check_condition(code: Code) -> None:
+    """Check that a condition has forward jumps only, and changes nothing of the program."""
     for place, instruction in enumerate(code.instructions):
         if instruction.op in _SIDE_EFFECTS:
-            raise VerificationError(
-                f"{code.name}, instruction {place}: a condition has no {instruction.op.name}"
-            )
+            raise error_at(code, place, "a condition cannot change anything")
         if any(target <= place for target in targets(instruction)):
-            raise VerificationError(f"{code.name}, instruction {place}: a condition goes forwards")
+            raise error_at(code, place, "a condition can only jump forwards")
 
 
 def _check_start(code: Code) -> None:
@@ -131,9 +130,7 @@ def _check_start(code: Code) -> None:
         place = todo.pop()
         instruction = code.instructions[place]
         if instruction.op in (Op.CALL, Op.ASK):
-            raise VerificationError(
-                f"{code.name}, instruction {place}: a statement has to begin before"
-            )
+            raise error_at(code, place, "a LINE is required before a call or a request")
         if instruction.op is not Op.LINE:
             for after in successors(place, instruction):
                 if after not in seen:
@@ -141,7 +138,7 @@ def _check_start(code: Code) -> None:
                     todo.append(after)
 
 
-def _check_circles(code: Code, stacks: Sequence[Stack | None]) -> None:
+def _check_cycles(code: Code, stacks: Sequence[Stack | None]) -> None:
     """Check that every cycle contains a LINE or an ASK.
 
     Depth-first search over the graph without the edges that leave those instructions.
@@ -160,9 +157,7 @@ def _check_circles(code: Code, stacks: Sequence[Stack | None]) -> None:
                 colour[place] = done
                 todo.pop()
             elif colour[after] == open_:
-                raise VerificationError(
-                    f"{code.name}, instruction {place}: a circle without a statement"
-                )
+                raise error_at(code, place, "a cycle without a LINE or an ASK")
             elif not colour[after]:
                 colour[after] = open_
                 todo.append((after, _uncounted(code, after)))

@@ -55,6 +55,12 @@ class VerificationError(Exception):
         super().__init__(printable(message))
 
 
+def error_at(code: Code, place: int, reason: str) -> VerificationError:
+    """Return the error that an instruction causes."""
+    op = code.instructions[place].op
+    return VerificationError(f"{code.name}, instruction {place} ({op.name}): {reason}")
+
+
 def check_form(program: Program) -> None:
     """Check everything in a program except stack effects; raises `VerificationError`."""
     _Tables(program).check()
@@ -164,7 +170,7 @@ class _Tables:
     def _input(self, part: Input, name: str) -> None:
         self._handed_over(part, name)
         if part.mode is Mode.IN and not isinstance(self._program.types[part.type], Plain):
-            raise VerificationError(f"{name}: a structure is handed over by reference")
+            raise VerificationError(f"{name}: a structure is passed by reference")
 
     def _choice(self, part: Choice, name: str) -> None:
         type_ = self._type(part.type, name)
@@ -253,16 +259,14 @@ class _Tables:
         for place, instruction in enumerate(code.instructions):
             kinds = shape(instruction.op.name).operands
             if len(kinds) != len(instruction.operands):
-                raise VerificationError(f"{code.name}, instruction {place}: operands are missing")
+                raise error_at(code, place, "operands are missing")
             for kind, operand in zip(kinds, instruction.operands, strict=True):
                 low, high = ranges[kind]
                 if not low <= operand <= high or (
                     kind == "real" and not math.isfinite(real_of(operand))
                 ):
-                    raise VerificationError(
-                        f"{code.name}, instruction {place} ({instruction.op.name}): "
-                        f"{operand} is no {kind}"
-                    )
+                    reason = f"an operand is out of range: {operand} is not a {kind}"
+                    raise error_at(code, place, reason)
 
     def _ranges(self, code: Code) -> dict[str, tuple[int, int]]:
         """Return the minimum and maximum operand of each kind."""

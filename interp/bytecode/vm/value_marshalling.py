@@ -119,7 +119,7 @@ class Entry:
         if given.mode is not Mode.IN:
             return value_at(self._state.cells, raw, self._referred(given, block, place))
         type_ = self._types[given.type]
-        assert isinstance(type_, Plain), "a structure is handed over by reference"
+        assert isinstance(type_, Plain), "a structure is passed by reference"
         return value_of(raw, type_)
 
     def _referred(self, given: Input, block: Block, place: int) -> Type:

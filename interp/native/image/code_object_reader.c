@@ -25,10 +25,10 @@ static void read_slots(struct reader *reader, struct krl_code *code)
         int32_t parameters = krl_read_count(reader), offset = 0, number = 0;
         for (; number < parameters && !reader->is_wrong; number++) {
             krl_read_string(reader);
-            struct krl_handed handed = krl_read_handed(reader);
-            int32_t cells = handed.mode == KRL_BY_VALUE ? types[handed.type].size : krl_stack_cells(&handed);
+            struct krl_passed passed = krl_read_passed(reader);
+            int32_t cells = passed.mode == KRL_BY_VALUE ? types[passed.type].size : krl_stack_cells(&passed);
             if (slots != NULL)
-                slots[number] = (struct krl_slot){handed, 0, offset, cells};
+                slots[number] = (struct krl_slot){passed, 0, offset, cells};
             offset += cells;
             if (offset > KRL_MAX_CELLS)
                 krl_refuse_image(reader, "a frame has too many cells");
@@ -39,16 +39,16 @@ static void read_slots(struct reader *reader, struct krl_code *code)
         int32_t locals = krl_read_count(reader);
         for (int32_t i = 0; i < locals && !reader->is_wrong; i++, number++) {
             krl_read_string(reader);
-            struct krl_handed handed = {KRL_BY_VALUE, krl_read_type_number(reader), 0};
-            int32_t cells = types[handed.type].size;
+            struct krl_passed passed = {KRL_BY_VALUE, krl_read_type_number(reader), 0};
+            int32_t cells = types[passed.type].size;
             if (slots != NULL)
-                slots[number] = (struct krl_slot){handed, 1, offset, cells};
+                slots[number] = (struct krl_slot){passed, 1, offset, cells};
             offset += cells;
             if (offset > KRL_MAX_CELLS)
                 krl_refuse_image(reader, "a frame has too many cells");
         }
         if (pass == 0)
-            slots = krl_allot_read(reader, number, sizeof *slots);
+            slots = krl_allocate_read(reader, number, sizeof *slots);
         code->parameter_count = parameters;
         code->slot_count = number;
         code->frame = offset;
@@ -64,8 +64,8 @@ static void read_body(struct reader *reader, struct krl_code *code)
 {
     int32_t words = krl_read_count(reader), count = 0;
     const uint8_t *bytes = reader->next;
-    int32_t *numbers = krl_allot_read(reader, words, sizeof *numbers);
-    code->body = krl_allot_read(reader, words, sizeof *code->body);
+    int32_t *numbers = krl_allocate_read(reader, words, sizeof *numbers);
+    code->body = krl_allocate_read(reader, words, sizeof *code->body);
     if (reader->is_wrong)
         return;
     for (int32_t i = 0; i < words; i++)
@@ -119,7 +119,7 @@ void krl_read_codes(struct reader *reader)
 {
     struct krl_program *program = reader->program;
     int32_t count = krl_read_count(reader);
-    program->codes = krl_allot_read(reader, count, sizeof *program->codes);
+    program->codes = krl_allocate_read(reader, count, sizeof *program->codes);
     program->code_count = count;
     for (int32_t i = 0; i < count && !reader->is_wrong; i++)
         read_code(reader, &program->codes[i]);

@@ -45,9 +45,9 @@ int32_t krl_read_optional(struct reader *reader, int32_t count)
     return (int32_t)krl_read_choice(reader, (uint32_t)count + 1) - 1;
 }
 
-void *krl_allot_read(struct reader *reader, int32_t count, size_t size)
+void *krl_allocate_read(struct reader *reader, int32_t count, size_t size)
 {
-    void *memory = krl_allot(reader->program, (size_t)count + 1, size); /* never 0 bytes */
+    void *memory = krl_allocate(reader->program, (size_t)count + 1, size); /* never 0 bytes */
     if (memory == NULL)
         krl_refuse_image(reader, "there is not enough memory for the image");
     return memory;
@@ -84,8 +84,8 @@ void krl_read_strings(struct reader *reader, struct section section)
         krl_refuse_image(reader, "the image is damaged: the strings end early");
         return;
     }
-    reader->strings = krl_allot_read(reader, (int32_t)count, sizeof *reader->strings);
-    char *kept = krl_allot_read(reader, (int32_t)total, 1);
+    reader->strings = krl_allocate_read(reader, (int32_t)count, sizeof *reader->strings);
+    char *kept = krl_allocate_read(reader, (int32_t)total, 1);
     if (reader->is_wrong)
         return;
     memcpy(kept, section.bytes + start, (size_t)total);
@@ -107,7 +107,7 @@ struct krl_text krl_read_string(struct reader *reader)
 struct krl_letters krl_read_letters(struct reader *reader)
 {
     struct krl_text text = krl_read_string(reader);
-    krl_cell *cells = krl_allot_read(reader, (int32_t)text.length, sizeof *cells);
+    krl_cell *cells = krl_allocate_read(reader, (int32_t)text.length, sizeof *cells);
     struct krl_letters found = {cells, 0};
     for (uint32_t place = 0; place < text.length && cells != NULL; place++) {
         uint8_t first = (uint8_t)text.bytes[place];
@@ -125,18 +125,18 @@ int32_t krl_read_type_number(struct reader *reader)
     return (int32_t)krl_read_choice(reader, (uint32_t)reader->program->type_count);
 }
 
-struct krl_handed krl_read_handed(struct reader *reader)
+struct krl_passed krl_read_passed(struct reader *reader)
 {
-    struct krl_handed handed;
-    handed.mode = (enum krl_mode)krl_read_choice(reader, 3);
-    handed.type = krl_read_type_number(reader);
-    handed.dimensions = (int32_t)krl_read_choice(reader, KRL_MOST_DIMENSIONS + 1);
+    struct krl_passed passed;
+    passed.mode = (enum krl_mode)krl_read_choice(reader, 3);
+    passed.type = krl_read_type_number(reader);
+    passed.dimensions = (int32_t)krl_read_choice(reader, KRL_MOST_DIMENSIONS + 1);
     if (reader->is_wrong) {
-        handed.dimensions = 0;
-        handed.type = 0;
-    } else if ((handed.mode == KRL_BY_VIEW) != (handed.dimensions > 0))
+        passed.dimensions = 0;
+        passed.type = 0;
+    } else if ((passed.mode == KRL_BY_VIEW) != (passed.dimensions > 0))
         krl_refuse_image(reader, "a view has 1 to 3 dimensions, and nothing else has any");
-    else if (handed.mode == KRL_BY_VIEW && reader->program->types[handed.type].form == KRL_ARRAY)
+    else if (passed.mode == KRL_BY_VIEW && reader->program->types[passed.type].form == KRL_ARRAY)
         krl_refuse_image(reader, "elements are no arrays");
-    return handed;
+    return passed;
 }

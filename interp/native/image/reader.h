@@ -22,7 +22,7 @@ struct reader {
     struct krl_text *strings;
     uint32_t string_count;
     /* The inputs of the entry that is being read. */
-    struct krl_handed *inputs;
+    struct krl_passed *inputs;
     int32_t input_count;
     int32_t input_cells;
 };
@@ -40,7 +40,7 @@ void krl_refuse_image(struct reader *reader, const char *reason);
 
 /* Returns zeroed memory for `count` elements, at least one, that is freed with the program. Refuses
  * the image and returns NULL if there is not enough. */
-void *krl_allot_read(struct reader *reader, int32_t count, size_t size);
+void *krl_allocate_read(struct reader *reader, int32_t count, size_t size);
 
 /* Begin a section; refuse the image if a section has words that were not read. */
 void krl_begin_section(struct reader *reader, struct section section);
@@ -66,7 +66,7 @@ struct krl_text krl_read_string(struct reader *reader);
 struct krl_letters krl_read_letters(struct reader *reader);
 
 int32_t krl_read_type_number(struct reader *reader);
-struct krl_handed krl_read_handed(struct reader *reader);
+struct krl_passed krl_read_passed(struct reader *reader);
 
 /* ---------------------------------------------------------------------------- table_reader.c */
 

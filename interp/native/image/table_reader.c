@@ -26,7 +26,7 @@ static void read_type(struct reader *reader, struct krl_type *type)
         type->form = KRL_STRUCTURE;
         type->name = krl_read_string(reader);
         type->count = krl_read_count(reader);
-        struct krl_member *members = krl_allot_read(reader, type->count, sizeof *members);
+        struct krl_member *members = krl_allocate_read(reader, type->count, sizeof *members);
         for (int32_t i = 0; i < type->count && !reader->is_wrong; i++) {
             krl_read_string(reader);
             members[i].type = krl_read_type_number(reader);
@@ -41,7 +41,7 @@ static void read_type(struct reader *reader, struct krl_type *type)
         type->form = KRL_ENUMERATION;
         type->name = krl_read_string(reader);
         type->count = krl_read_count(reader);
-        struct krl_text *constants = krl_allot_read(reader, type->count, sizeof *constants);
+        struct krl_text *constants = krl_allocate_read(reader, type->count, sizeof *constants);
         for (int32_t i = 0; i < type->count && !reader->is_wrong; i++)
             constants[i] = krl_read_string(reader);
         type->constants = constants;
@@ -70,7 +70,7 @@ void krl_read_types(struct reader *reader)
 {
     struct krl_program *program = reader->program;
     int32_t count = krl_read_count(reader);
-    program->types = krl_allot_read(reader, count + KRL_BASIC_TYPES, sizeof *program->types);
+    program->types = krl_allocate_read(reader, count + KRL_BASIC_TYPES, sizeof *program->types);
     if (reader->is_wrong)
         return;
     for (program->type_count = 0; program->type_count < KRL_BASIC_TYPES; program->type_count++)
@@ -84,17 +84,17 @@ void krl_read_types(struct reader *reader)
 /* ---------------------------------------------------------------------------- requests */
 
 /* Appends an input and returns the index of its first cell among those of all inputs. */
-static int32_t add_input(struct reader *reader, struct krl_handed handed)
+static int32_t add_input(struct reader *reader, struct krl_passed passed)
 {
     if (reader->is_wrong)
         return 0;
-    if (handed.mode == KRL_BY_VALUE && !krl_is_plain(reader->program, handed.type)) {
-        krl_refuse_image(reader, "a structure is handed over by reference");
+    if (passed.mode == KRL_BY_VALUE && !krl_is_plain(reader->program, passed.type)) {
+        krl_refuse_image(reader, "a structure is passed by reference");
         return 0;
     }
     int32_t place = reader->input_cells;
-    reader->inputs[reader->input_count++] = handed;
-    reader->input_cells += krl_stack_cells(&handed);
+    reader->inputs[reader->input_count++] = passed;
+    reader->input_cells += krl_stack_cells(&passed);
     return place;
 }
 
@@ -118,25 +118,25 @@ static struct krl_part read_part(struct reader *reader, int depth)
         break;
     case CHOICE:
         part.kind = KRL_PART_CHOICE;
-        part.handed.type = krl_read_type_number(reader);
+        part.passed.type = krl_read_type_number(reader);
         part.place = (int32_t)krl_read_choice(reader, KRL_MAX_CELLS);
         break;
     case INPUT:
         part.kind = KRL_PART_INPUT;
-        part.handed = krl_read_handed(reader);
-        part.place = add_input(reader, part.handed);
+        part.passed = krl_read_passed(reader);
+        part.place = add_input(reader, part.passed);
         break;
     case CHANGED: {
-        part.handed = krl_read_handed(reader);
+        part.passed = krl_read_passed(reader);
         krl_read_word(reader);
         int32_t count = krl_read_count(reader);
         for (int32_t i = 0; i < count && !reader->is_wrong; i++)
             read_part(reader, depth + 1);
-        if (part.handed.mode == KRL_BY_VALUE)
-            krl_refuse_image(reader, "what changes is handed over by reference");
+        if (part.passed.mode == KRL_BY_VALUE)
+            krl_refuse_image(reader, "what changes is passed by reference");
         part.kind = KRL_PART_CHANGED;
         part.has_path = count > 0;
-        part.place = add_input(reader, part.handed);
+        part.place = add_input(reader, part.passed);
         break;
     }
     case ITEMS:
@@ -161,14 +161,14 @@ static void read_entry(struct reader *reader, struct krl_entry *entry)
     entry->name = krl_read_string(reader);
     entry->result = krl_read_optional(reader, reader->program->type_count);
     entry->part_count = krl_read_count(reader);
-    struct krl_part *parts = krl_allot_read(reader, entry->part_count, sizeof *parts);
+    struct krl_part *parts = krl_allocate_read(reader, entry->part_count, sizeof *parts);
     reader->input_count = reader->input_cells = 0;
     for (int32_t i = 0; i < entry->part_count && !reader->is_wrong; i++)
         parts[i] = read_part(reader, 0);
     entry->parts = parts;
     entry->input_count = reader->input_count;
     entry->input_cells = reader->input_cells;
-    struct krl_handed *inputs = krl_allot_read(reader, entry->input_count, sizeof *inputs);
+    struct krl_passed *inputs = krl_allocate_read(reader, entry->input_count, sizeof *inputs);
     if (inputs != NULL)
         memcpy(inputs, reader->inputs, (size_t)entry->input_count * sizeof *inputs);
     entry->inputs = inputs;
@@ -178,8 +178,8 @@ struct krl_entry *krl_read_entries(struct reader *reader, int32_t *count)
 {
     *count = krl_read_count(reader);
     /* An input has at least three words, so there cannot be more. */
-    reader->inputs = krl_allot_read(reader, (int32_t)(reader->left / 3), sizeof *reader->inputs);
-    struct krl_entry *entries = krl_allot_read(reader, *count, sizeof *entries);
+    reader->inputs = krl_allocate_read(reader, (int32_t)(reader->left / 3), sizeof *reader->inputs);
+    struct krl_entry *entries = krl_allocate_read(reader, *count, sizeof *entries);
     for (int32_t i = 0; i < *count && !reader->is_wrong; i++)
         read_entry(reader, &entries[i]);
     return entries;
@@ -191,7 +191,7 @@ void krl_read_texts(struct reader *reader)
 {
     struct krl_program *program = reader->program;
     program->text_count = krl_read_count(reader);
-    program->texts = krl_allot_read(reader, program->text_count, sizeof *program->texts);
+    program->texts = krl_allocate_read(reader, program->text_count, sizeof *program->texts);
     for (int32_t i = 0; i < program->text_count && !reader->is_wrong; i++)
         program->texts[i] = krl_read_letters(reader);
 }
@@ -200,7 +200,7 @@ void krl_read_data(struct reader *reader)
 {
     struct krl_program *program = reader->program;
     int32_t count = krl_read_count(reader);
-    program->data = krl_allot_read(reader, count, sizeof *program->data);
+    program->data = krl_allocate_read(reader, count, sizeof *program->data);
     for (int32_t i = 0; i < count && !reader->is_wrong; i++) {
         krl_read_string(reader);
         krl_read_string(reader);
@@ -231,7 +231,7 @@ void krl_read_initial(struct reader *reader)
 {
     struct krl_program *program = reader->program;
     int32_t count = krl_read_count(reader), last = -1;
-    program->initial = krl_allot_read(reader, count, sizeof *program->initial);
+    program->initial = krl_allocate_read(reader, count, sizeof *program->initial);
     for (int32_t i = 0; i < count && !reader->is_wrong; i++) {
         int32_t address = (int32_t)krl_read_choice(reader, (uint32_t)program->data_cells);
         int32_t value = (int32_t)krl_read_word(reader);

@@ -9,7 +9,7 @@ struct krl_block {
     krl_cell bytes[];
 };
 
-void *krl_allot(struct krl_program *program, size_t count, size_t size)
+void *krl_allocate(struct krl_program *program, size_t count, size_t size)
 {
     if (count > (SIZE_MAX / 2 - sizeof(struct krl_block)) / size)
         return NULL;

@@ -49,7 +49,7 @@ struct krl_type {
 
 /* The mode and type of a parameter, or of an input of a request or a predefined function.
  * `dimensions` is 0 unless it is a view, whose `type` is that of the elements. */
-struct krl_handed {
+struct krl_passed {
     enum krl_mode mode;
     int32_t type;
     int32_t dimensions;
@@ -57,9 +57,9 @@ struct krl_handed {
 
 /* Returns the number of cells on the operand stack: a view has an address and the size of each
  * dimension. */
-static inline int32_t krl_stack_cells(const struct krl_handed *handed)
+static inline int32_t krl_stack_cells(const struct krl_passed *passed)
 {
-    return 1 + handed->dimensions;
+    return 1 + passed->dimensions;
 }
 
 /* An argument of a predefined function, or a field of a request. KRL_PART_OTHER stands for kinds
@@ -69,7 +69,7 @@ enum krl_part_kind { KRL_PART_INPUT, KRL_PART_CHANGED, KRL_PART_STRING, KRL_PART
 struct krl_part {
     enum krl_part_kind kind;
     int32_t place; /* index of its first cell among the inputs, or of the constant */
-    struct krl_handed handed;
+    struct krl_passed passed;
     struct krl_letters letters;
     int has_path; /* KRL_PART_CHANGED: the reference is to a copy of a system variable */
 };
@@ -78,7 +78,7 @@ struct krl_part {
 struct krl_entry {
     struct krl_text name;
     int32_t result;
-    const struct krl_handed *inputs;
+    const struct krl_passed *inputs;
     int32_t input_count;
     int32_t input_cells;
     const struct krl_part *parts;
@@ -87,7 +87,7 @@ struct krl_entry {
 
 /* A parameter or local variable, with its first cell in the frame and its size in cells. */
 struct krl_slot {
-    struct krl_handed handed; /* a local has the mode of a parameter :IN */
+    struct krl_passed passed; /* a local has the mode of a parameter :IN */
     int is_local;
     int32_t offset;
     int32_t cells;
@@ -112,7 +112,7 @@ struct krl_code {
     int32_t length;
     /* Set by krl_verify, by instruction. */
     int32_t *depths; /* cells on the stack before each instruction, -1 if it is unreachable */
-    uint8_t *leads;  /* whether an instruction is the first or a target */
+    uint8_t *is_target;  /* whether an instruction is the first or a target */
 };
 
 struct krl_value {
@@ -152,7 +152,7 @@ struct krl_refusal {
 /* ---------------------------------------------------------------------------- program.c */
 
 /* Returns zeroed memory that is freed with the program, or NULL. */
-void *krl_allot(struct krl_program *program, size_t count, size_t size);
+void *krl_allocate(struct krl_program *program, size_t count, size_t size);
 void krl_free_program(struct krl_program *program);
 
 /* Stores the reason, unless there is one already, and returns 0. */

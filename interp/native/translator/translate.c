@@ -70,13 +70,13 @@ static void instruction(struct translator *at, int32_t place)
         krl_push_result(at);
         break;
     case KRL_LOAD_VIEW:
-        for (int32_t i = 0; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
+        for (int32_t i = 0; i <= krl_slot_at(at->code, operands[0])->passed.dimensions; i++)
             krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
     case KRL_PASS_VIEW: /* only the address may have no value: a missing view has sizes, too */
         krl_emit(at, KRL_STEP_PASS)->b = operands[0];
         krl_push_result(at);
-        for (int32_t i = 1; i <= krl_slot_at(at->code, operands[0])->handed.dimensions; i++)
+        for (int32_t i = 1; i <= krl_slot_at(at->code, operands[0])->passed.dimensions; i++)
             krl_push(at, (struct virtual_value){VARIABLE, operands[0] + i, 0, 0, 0, 0});
         break;
     case KRL_LOAD_DATA: krl_load_data(at, operands[0]); break;
@@ -215,7 +215,7 @@ static void code(struct translator *at)
         routine->steps[place] = -1;
         if (code->depths[place] < 0)
             continue;
-        if (code->leads[place]) {
+        if (code->is_target[place]) {
             if (is_reached) {
                 krl_settle_all(at);
                 if (at->line >= 0)
@@ -262,12 +262,12 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
     at.machine = machine;
     at.program = program;
     at.why = why;
-    at.stack = krl_allot(program, (size_t)most + 8, sizeof *at.stack);
+    at.stack = krl_allocate(program, (size_t)most + 8, sizeof *at.stack);
     at.capacity = 256;
     at.steps = malloc((size_t)at.capacity * sizeof *at.steps);
     at.array_capacity = 64;
     at.arrays = malloc((size_t)at.array_capacity * sizeof *at.arrays);
-    machine->routines = krl_allot(program, (size_t)program->code_count, sizeof *machine->routines);
+    machine->routines = krl_allocate(program, (size_t)program->code_count, sizeof *machine->routines);
     machine->steps = at.steps;
     machine->arrays = at.arrays;
     if (at.stack == NULL || machine->routines == NULL || at.steps == NULL || at.arrays == NULL)
@@ -280,11 +280,11 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
         routine->whole = body->frame + body->stack;
         for (int32_t i = 0; i < body->parameter_count; i++) {
             routine->received += body->slots[i].cells;
-            routine->arguments += krl_stack_cells(&body->slots[i].handed);
+            routine->arguments += krl_stack_cells(&body->slots[i].passed);
         }
         if (body->owner >= 0 && body->capture_count > 0)
             machine->routines[body->owner].is_owner = 1;
-        routine->steps = krl_allot(program, (size_t)body->length, sizeof *routine->steps);
+        routine->steps = krl_allocate(program, (size_t)body->length, sizeof *routine->steps);
         if (routine->steps == NULL)
             return krl_refuse(why, "there is not enough memory for the program");
     }

@@ -112,11 +112,11 @@ static int as_table(struct translator *at, const struct krl_instruction *first, 
 void krl_choose(struct translator *at, int32_t place)
 {
     const struct krl_instruction *first = &at->code->body[place];
-    const uint8_t *leads = at->code->leads;
+    const uint8_t *is_target = at->code->is_target;
     int32_t count = 1;
-    if (place > 0 && first[-1].op == KRL_CASE && !leads[place])
+    if (place > 0 && first[-1].op == KRL_CASE && !is_target[place])
         return; /* translated with the CASE before it */
-    while (place + count < at->code->length && first[count].op == KRL_CASE && !leads[place + count])
+    while (place + count < at->code->length && first[count].op == KRL_CASE && !is_target[place + count])
         count++;
     krl_settle_to(at, at->height - 1);
     if (krl_is_constant(at, at->height - 1))
@@ -155,9 +155,9 @@ void krl_call_routine(struct translator *at, int32_t place)
     int32_t count = 0;
     int is_copied = 0;
     for (int32_t i = 0; i < callee->parameter_count; i++) {
-        const struct krl_handed *handed = &callee->slots[i].handed;
-        count += krl_stack_cells(handed);
-        is_copied |= handed->mode == KRL_BY_VALUE && !krl_is_plain(at->program, handed->type);
+        const struct krl_passed *passed = &callee->slots[i].passed;
+        count += krl_stack_cells(passed);
+        is_copied |= passed->mode == KRL_BY_VALUE && !krl_is_plain(at->program, passed->type);
     }
     krl_settle_all(at);
     if (at->machine->traced & KRL_TRACED_CALL) {
@@ -209,7 +209,7 @@ static int all_reals(const struct krl_entry *entry)
 {
     for (int32_t i = 0; i < entry->part_count; i++)
         if (entry->parts[i].kind != KRL_PART_INPUT ||
-            entry->parts[i].handed.mode != KRL_BY_VALUE || entry->parts[i].handed.type != KRL_TYPE_REAL)
+            entry->parts[i].passed.mode != KRL_BY_VALUE || entry->parts[i].passed.type != KRL_TYPE_REAL)
             return 0;
     return entry->result == KRL_TYPE_REAL;
 }
@@ -218,13 +218,13 @@ static int all_reals(const struct krl_entry *entry)
 static int is_inversion(const struct translator *at, const struct krl_entry *entry)
 {
     if (!is_named(entry, "INV_POS") || entry->part_count != 1 || entry->parts[0].kind != KRL_PART_INPUT ||
-        entry->parts[0].handed.mode != KRL_BY_REFERENCE || entry->result < 0 ||
+        entry->parts[0].passed.mode != KRL_BY_REFERENCE || entry->result < 0 ||
         at->program->types[entry->result].size < 6)
         return 0;
     for (int32_t place = 0; place < 6; place++)
         if (krl_kind_at(at->program, entry->result, place) != KRL_TYPE_REAL ||
-            place >= at->program->types[entry->parts[0].handed.type].size ||
-            krl_kind_at(at->program, entry->parts[0].handed.type, place) != KRL_TYPE_REAL)
+            place >= at->program->types[entry->parts[0].passed.type].size ||
+            krl_kind_at(at->program, entry->parts[0].passed.type, place) != KRL_TYPE_REAL)
             return 0;
     return 1;
 }

@@ -192,7 +192,7 @@ void krl_element(struct translator *at, int is_local, int32_t base, int32_t type
 void krl_view_index(struct translator *at, int32_t place)
 {
     const struct krl_slot *slot = krl_slot_at(at->code, place);
-    int32_t width = at->program->types[slot->handed.type].size, dimensions = slot->handed.dimensions;
+    int32_t width = at->program->types[slot->passed.type].size, dimensions = slot->passed.dimensions;
     int32_t first = at->height - dimensions;
     struct krl_step *step;
     if (dimensions == 1 || (dimensions == 2 && width <= UINT16_MAX)) {
@@ -222,13 +222,13 @@ void krl_row(struct translator *at, int32_t type, int32_t count)
 
 void krl_row_of_view(struct translator *at, int32_t place, int32_t count)
 {
-    const struct krl_handed *handed = &krl_slot_at(at->code, place)->handed;
+    const struct krl_passed *passed = &krl_slot_at(at->code, place)->passed;
     struct krl_step *step = krl_consume(at, KRL_STEP_ROW_VIEW, count);
     step->b = count;
     step->c = place;
-    step->d = at->program->types[handed->type].size;
-    step->tag = (uint16_t)handed->dimensions;
-    krl_push_places(at, 1 + handed->dimensions - count);
+    step->d = at->program->types[passed->type].size;
+    step->tag = (uint16_t)passed->dimensions;
+    krl_push_places(at, 1 + passed->dimensions - count);
 }
 
 void krl_view(struct translator *at, const struct krl_type *type)

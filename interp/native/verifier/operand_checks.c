@@ -9,8 +9,8 @@
 static const struct krl_slot *variable(struct flow *flow, int32_t *place)
 {
     const struct krl_slot *slot = krl_slot_at(flow->code, *place);
-    if (slot == NULL || slot->handed.mode != KRL_BY_VALUE) {
-        krl_refuse_code(flow, "there is no such variable in the frame");
+    if (slot == NULL || slot->passed.mode != KRL_BY_VALUE) {
+        krl_refuse_code(flow, slot == NULL ? "the frame has no such cell" : "the cell holds a reference");
         return NULL;
     }
     *place -= slot->offset;
@@ -20,14 +20,14 @@ static const struct krl_slot *variable(struct flow *flow, int32_t *place)
 int32_t krl_local_kind(struct flow *flow, int32_t place)
 {
     const struct krl_slot *slot = variable(flow, &place);
-    return slot == NULL ? KRL_TYPE_INT : krl_kind_at(flow->program, slot->handed.type, place);
+    return slot == NULL ? KRL_TYPE_INT : krl_kind_at(flow->program, slot->passed.type, place);
 }
 
 int32_t krl_data_kind(struct flow *flow, int32_t address)
 {
     const struct krl_variable *found = krl_data_at(flow->program, address);
     if (found == NULL) {
-        krl_refuse_code(flow, "there is no such variable in the data lists");
+        krl_refuse_code(flow, "the data lists have no such cell");
         return KRL_TYPE_INT;
     }
     return krl_kind_at(flow->program, found->type, address - found->address);
@@ -36,25 +36,29 @@ int32_t krl_data_kind(struct flow *flow, int32_t address)
 struct item krl_parameter(struct flow *flow, int32_t place, enum krl_mode mode)
 {
     const struct krl_slot *slot = krl_slot_at(flow->code, place);
-    if (slot == NULL || slot->offset != place || slot->is_local || slot->handed.mode != mode) {
-        krl_refuse_code(flow, "no such parameter begins there");
-        return (struct item){KRL_TYPE_INT, KRL_BY_VIEW, 2, 0};
-    }
-    return krl_item_of(&slot->handed);
+    if (slot == NULL)
+        krl_refuse_code(flow, "the frame has no such cell");
+    else if (slot->offset != place || slot->is_local)
+        krl_refuse_code(flow, "no parameter begins at this cell");
+    else if (slot->passed.mode != mode)
+        krl_refuse_code(flow, "the parameter is passed in another way");
+    else
+        return krl_item_of(&slot->passed);
+    return (struct item){KRL_TYPE_INT, KRL_BY_VIEW, 2, 0};
 }
 
 void krl_check_part_of_local(struct flow *flow, int32_t place, int32_t type)
 {
     const struct krl_slot *slot = variable(flow, &place);
-    if (slot != NULL && !krl_has_part(flow->program, slot->handed.type, place, type))
-        krl_refuse_code(flow, "no such part of a variable is there");
+    if (slot != NULL && !krl_has_part(flow->program, slot->passed.type, place, type))
+        krl_refuse_code(flow, "no part of this type begins here");
 }
 
 void krl_check_part_of_data(struct flow *flow, int32_t address, int32_t type)
 {
     const struct krl_variable *found = krl_data_at(flow->program, address);
     if (found == NULL || !krl_has_part(flow->program, found->type, address - found->address, type))
-        krl_refuse_code(flow, "no such part of a variable is there");
+        krl_refuse_code(flow, "no part of this type begins here");
 }
 
 /* ---------------------------------------------------------------------------- the stack */
@@ -62,15 +66,15 @@ void krl_check_part_of_data(struct flow *flow, int32_t address, int32_t type)
 void krl_check_empty(struct flow *flow)
 {
     if (flow->count > 0)
-        krl_refuse_code(flow, "a statement begins with an empty stack");
+        krl_refuse_code(flow, "the stack must be empty here");
 }
 
 void krl_check_no_result(struct flow *flow)
 {
     if (flow->code->result >= 0 || flow->code->kind == KRL_CONDITION)
-        krl_refuse_code(flow, "a result is missing, or there is one too many");
+        krl_refuse_code(flow, "the code object must return a result");
     else if (flow->count > 0)
-        krl_refuse_code(flow, "something is left on the stack");
+        krl_refuse_code(flow, "the stack must be empty here");
 }
 
 /* ---------------------------------------------------------------------------- types */
@@ -78,25 +82,25 @@ void krl_check_no_result(struct flow *flow)
 void krl_check_constant(struct flow *flow, int32_t type, int32_t place)
 {
     if (flow->program->types[type].form != KRL_ENUMERATION || place >= flow->program->types[type].count)
-        krl_refuse_code(flow, "there is no such constant");
+        krl_refuse_code(flow, "the enumeration has no such constant");
 }
 
 void krl_check_rank(struct flow *flow, int32_t dimensions)
 {
     if (dimensions < 1 || dimensions > KRL_MOST_DIMENSIONS)
-        krl_refuse_code(flow, "arrays have 1 to 3 dimensions");
+        krl_refuse_code(flow, "an array has 1 to 3 dimensions");
 }
 
 void krl_check_array(struct flow *flow, int32_t type)
 {
     if (flow->program->types[type].form != KRL_ARRAY)
-        krl_refuse_code(flow, "an array is needed");
+        krl_refuse_code(flow, "an array is required");
 }
 
 static void check_indices(struct flow *flow, int32_t count, int32_t dimensions)
 {
     if (count < 1 || count >= dimensions)
-        krl_refuse_code(flow, "a row has one index at least and not all of them");
+        krl_refuse_code(flow, "a row needs at least one index, but not all of them");
 }
 
 void krl_check_row(struct flow *flow, int32_t array, int32_t count)
@@ -117,12 +121,12 @@ void krl_check_positions(struct flow *flow, int32_t left, int32_t right)
     /* No position has more than 64 cells. Only the types of the cells are compared, not the names
      * of the members. */
     if (types[left].form != KRL_STRUCTURE || types[right].form != KRL_STRUCTURE || count > 64) {
-        krl_refuse_code(flow, "positions are needed");
+        krl_refuse_code(flow, "positions of the same family are required");
         return;
     }
     for (int32_t place = 0; place < count; place++)
         if (krl_kind_at(flow->program, left, place) != krl_kind_at(flow->program, right, place))
-            krl_refuse_code(flow, "positions of one family are needed");
+            krl_refuse_code(flow, "positions of the same family are required");
 }
 
 static void check_pose(struct flow *flow, int32_t type)
@@ -130,7 +134,7 @@ static void check_pose(struct flow *flow, int32_t type)
     for (int32_t place = 0; place < 6; place++)
         if (flow->program->types[type].size < 6 ||
             krl_kind_at(flow->program, type, place) != KRL_TYPE_REAL) {
-            krl_refuse_code(flow, "poses are needed");
+            krl_refuse_code(flow, "Cartesian positions are required");
             return;
         }
 }
@@ -147,7 +151,7 @@ void krl_check_poses(struct flow *flow, int32_t left, int32_t right)
 static void check_counter(struct flow *flow, int32_t kind, int32_t limit, int32_t step)
 {
     if (kind != KRL_TYPE_INT || krl_local_kind(flow, limit) != KRL_TYPE_INT || step == 0)
-        krl_refuse_code(flow, "a counter, a limit and a step are needed");
+        krl_refuse_code(flow, "counter and limit must be INT, and the step must not be 0");
 }
 
 void krl_check_for_local(struct flow *flow, int32_t counter, int32_t limit, int32_t step)

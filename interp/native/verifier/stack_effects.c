@@ -13,7 +13,7 @@ static void push(struct flow *flow, struct item item)
     if (flow->is_wrong)
         return;
     if (flow->cells + item.cells > flow->code->stack) {
-        krl_refuse_code(flow, "the stack has more cells than the code object says");
+        krl_refuse_code(flow, "the stack needs more cells than the code object states");
         return;
     }
     flow->stack[flow->count++] = item;
@@ -34,7 +34,7 @@ static struct item pop(struct flow *flow)
 static void take(struct flow *flow, struct item wanted)
 {
     if (!krl_is_same(pop(flow), wanted))
-        krl_refuse_code(flow, "the stack does not hold what is taken");
+        krl_refuse_code(flow, "an operand has the wrong type");
 }
 
 /* ---------------------------------------------------------------------------- items */
@@ -147,7 +147,7 @@ static struct item element_value(struct flow *flow, int32_t array)
 {
     int32_t type = flow->program->types[array].element;
     if (!krl_is_plain(flow->program, type))
-        krl_refuse_code(flow, "a reference to a cell is needed");
+        krl_refuse_code(flow, "a reference to a single cell is required");
     return value(flow, type);
 }
 
@@ -157,7 +157,7 @@ static void take_any(struct flow *flow)
 {
     flow->same = pop(flow);
     if (flow->same.mode != KRL_BY_VALUE || flow->same.type == NO_TYPE) {
-        krl_refuse_code(flow, "a value is needed");
+        krl_refuse_code(flow, "a value is required");
         flow->same = value(flow, KRL_TYPE_INT);
     }
 }
@@ -166,7 +166,7 @@ static void take_enumeration(struct flow *flow)
 {
     take_any(flow);
     if (flow->program->types[flow->same.type].form != KRL_ENUMERATION)
-        krl_refuse_code(flow, "constants of enumerations are needed");
+        krl_refuse_code(flow, "a constant of an enumeration is required");
 }
 
 static void take_like(struct flow *flow, int32_t constant)
@@ -174,7 +174,7 @@ static void take_like(struct flow *flow, int32_t constant)
     (void)constant; /* a constant that no value equals is harmless */
     take_any(flow);
     if (flow->same.type == KRL_TYPE_REAL || flow->same.type == KRL_TYPE_BOOL)
-        krl_refuse_code(flow, "an INT, CHAR or constant is needed");
+        krl_refuse_code(flow, "an INT, a CHAR or a constant of an enumeration is required");
 }
 
 static void take_reference_to_cell(struct flow *flow)
@@ -184,7 +184,7 @@ static void take_reference_to_cell(struct flow *flow)
         flow->same = value(flow, item.type);
         return;
     }
-    krl_refuse_code(flow, "a reference to a cell is needed");
+    krl_refuse_code(flow, "a reference to a single cell is required");
     flow->same = value(flow, KRL_TYPE_INT);
 }
 
@@ -193,14 +193,16 @@ static void take_reference_to_same(struct flow *flow)
     int32_t stored = flow->same.type;
     take_reference_to_cell(flow);
     if (flow->same.type != stored)
-        krl_refuse_code(flow, "the value is of another kind");
+        krl_refuse_code(flow, "the value and the cell have different types");
 }
 
 static void take_whole(struct flow *flow, int32_t offset, int32_t type)
 {
     struct item item = pop(flow);
-    if (item.mode != KRL_BY_REFERENCE || !krl_has_part(flow->program, item.type, offset, type))
-        krl_refuse_code(flow, "no such part is there");
+    if (item.mode != KRL_BY_REFERENCE)
+        krl_refuse_code(flow, "a reference is required");
+    else if (!krl_has_part(flow->program, item.type, offset, type))
+        krl_refuse_code(flow, "no part of this type begins here");
 }
 
 static void take_integers(struct flow *flow, int32_t count)
@@ -229,15 +231,15 @@ static void take_arguments(struct flow *flow, int32_t number)
         return;
     }
     for (int32_t i = callee->parameter_count - 1; i >= 0 && !flow->is_wrong; i--) {
-        struct krl_handed wanted = callee->slots[i].handed;
+        struct krl_passed wanted = callee->slots[i].passed;
         if (wanted.mode == KRL_BY_VALUE && !krl_is_plain(flow->program, wanted.type))
             wanted.mode = KRL_BY_REFERENCE; /* the call copies the structure from there */
-        struct item held = pop(flow);
-        if (held.mode == KRL_BY_VALUE && held.type == NO_TYPE && wanted.mode == KRL_BY_VALUE)
+        struct item given = pop(flow);
+        if (given.mode == KRL_BY_VALUE && given.type == NO_TYPE && wanted.mode == KRL_BY_VALUE)
             continue;
-        held.is_missing = 0;
-        if (!krl_is_same(held, krl_item_of(&wanted)))
-            krl_refuse_code(flow, "an argument is of another kind");
+        given.is_missing = 0;
+        if (!krl_is_same(given, krl_item_of(&wanted)))
+            krl_refuse_code(flow, "an argument has the wrong type");
     }
 }
 
@@ -249,7 +251,7 @@ static void push_result(struct flow *flow, int32_t number)
 
 /* Whether the input of a predefined function whose first cell has the index `place` is a text that
  * the function only reads. Such a text may have been left out. */
-static int is_text_read(const struct krl_entry *entry, const struct krl_handed *input, int32_t place)
+static int is_text_read(const struct krl_entry *entry, const struct krl_passed *input, int32_t place)
 {
     if (input->mode != KRL_BY_VIEW || input->dimensions != 1 || input->type != KRL_TYPE_CHAR)
         return 0;
@@ -265,13 +267,13 @@ static void take_entry(struct flow *flow, const struct krl_entry *entry, int is_
         take(flow, reference(flow, entry->result));
     int32_t place = entry->input_cells;
     for (int32_t i = entry->input_count - 1; i >= 0 && !flow->is_wrong; i--) {
-        const struct krl_handed *input = &entry->inputs[i];
-        struct item held = pop(flow);
+        const struct krl_passed *input = &entry->inputs[i];
+        struct item given = pop(flow);
         place -= krl_stack_cells(input);
         if (is_builtin && is_text_read(entry, input, place))
-            held.is_missing = 0;
-        if (!krl_is_same(held, krl_item_of(input)))
-            krl_refuse_code(flow, "an input is of another kind");
+            given.is_missing = 0;
+        if (!krl_is_same(given, krl_item_of(input)))
+            krl_refuse_code(flow, "an input has the wrong type");
     }
 }
 
@@ -304,12 +306,12 @@ static void push_output(struct flow *flow, int32_t number)
 static void take_own_result(struct flow *flow)
 {
     if (flow->code->result < 0) {
-        krl_refuse_code(flow, "a result is missing, or there is one too many");
+        krl_refuse_code(flow, "the code object has no result");
         return;
     }
     take(flow, value(flow, flow->code->result));
     if (flow->count > 0)
-        krl_refuse_code(flow, "something is left on the stack");
+        krl_refuse_code(flow, "the stack must be empty here");
 }
 
 /* ---------------------------------------------------------------------------- instructions */

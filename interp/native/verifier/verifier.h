@@ -19,9 +19,9 @@ struct item {
 };
 
 /* Returns the item of an argument or an input. */
-static inline struct item krl_item_of(const struct krl_handed *handed)
+static inline struct item krl_item_of(const struct krl_passed *passed)
 {
-    return (struct item){handed->type, (uint8_t)handed->mode, (uint8_t)krl_stack_cells(handed), 0};
+    return (struct item){passed->type, (uint8_t)passed->mode, (uint8_t)krl_stack_cells(passed), 0};
 }
 
 struct remembered {

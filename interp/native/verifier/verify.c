@@ -50,10 +50,10 @@ static void check_operands(struct flow *flow)
         uint32_t packed = kinds[code->body[place].op];
         for (int i = 0; packed != 0; i++, packed >>= 8)
             if (!is_operand(flow, packed & 0xff, code->body[place].operands[i]))
-                krl_refuse_code(flow, "an operand names nothing");
+                krl_refuse_code(flow, "an operand is out of range");
         int32_t target = target_of(&code->body[place]);
         if (target >= 0)
-            code->leads[target] = 1;
+            code->is_target[target] = 1;
     }
 }
 
@@ -61,7 +61,7 @@ static void check_operands(struct flow *flow)
 
 /* Merges the first `count` items of the stack into an instruction. The first path stores its stack
  * there and schedules the instruction; all others must have the same stack. */
-static void meet(struct flow *flow, int32_t place, int32_t count)
+static void merge(struct flow *flow, int32_t place, int32_t count)
 {
     struct remembered *there = &flow->at[place];
     if (flow->is_wrong)
@@ -70,7 +70,7 @@ static void meet(struct flow *flow, int32_t place, int32_t count)
         flow->remembered += count + 1;
         there->items = flow->remembered > MOST_REMEMBERED
                           ? NULL
-                          : krl_allot(&flow->scratch, (size_t)count + 1, sizeof *there->items);
+                          : krl_allocate(&flow->scratch, (size_t)count + 1, sizeof *there->items);
         if (there->items == NULL) {
             krl_refuse_code(flow, "the code object is too large to be checked");
             return;
@@ -84,7 +84,7 @@ static void meet(struct flow *flow, int32_t place, int32_t count)
     for (int32_t i = 0; i < count && !differs; i++)
         differs = !krl_is_same(there->items[i], flow->stack[i]);
     if (differs)
-        krl_refuse_code(flow, "the stack differs from that of another way");
+        krl_refuse_code(flow, "paths meet with different stacks");
 }
 
 /* Walks from an instruction to the end of the path or the next target. */
@@ -104,15 +104,15 @@ static void walk(struct flow *flow, int32_t place)
             return;
         int32_t target = target_of(instruction);
         if (target >= 0) /* AT ends a statement early, which drops its operands; a CASE that jumps pops its value */
-            meet(flow, target, instruction->op == KRL_AT ? 0 : flow->count - (instruction->op == KRL_CASE));
+            merge(flow, target, instruction->op == KRL_AT ? 0 : flow->count - (instruction->op == KRL_CASE));
         if (krl_ends(instruction->op))
             return;
         if (++place == code->length) {
-            krl_refuse_code(flow, "a code object ends without RETURN");
+            krl_refuse_code(flow, "the code object ends without RETURN");
             return;
         }
-        if (code->leads[place]) {
-            meet(flow, place, flow->count);
+        if (code->is_target[place]) {
+            merge(flow, place, flow->count);
             return;
         }
     }
@@ -122,7 +122,7 @@ static void walk(struct flow *flow, int32_t place)
 
 /* Stores the successors of an instruction, the target before the next one, and returns their
  * number. */
-static int after(const struct krl_code *code, int32_t place, int32_t *found)
+static int successors(const struct krl_code *code, int32_t place, int32_t *found)
 {
     const struct krl_instruction *instruction = &code->body[place];
     int count = 0;
@@ -137,7 +137,7 @@ static int after(const struct krl_code *code, int32_t place, int32_t *found)
 static void check_start(struct flow *flow)
 {
     const struct krl_code *code = flow->code;
-    uint8_t *seen = krl_allot(&flow->scratch, (size_t)code->length, 1);
+    uint8_t *seen = krl_allocate(&flow->scratch, (size_t)code->length, 1);
     int32_t count = 1, found[2];
     if (seen == NULL) {
         krl_refuse_code(flow, "there is not enough memory for the check");
@@ -149,12 +149,12 @@ static void check_start(struct flow *flow)
         int32_t place = flow->todo[--count];
         uint32_t op = code->body[place].op;
         if (op == KRL_CALL || op == KRL_ASK) {
-            krl_refuse_code(flow, "a statement has to begin before a call or a request");
+            krl_refuse_code(flow, "a LINE is required before a call or a request");
             return;
         }
         if (op == KRL_LINE)
             continue;
-        for (int i = after(code, place, found) - 1; i >= 0; i--)
+        for (int i = successors(code, place, found) - 1; i >= 0; i--)
             if (!seen[found[i]]) {
                 seen[found[i]] = 1;
                 flow->todo[count++] = found[i];
@@ -163,39 +163,39 @@ static void check_start(struct flow *flow)
 }
 
 /* Checks that every cycle has a LINE or an ASK: a depth-first search that stops at these must find
- * no edge to an open instruction. */
-static void check_circles(struct flow *flow)
+ * no edge to an instruction on the path. */
+static void check_cycles(struct flow *flow)
 {
-    enum { FRESH, OPEN, DONE };
+    enum { UNVISITED, ON_PATH, DONE };
     const struct krl_code *code = flow->code;
-    uint8_t *state = krl_allot(&flow->scratch, (size_t)code->length, 2);
+    uint8_t *state = krl_allocate(&flow->scratch, (size_t)code->length, 2);
     if (state == NULL) {
         krl_refuse_code(flow, "there is not enough memory for the check");
         return;
     }
-    uint8_t *tried = state + code->length;
+    uint8_t *taken = state + code->length;
     for (int32_t start = 0; start < code->length; start++) {
         int32_t count = 1, found[2];
-        if (code->depths[start] < 0 || state[start] != FRESH)
+        if (code->depths[start] < 0 || state[start] != UNVISITED)
             continue;
         flow->todo[0] = start;
-        state[start] = OPEN;
+        state[start] = ON_PATH;
         while (count > 0) {
             int32_t place = flow->todo[count - 1];
             uint32_t op = code->body[place].op;
-            int ways = op == KRL_LINE || op == KRL_ASK ? 0 : after(code, place, found);
-            if (tried[place] == ways) {
+            int edges = op == KRL_LINE || op == KRL_ASK ? 0 : successors(code, place, found);
+            if (taken[place] == edges) {
                 state[place] = DONE;
                 count--;
                 continue;
             }
-            int32_t next = found[tried[place]++];
-            if (state[next] == OPEN) {
-                krl_refuse_code(flow, "there is a circle without a statement");
+            int32_t next = found[taken[place]++];
+            if (state[next] == ON_PATH) {
+                krl_refuse_code(flow, "a cycle without a LINE or an ASK");
                 return;
             }
-            if (state[next] == FRESH) {
-                state[next] = OPEN;
+            if (state[next] == UNVISITED) {
+                state[next] = ON_PATH;
                 flow->todo[count++] = next;
             }
         }
@@ -209,8 +209,10 @@ static void check_condition(struct flow *flow)
     for (int32_t place = 0; place < code->length; place++) {
         uint32_t op = code->body[place].op;
         int32_t target = target_of(&code->body[place]);
-        if (krl_changes(op) || (target >= 0 && target <= place))
-            krl_refuse_code(flow, "a condition only goes forwards, and changes nothing");
+        if (krl_changes(op))
+            krl_refuse_code(flow, "a condition cannot change anything");
+        else if (target >= 0 && target <= place)
+            krl_refuse_code(flow, "a condition can only jump forwards");
     }
 }
 
@@ -220,9 +222,9 @@ static void check_code(struct flow *flow)
 {
     struct krl_code *code = flow->code;
     size_t length = (size_t)code->length;
-    flow->at = krl_allot(&flow->scratch, length, sizeof *flow->at);
-    flow->todo = krl_allot(&flow->scratch, length + 1, sizeof *flow->todo);
-    flow->stack = krl_allot(&flow->scratch, (size_t)code->stack + 1, sizeof *flow->stack);
+    flow->at = krl_allocate(&flow->scratch, length, sizeof *flow->at);
+    flow->todo = krl_allocate(&flow->scratch, length + 1, sizeof *flow->todo);
+    flow->stack = krl_allocate(&flow->scratch, (size_t)code->stack + 1, sizeof *flow->stack);
     if (flow->at == NULL || flow->todo == NULL || flow->stack == NULL) {
         krl_refuse_code(flow, "there is not enough memory for the check");
         return;
@@ -230,8 +232,8 @@ static void check_code(struct flow *flow)
     for (int32_t place = 0; place < code->length; place++)
         code->depths[place] = -1;
     check_operands(flow);
-    code->leads[0] = 1;
-    meet(flow, 0, 0);
+    code->is_target[0] = 1;
+    merge(flow, 0, 0);
     while (flow->todo_count > 0 && !flow->is_wrong)
         walk(flow, flow->todo[--flow->todo_count]);
     if (flow->is_wrong)
@@ -241,7 +243,7 @@ static void check_code(struct flow *flow)
         return;
     }
     check_start(flow);
-    check_circles(flow);
+    check_cycles(flow);
 }
 
 /* Whether the owner is valid. A routine has none and captures nothing. Actions and conditions
@@ -266,9 +268,9 @@ int krl_verify(struct krl_program *program, struct krl_refusal *why)
         struct krl_code *code = &program->codes[number];
         if (!is_owned(program, code) || code->length == 0)
             return krl_refuse(why, "a code object has no owner, or no instructions");
-        code->depths = krl_allot(program, (size_t)code->length, sizeof *code->depths);
-        code->leads = krl_allot(program, (size_t)code->length, sizeof *code->leads);
-        if (code->depths == NULL || code->leads == NULL)
+        code->depths = krl_allocate(program, (size_t)code->length, sizeof *code->depths);
+        code->is_target = krl_allocate(program, (size_t)code->length, sizeof *code->is_target);
+        if (code->depths == NULL || code->is_target == NULL)
             return krl_refuse(why, "there is not enough memory for the check");
     }
     for (int32_t number = 0; number < program->code_count; number++) {

@@ -73,11 +73,11 @@ static inline void krl_receive(struct krl_machine *machine, const struct krl_rou
     const struct krl_code *code = callee->code;
     for (int32_t i = 0; i < code->parameter_count; i++) {
         const struct krl_slot *slot = &code->slots[i];
-        int is_copied = slot->handed.mode == KRL_BY_VALUE &&
-                        !krl_is_plain(&machine->program, slot->handed.type);
+        int is_copied = slot->passed.mode == KRL_BY_VALUE &&
+                        !krl_is_plain(&machine->program, slot->passed.type);
         const krl_cell *given = is_copied ? machine->cells + krl_int_in(*arguments) : arguments;
         krl_copy_cells(frame + slot->offset, given, slot->cells);
-        arguments += krl_stack_cells(&slot->handed);
+        arguments += krl_stack_cells(&slot->passed);
     }
     krl_blank_cells(frame + callee->received, callee->frame - callee->received);
 }

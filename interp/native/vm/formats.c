@@ -19,8 +19,8 @@ enum { TEXT = 0, STATE, OFFSET, FORMAT, VALUES };
 
 int krl_is_state(const struct krl_program *program, const struct krl_part *part)
 {
-    const struct krl_type *type = &program->types[part->handed.type];
-    if (part->kind != KRL_PART_CHANGED || part->has_path || part->handed.mode != KRL_BY_REFERENCE ||
+    const struct krl_type *type = &program->types[part->passed.type];
+    if (part->kind != KRL_PART_CHANGED || part->has_path || part->passed.mode != KRL_BY_REFERENCE ||
         type->form != KRL_STRUCTURE || type->count != STATE_MEMBERS)
         return 0;
     const struct krl_type *results = &program->types[type->members[RET1].type];
@@ -31,7 +31,7 @@ int krl_is_state(const struct krl_program *program, const struct krl_part *part)
 
 int krl_can_format(const struct krl_program *program, const struct krl_part *part)
 {
-    const struct krl_type *type = &program->types[part->handed.type];
+    const struct krl_type *type = &program->types[part->passed.type];
     if (part->kind == KRL_PART_STRING)
         return 1;
     if (part->kind != KRL_PART_INPUT)
@@ -43,15 +43,15 @@ int krl_can_format(const struct krl_program *program, const struct krl_part *par
             if ((uint8_t)type->constants[i].bytes[letter] > 127)
                 return 0;
     }
-    return part->handed.mode == KRL_BY_VALUE || krl_is_text_array(program, part);
+    return part->passed.mode == KRL_BY_VALUE || krl_is_text_array(program, part);
 }
 
 int krl_can_scan(const struct krl_program *program, const struct krl_part *part)
 {
-    int32_t type = part->handed.type;
+    int32_t type = part->passed.type;
     return part->kind == KRL_PART_CHANGED && !part->has_path &&
            (krl_is_text_array(program, part) ||
-            (part->handed.mode == KRL_BY_REFERENCE &&
+            (part->passed.mode == KRL_BY_REFERENCE &&
              (type == KRL_TYPE_INT || type == KRL_TYPE_REAL || type == KRL_TYPE_CHAR)));
 }
 
@@ -64,7 +64,7 @@ static struct krl_letters cells_of(const struct krl_text_call *call, int32_t arg
         return (struct krl_letters){call->machine->cells, 0};
     if (krl_is_text_array(&call->machine->program, part))
         return krl_array_letters(call, argument);
-    return (struct krl_letters){krl_referred(call, argument), call->machine->program.types[part->handed.type].size};
+    return (struct krl_letters){krl_referred(call, argument), call->machine->program.types[part->passed.type].size};
 }
 
 /* Whether all arguments by value and the offset have values, and no argument that is changed
@@ -94,7 +94,7 @@ static int are_apart(const struct krl_text_call *call)
 
 static void give_state(const struct krl_text_call *call, const char *word, int32_t hits, int32_t length)
 {
-    const struct krl_type *type = &call->machine->program.types[call->entry->parts[STATE].handed.type];
+    const struct krl_type *type = &call->machine->program.types[call->entry->parts[STATE].passed.type];
     const struct krl_type *results = &call->machine->program.types[type->members[RET1].type];
     krl_cell *state = krl_referred(call, STATE);
     memset(state, 0, (size_t)type->size * sizeof *state);
@@ -216,15 +216,15 @@ static int put_characters(struct output *output, const struct piece *piece, cons
 {
     krl_cell letters[LONGEST_WORD];
     struct krl_letters found = {letters, 0};
-    const struct krl_type *type = &program->types[part->handed.type];
+    const struct krl_type *type = &program->types[part->passed.type];
     int is_value = krl_is_value(part);
-    int is_letter = is_value && part->handed.type == KRL_TYPE_CHAR;
+    int is_letter = is_value && part->passed.type == KRL_TYPE_CHAR;
     if (piece->letter == 'c') {
         letters[0] = value;
         found.count = 1;
         if (part->kind == KRL_PART_STRING && part->letters.count == 1)
             letters[0] = part->letters.cells[0];
-        else if (!is_letter && !(is_value && part->handed.type == KRL_TYPE_INT && (uint32_t)value <= 255))
+        else if (!is_letter && !(is_value && part->passed.type == KRL_TYPE_INT && (uint32_t)value <= 255))
             return 0;
         return put_letters(output, piece, found);
     }
@@ -233,7 +233,7 @@ static int put_characters(struct output *output, const struct piece *piece, cons
     else if (is_letter) {
         letters[0] = value;
         found.count = (uint32_t)value != 0;
-    } else if (part->handed.type == KRL_TYPE_BOOL || type->form == KRL_ENUMERATION) {
+    } else if (part->passed.type == KRL_TYPE_BOOL || type->form == KRL_ENUMERATION) {
         const char *word = krl_int_in(value) ? "TRUE" : "FALSE";
         uint32_t length = (uint32_t)strlen(word);
         if (type->form == KRL_ENUMERATION) {
@@ -309,8 +309,8 @@ static int put_value(struct output *output, const struct piece *piece, const str
     if (strchr("cs", piece->letter))
         return put_characters(output, piece, program, part, value,
                               is_value ? (struct krl_letters){NULL, 0} : krl_text_argument(call, argument));
-    int is_number = part->handed.type <= KRL_TYPE_BOOL;
-    return is_value && is_number && put_number(output, piece, part->handed.type, value);
+    int is_number = part->passed.type <= KRL_TYPE_BOOL;
+    return is_value && is_number && put_number(output, piece, part->passed.type, value);
 }
 
 static int write_text(const struct krl_text_call *call, struct krl_letters target, int32_t start)
@@ -428,15 +428,15 @@ static int converts(const struct krl_program *program, const struct krl_part *pa
 {
     int is_real = krl_tag_of(found->number) == KRL_TAG_REAL;
     if (found->number == KRL_NOTHING) {
-        if (!krl_is_text_array(program, part) && part->handed.type == KRL_TYPE_CHAR && found->letters.count == 1)
+        if (!krl_is_text_array(program, part) && part->passed.type == KRL_TYPE_CHAR && found->letters.count == 1)
             found->number = found->letters.cells[0];
         return found->number != KRL_NOTHING || krl_is_text_array(program, part);
     }
     if (krl_is_text_array(program, part))
         return 0;
-    if (part->handed.type == KRL_TYPE_REAL && !is_real)
+    if (part->passed.type == KRL_TYPE_REAL && !is_real)
         found->number = krl_of_real((float)krl_int_in(found->number));
-    return part->handed.type == KRL_TYPE_REAL || (part->handed.type == KRL_TYPE_INT && !is_real);
+    return part->passed.type == KRL_TYPE_REAL || (part->passed.type == KRL_TYPE_INT && !is_real);
 }
 
 static int read_text(const struct krl_text_call *call, struct krl_letters text, int32_t start)

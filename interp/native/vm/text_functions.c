@@ -37,8 +37,8 @@ static int32_t sensitive(const struct krl_program *program, int32_t type)
 
 static int is_changed(const struct krl_part *part, int32_t type)
 {
-    return part->kind == KRL_PART_CHANGED && !part->has_path && part->handed.mode == KRL_BY_REFERENCE &&
-           part->handed.type == type;
+    return part->kind == KRL_PART_CHANGED && !part->has_path && part->passed.mode == KRL_BY_REFERENCE &&
+           part->passed.type == type;
 }
 
 static int accepts(const struct krl_program *program, const struct krl_part *part, char parameter)
@@ -52,7 +52,7 @@ static int accepts(const struct krl_program *program, const struct krl_part *par
     case 'C':
         return part->kind == KRL_PART_CHANGED && !part->has_path && krl_is_text_array(program, part);
     case 'N':
-        return krl_is_value(part) && part->handed.type == KRL_TYPE_INT;
+        return krl_is_value(part) && part->passed.type == KRL_TYPE_INT;
     case 'B':
         return is_changed(part, KRL_TYPE_BOOL);
     case 'I':
@@ -66,7 +66,7 @@ static int accepts(const struct krl_program *program, const struct krl_part *par
     case '*':
         return krl_can_scan(program, part);
     default:
-        return (part->kind == KRL_PART_CHOICE || krl_is_value(part)) && sensitive(program, part->handed.type) >= 0;
+        return (part->kind == KRL_PART_CHOICE || krl_is_value(part)) && sensitive(program, part->passed.type) >= 0;
     }
 }
 
@@ -117,7 +117,7 @@ static int is_sensitive(const struct krl_text_call *call, int32_t argument)
 {
     const struct krl_part *part = &call->entry->parts[argument];
     int32_t place = part->kind == KRL_PART_CHOICE ? part->place : krl_int_in(call->inputs[part->place]);
-    return place == sensitive(&call->machine->program, part->handed.type);
+    return place == sensitive(&call->machine->program, part->passed.type);
 }
 
 /* Reads the first argument, without the blanks around it, as a value of the second one. Returns a
@@ -143,7 +143,7 @@ int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
 {
     struct krl_text_call call = {machine, entry, inputs};
     struct krl_letters array = {machine->cells, 0}, text, other;
-    if (entry->parts[0].handed.mode != KRL_BY_VALUE)
+    if (entry->parts[0].passed.mode != KRL_BY_VALUE)
         array = krl_array_letters(&call, 0);
     switch (function) {
     case KRL_STRLEN:

@@ -6,10 +6,10 @@
 
 int krl_is_text_array(const struct krl_program *program, const struct krl_part *part)
 {
-    const struct krl_type *type = &program->types[part->handed.type];
-    if (part->handed.mode == KRL_BY_VIEW)
-        return part->handed.dimensions == 1 && part->handed.type == KRL_TYPE_CHAR;
-    return part->handed.mode == KRL_BY_REFERENCE && type->form == KRL_ARRAY && type->count == 1 &&
+    const struct krl_type *type = &program->types[part->passed.type];
+    if (part->passed.mode == KRL_BY_VIEW)
+        return part->passed.dimensions == 1 && part->passed.type == KRL_TYPE_CHAR;
+    return part->passed.mode == KRL_BY_REFERENCE && type->form == KRL_ARRAY && type->count == 1 &&
            type->element == KRL_TYPE_CHAR;
 }
 
@@ -41,8 +41,8 @@ struct krl_letters krl_array_letters(const struct krl_text_call *call, int32_t a
 {
     const struct krl_part *part = &call->entry->parts[argument];
     const krl_cell *given = call->inputs + part->place;
-    const struct krl_type *type = &call->machine->program.types[part->handed.type];
-    int32_t count = part->handed.mode == KRL_BY_VIEW ? krl_int_in(given[1]) : type->sizes[0];
+    const struct krl_type *type = &call->machine->program.types[part->passed.type];
+    int32_t count = part->passed.mode == KRL_BY_VIEW ? krl_int_in(given[1]) : type->sizes[0];
     return (struct krl_letters){krl_referred(call, argument), count};
 }
 

@@ -22,7 +22,7 @@ struct krl_letters krl_text_argument(const struct krl_text_call *call, int32_t a
 
 static inline int krl_is_value(const struct krl_part *part)
 {
-    return part->kind == KRL_PART_INPUT && part->handed.mode == KRL_BY_VALUE;
+    return part->kind == KRL_PART_INPUT && part->passed.mode == KRL_BY_VALUE;
 }
 
 /* Returns the cells that a reference refers to. */
