@@ -6,7 +6,7 @@ the `krl check` option with the same name; docs/settings.md lists them.
 
 import difflib
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from fnmatch import fnmatchcase
@@ -51,11 +51,8 @@ class Settings:
         """Return whether a file is excluded."""
         return any(_fits(self._below(found.file, found.member), one) for one in self.exclude)
 
-    def adjusted(self, found: "Iterable[Diagnostic]") -> "list[Diagnostic]":
-        """Return the findings with the agreed severities, without those switched off."""
-        return [one for each in found if (one := self._adjusted(each)) is not None]
-
-    def _adjusted(self, found: "Diagnostic") -> "Diagnostic | None":
+    def adjusted(self, found: "Diagnostic") -> "Diagnostic | None":
+        """Return a finding with the agreed severity; ``None`` if it is switched off."""
         for pattern, codes in self.ignored_in.items():
             if found.code.startswith(codes) and _fits(self._below(Path(found.path)), pattern):
                 return None

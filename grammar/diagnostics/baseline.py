@@ -11,10 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from grammar.diagnostics.diagnostic import Diagnostic, in_order
-
-#: The text of a line by path and number, empty where it is not known.
-LineOf = Callable[[str, int], str]
+from grammar.diagnostics.diagnostic import Diagnostic
 
 _Key = tuple[str, str, str]
 _VERSION = 1
@@ -27,9 +24,12 @@ class Baseline:
         self._counts = dict(counts)
 
     @staticmethod
-    def of(found: Iterable[Diagnostic], line_of: LineOf, place: Callable[[str], str]) -> Baseline:
-        """Return a baseline of findings; ``place`` gives the path it stores for a file."""
-        return Baseline(Counter(_key(one, line_of, place) for one in found))
+    def of(found: Iterable[tuple[Diagnostic, str]], place: Callable[[str], str]) -> Baseline:
+        """Return a baseline of findings with their lines, which may be empty.
+
+        ``place`` gives the path that it stores for a file.
+        """
+        return Baseline(Counter(_key(one, line, place) for one, line in found))
 
     @staticmethod
     def read(record: object) -> Baseline:
@@ -54,20 +54,22 @@ class Baseline:
         return {"version": _VERSION, "findings": findings}
 
     def new(
-        self, found: Iterable[Diagnostic], line_of: LineOf, place: Callable[[str], str]
-    ) -> tuple[list[Diagnostic], int]:
-        """Return the findings that are not known, and the number of known ones that are gone."""
+        self, found: Iterable[tuple[Diagnostic, str]], place: Callable[[str], str]
+    ) -> tuple[list[tuple[Diagnostic, str]], int]:
+        """Return the findings that are not known, and the number of known ones that are gone.
+
+        Of equal ones the first are known, so they are given in order.
+        """
         left = Counter(self._counts)
         new = []
-        for one in in_order(found):
-            key = _key(one, line_of, place)
+        for one, line in found:
+            key = _key(one, line, place)
             if left[key] > 0:
                 left[key] -= 1
             else:
-                new.append(one)
+                new.append((one, line))
         return new, sum(count for count in left.values() if count > 0)
 
 
-def _key(found: Diagnostic, line_of: LineOf, place: Callable[[str], str]) -> _Key:
-    text = " ".join(line_of(found.path, found.region.line).split())
-    return place(found.path), found.code, text
+def _key(found: Diagnostic, line: str, place: Callable[[str], str]) -> _Key:
+    return place(found.path), found.code, " ".join(line.split())

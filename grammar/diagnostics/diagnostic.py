@@ -7,12 +7,14 @@ SARIF.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from heapq import merge
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from grammar.diagnostics.codes import Severity, code
 from support.lazy_dataclass import dataclass
+
+_T = TypeVar("_T")
 
 
 class Places(Protocol):
@@ -124,9 +126,12 @@ def in_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     return sorted(dict.fromkeys(diagnostics), key=_key)
 
 
-def merged(parts: Iterable[Sequence[Diagnostic]]) -> Iterator[Diagnostic]:
-    """Yield the findings of different files in order; each part is in order."""
-    return merge(*parts, key=_key)
+def merged(parts: Iterable[Iterable[tuple[Diagnostic, _T]]]) -> Iterator[tuple[Diagnostic, _T]]:
+    """Yield findings, each with whatever belongs to it, in order; each part is in order.
+
+    Nothing beyond the first finding of a part is asked for before that has been yielded.
+    """
+    return merge(*parts, key=lambda one: _key(one[0]))
 
 
 def _key(diagnostic: Diagnostic) -> tuple[str, Region, str, str]:
@@ -134,8 +139,8 @@ def _key(diagnostic: Diagnostic) -> tuple[str, Region, str, str]:
 
 
 def records(diagnostics: Iterable[Diagnostic]) -> Iterator[dict[str, Any]]:
-    """Yield what ``krl check --format json`` prints, in order."""
-    return map(_record, in_order(diagnostics))
+    """Yield what ``krl check --format json`` prints for findings, which are in order."""
+    return map(_record, diagnostics)
 
 
 def _record(diagnostic: Diagnostic) -> dict[str, Any]:

@@ -12,33 +12,30 @@ The files come from others, so control characters are made visible and cannot st
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
-from grammar.diagnostics.diagnostic import Diagnostic, in_order
+from grammar.diagnostics.codes import Severity
+from grammar.diagnostics.diagnostic import Diagnostic
 
 # Of a longer line only the part around the caret is shown, in characters.
 _LONGEST_LINE = 110
 _AHEAD_OF_CARET = 40
 
 
-def rendered(
-    diagnostics: Iterable[Diagnostic], line_of: Callable[[str, int], str], is_verbose: bool = False
-) -> Iterator[str]:
-    """Yield the lines of text for the findings, sorted, each finding followed by an empty line.
+def rendered(located: Iterable[tuple[Diagnostic, str]], is_verbose: bool = False) -> Iterator[str]:
+    """Yield the lines of text for the findings in their order, each followed by an empty line.
 
-    ``line_of`` returns a line of a file by path and number, empty if there is none. ``is_verbose``
-    adds the rule IDs.
+    Each comes with its source line, empty if there is none. ``is_verbose`` adds the rule IDs.
     """
-    for diagnostic in in_order(diagnostics):
-        line = line_of(diagnostic.path, diagnostic.region.line)
+    for diagnostic, line in located:
         yield from _lines(diagnostic, line, is_verbose)
         yield ""
 
 
-def summary(diagnostics: Iterable[Diagnostic]) -> str:
-    """Return the number of findings of each severity: ``2 errors, 1 note``."""
-    found = [diagnostic.severity for diagnostic in diagnostics]
-    counts = ((found.count(severity), severity) for severity in ("error", "warning", "note"))
+def summary(found: Mapping[Severity, int]) -> str:
+    """Return the number of findings of each severity in words: ``2 errors, 1 note``."""
+    severities: tuple[Severity, ...] = ("error", "warning", "note")
+    counts = ((found.get(severity, 0), severity) for severity in severities)
     parts = [f"{count} {word}{'s' * (count != 1)}" for count, word in counts if count]
     return ", ".join(parts) or "no findings"
 

@@ -44,7 +44,7 @@ EOF = 0
 # The cache stays bounded on corpora of any size: long lexemes (strings) are not cached, and the
 # cache is emptied when tables of points have filled it with numbers.
 _LONGEST_REMEMBERED = 48
-_MOST_REMEMBERED = 100_000
+_MOST_REMEMBERED = 20_000
 # ``re`` keeps some 100 bytes for each skipped lexeme of a row, to backtrack; a row is cut here.
 _LONGEST_ROW = 50_000
 

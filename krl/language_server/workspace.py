@@ -20,7 +20,7 @@ from grammar.check.project.dependencies import Contribution, Needs, contribution
 from grammar.check.project.framework import Checked, Findings, check_module, check_project
 from grammar.check.project.project_check import Reading, read_source
 from grammar.check.project.suppression_comments import apply_suppressions, suppression_comments
-from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.diagnostics.suppression import Selection
 from grammar.semantics.link import File, Project, Workspace, link
 from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, Scope
@@ -333,11 +333,11 @@ def _kept(source: Source, found: Iterable[Diagnostic], agreed: Settings) -> tupl
     wanted = [one for one in found if one.code.startswith(_SOUGHT)]
     kept = apply_suppressions(source.path, wanted, suppression_comments(source), _SOUGHT)
     selection = Selection(agreed.select, agreed.ignore)
-    kept = [one for one in agreed.adjusted(kept) if selection.keeps(one.code)]
+    kept = [one for one in map(agreed.adjusted, kept) if one and selection.keeps(one.code)]
     if agreed.baseline is not None:
         with suppress(InputError):
             known = read_baseline(agreed.baseline)
-            kept, _ = known.new(
-                kept, lambda _, line: source.line(line), baseline_place(agreed.baseline)
-            )
+            located = ((one, source.line(one.region.line)) for one in in_order(kept))
+            new, _ = known.new(located, baseline_place(agreed.baseline))
+            kept = [one for one, _ in new]
     return tuple(kept)

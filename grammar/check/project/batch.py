@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
@@ -29,6 +29,7 @@ from grammar.check.project.project_check import (
     read_part,
     recheck,
 )
+from grammar.check.project.report import CheckReport, is_large, together
 from grammar.check.project.result_cache import (
     ProjectResult,
     known_files,
@@ -38,9 +39,8 @@ from grammar.check.project.result_cache import (
     state_of,
 )
 from grammar.check.project.suppression_comments import apply_suppressions
-from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order, merged
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.link import File, grouped
-from support.files import archives
 from support.files.decode import digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
@@ -49,7 +49,7 @@ from support.lazy_dataclass import dataclass
 from support.parallel.progress import Progress, no_progress
 from support.parallel.sticky_pool import StickyPool
 
-__all__ = ["CheckOptions", "CheckReport", "check_paths"]
+__all__ = ["CheckOptions", "check_paths"]
 
 # Starting a process takes as long as checking so many bytes.
 _WORTH_A_PROCESS = 1_000_000
@@ -57,25 +57,6 @@ _WORTH_A_PROCESS = 1_000_000
 _LARGE = 400_000
 # So many bytes a process wait for their turn, so that memory stays flat.
 _MOST_WAITING = 2_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class CheckReport:
-    """The findings in order, and what was checked.
-
-    ``lines`` are source lines by path and number. ``files`` is the number of checked files, of
-    ``bytes`` in all, in ``projects``; results of ``unchanged`` files came from the cache.
-    ``skipped`` are files that are not KRL, ``paths`` those that are, sorted.
-    """
-
-    diagnostics: tuple[Diagnostic, ...]
-    lines: Mapping[tuple[str, int], str]
-    skipped: tuple[Skipped, ...]
-    files: int
-    bytes: int
-    projects: int
-    unchanged: int
-    paths: tuple[str, ...]
 
 
 def check_paths(
@@ -115,7 +96,7 @@ def check_paths(
                 on_done(result.files + len(result.skipped))
                 yield _reported(result, work.names)
 
-        return _together(results(), work.skipped)
+        return together(results(), work.skipped)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +104,11 @@ class _Work:
     """The projects to check, of ``count`` files with ``size`` bytes.
 
     ``names`` are the paths to report the files under, by their own paths; others are only read.
+    Without ``names`` all are reported under their own.
     """
 
     projects: deque[list[Found | Skipped]]
-    names: Mapping[str, str]
+    names: Mapping[str, str] | None
     skipped: Sequence[Skipped]
     count: int
     size: int
@@ -145,23 +127,27 @@ def _work_of(
 
     asked = list(filter(is_left, discover(roots)))
     skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
+    names: dict[str, str] | None = None
     if around:
         wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
         there = filter(is_left, discover(around))
-        members = [one for one in there if isinstance(one, Found) or _is_large(one)]
+        members = [one for one in there if isinstance(one, Found) or is_large(one)]
         found = [one for one in members if isinstance(one, Found)]
         names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
     else:
-        members = [one for one in asked if isinstance(one, Found) or _is_large(one)]
-        names = {one.path: one.path for one in asked if isinstance(one, Found)}
-    projects = deque(some for some in _projects(members) if any(one.path in names for one in some))
+        members = [one for one in asked if isinstance(one, Found) or is_large(one)]
+
+    def is_asked(one: Found | Skipped) -> bool:
+        return isinstance(one, Found) if names is None else one.path in names
+
+    projects = deque(some for some in _projects(members) if any(map(is_asked, some)))
     sizes = [one.size for some in projects for one in some if isinstance(one, Found)]
     return _Work(projects, names, skipped, len(sizes), sum(sizes))
 
 
-def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
+def _reported(result: ProjectResult, names: Mapping[str, str] | None) -> ProjectResult:
     """What is to be said of a project: that of the files with a name, under that."""
-    if all(path == names.get(path) for path in result.sizes) and not result.skipped:
+    if names is None:
         return result
     return replace(
         result,
@@ -188,43 +174,6 @@ def _projects(found: Sequence[Found | Skipped]) -> Iterator[list[Found | Skipped
     candidates = dict(zip(map(id, files), found, strict=True))
     for _, _, members in grouped(files):
         yield [candidates[id(file)] for file in members]
-
-
-def _together(results: Iterable[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
-    """The report of all projects; what is said of each is kept once."""
-    # a file that could be a program is a finding, not only skipped
-    start = Region(1, 1, 1, 1)
-    found: list[Sequence[Diagnostic]] = [
-        in_order(
-            diagnose("too-large", one.path, start, one.reason) for one in skipped if _is_large(one)
-        )
-    ]
-    left_out = [one for one in skipped if not _is_large(one)]
-    lines: dict[tuple[str, int], str] = {}
-    paths: list[str] = []
-    size = projects = unchanged = 0
-    for result in results:
-        found.append(result.diagnostics)
-        left_out += result.skipped
-        lines |= result.lines
-        paths += result.sizes
-        size += sum(result.sizes.values())
-        unchanged += len(result.kept & result.sizes.keys())
-        projects += 1
-    return CheckReport(
-        tuple(merged(found)),
-        lines,
-        tuple(sorted(left_out, key=lambda one: one.path)),
-        len(paths),
-        size,
-        projects,
-        unchanged,
-        tuple(sorted(paths)),
-    )
-
-
-def _is_large(one: Found | Skipped) -> bool:
-    return isinstance(one, Skipped) and one.reason == archives.too_large()
 
 
 # --------------------------------------------------------------------------------- one by one

@@ -1,7 +1,8 @@
 """The command `krl check`: options, settings, baseline, exit status."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,7 +20,9 @@ from support.files.user_cache import user_cache
 from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
-    from grammar.check.project.batch import CheckOptions, CheckReport
+    from grammar.check.project.batch import CheckOptions
+    from grammar.check.project.report import CheckReport, Located
+    from grammar.diagnostics.codes import Severity
     from grammar.diagnostics.diagnostic import Diagnostic
     from grammar.diagnostics.suppression import Selection
 
@@ -189,32 +192,35 @@ class _Check:
 
     def run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
         """Write the new findings, sum them up on stderr, and return their severities."""
-        report, kept = self._found()
-        more = ""
+        report = self._report()
+        kept, more = self._kept(report), ""
         if self.baseline is not None:
-            known = read_baseline(self.baseline)
-            new, gone = known.new(kept, _line_of(report), baseline_place(self.baseline))
-            more = f"; {len(kept) - len(new):,} known ones left out"
+            found = list(kept)
+            new, gone = read_baseline(self.baseline).new(found, baseline_place(self.baseline))
+            more = f"; {len(found) - len(new):,} known ones left out"
             more += f", {gone:,} known ones are gone" if gone else ""
-            kept = new
-        write(kept, report, format_, out, is_verbose=is_verbose)
-        sum_up(kept, report, more)
-        return {one.severity for one in kept}
+            kept = iter(new)
+        counts: Counter[Severity] = Counter()
+        write(_counted(kept, counts), report, format_, out, is_verbose=is_verbose)
+        sum_up(counts, report, more)
+        return {*counts}
 
     def make_baseline(self, file: Path) -> int:
         """Write all findings to a baseline."""
         from grammar.diagnostics.baseline import Baseline
 
-        report, kept = self._found()
-        write_json(Baseline.of(kept, _line_of(report), baseline_place(file)).record(), file, 1)
-        sum_up(kept, report, ", all known from now on")
+        report = self._report()
+        counts: Counter[Severity] = Counter()
+        known = Baseline.of(_counted(self._kept(report), counts), baseline_place(file))
+        write_json(known.record(), file, 1)
+        sum_up(counts, report, ", all known from now on")
         return FINE
 
     def is_wanted(self, found: "Diagnostic") -> bool:
         """Return whether a finding is reported, apart from the baseline."""
-        return self.selection.keeps(found.code) and bool(self.agreed.adjusted([found]))
+        return self.selection.keeps(found.code) and bool(self.agreed.adjusted(found))
 
-    def _found(self) -> "tuple[CheckReport, list[Diagnostic]]":
+    def _report(self) -> "CheckReport":
         from grammar.check.project.batch import check_paths
         from krl.running.program_loading import project_paths
         from support.files.discovery import IngestError
@@ -233,8 +239,24 @@ class _Check:
         if not report.files:
             first = report.skipped[0]
             raise InputError(f"{first.path}: {first.reason}")
-        wanted = [one for one in report.diagnostics if self.selection.keeps(one.code)]
-        return report, self.agreed.adjusted(wanted)
+        return report
+
+    def _kept(self, report: "CheckReport") -> "Iterator[Located]":
+        """Yield the wanted findings of a report in order, with the agreed severities."""
+        before = None
+        for found, line in report.located():
+            if self.selection.keeps(found.code):
+                one = self.agreed.adjusted(found)
+                if one and one != before:
+                    yield one, line
+                    before = one
+
+
+def _counted(found: "Iterator[Located]", counts: "Counter[Severity]") -> "Iterator[Located]":
+    """Yield the findings, and count them by severity."""
+    for one in found:
+        counts[one[0].severity] += 1
+        yield one
 
 
 def _packages(given: list[str]) -> tuple[str, ...]:
@@ -252,10 +274,6 @@ def _packages(given: list[str]) -> tuple[str, ...]:
 def _asks_for_stops(selection: "Selection") -> bool:
     """Return whether notes about stops were selected by their codes."""
     return bool(selection.select) and any(map(selection.keeps, _STOPS))
-
-
-def _line_of(report: "CheckReport") -> Callable[[str, int], str]:
-    return lambda path, number: report.lines.get((path, number), "")
 
 
 # -- the cache -------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ import io
 import os
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from itertools import chain
 from pathlib import Path
@@ -18,7 +18,8 @@ from krl.terminal.output_files import json_list_pieces, json_pieces, write_piece
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from grammar.check.project.batch import CheckReport
+    from grammar.check.project.report import CheckReport, Located
+    from grammar.diagnostics.codes import Severity
     from grammar.diagnostics.diagnostic import Diagnostic
 
 _SKIPPED_SHOWN = 5
@@ -39,16 +40,19 @@ class Format(StrEnum):
 
 
 def write(
-    kept: "Sequence[Diagnostic]",
+    kept: "Iterable[Located]",
     report: "CheckReport",
     format_: Format,
     out: Path | None,
     *,
     is_verbose: bool = False,
 ) -> None:
-    """Write findings to a file or the terminal; ``is_verbose`` adds rule IDs to text."""
+    """Write findings, which are in order, to a file or the terminal.
+
+    ``is_verbose`` adds rule IDs to text.
+    """
     if format_ is Format.TEXT and out is None:
-        _print_text(kept, report, is_verbose)
+        _print_text(kept, is_verbose)
         return
     pieces = _written(kept, report, format_, is_verbose)
     if out is None:
@@ -58,32 +62,27 @@ def write(
 
 
 def _written(
-    kept: "Sequence[Diagnostic]", report: "CheckReport", format_: Format, is_verbose: bool
+    kept: "Iterable[Located]", report: "CheckReport", format_: Format, is_verbose: bool
 ) -> Iterator[str]:
     from importlib import metadata
 
-    from grammar.diagnostics.diagnostic import in_order, records
+    from grammar.diagnostics.diagnostic import records
+    from grammar.diagnostics.rendering import rendered
     from grammar.diagnostics.sarif import sarif
 
+    findings = (one for one, _ in kept)
     match format_:
         case Format.TEXT:
-            yield from (f"{line}\n" for line in _lines(kept, report, is_verbose))
+            yield from (f"{line}\n" for line in rendered(kept, is_verbose))
         case Format.JSON:
-            yield from chain(json_list_pieces(records(kept)), "\n")
+            yield from chain(json_list_pieces(records(findings)), "\n")
         case Format.SARIF:
-            log = sarif(kept, metadata.version("krl-workbench"))
+            log = sarif(findings, metadata.version("krl-workbench"))
             yield from chain(json_pieces(log, indent=1), "\n")
         case Format.GITHUB:
-            yield from (f"{_github(one)}\n" for one in in_order(kept))
+            yield from (f"{_github(one)}\n" for one in findings)
         case Format.JUNIT:
-            yield f"{_junit(in_order(kept), report.paths)}\n"
-
-
-def _lines(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> Iterator[str]:
-    """Yield the lines of the text format."""
-    from grammar.diagnostics.rendering import rendered
-
-    return rendered(kept, lambda path, number: report.lines.get((path, number), ""), is_verbose)
+            yield f"{_junit(findings, report.paths)}\n"
 
 
 def _said(found: "Diagnostic") -> str:
@@ -113,7 +112,7 @@ def _escaped(text: str) -> str:
     return one_line(text.replace("%", "%25"))
 
 
-def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
+def _junit(kept: "Iterable[Diagnostic]", paths: Sequence[str]) -> str:
     """Return JUnit XML: a test case for each file, a failure for each error or warning."""
     from junitparser import Failure, JUnitXml, TestCase, TestSuite
 
@@ -138,9 +137,11 @@ def _junit(kept: "Sequence[Diagnostic]", paths: Sequence[str]) -> str:
     return stream.getvalue().decode("utf-8")
 
 
-def _print_text(kept: "Sequence[Diagnostic]", report: "CheckReport", is_verbose: bool) -> None:
+def _print_text(kept: "Iterable[Located]", is_verbose: bool) -> None:
     """Print the findings, in colour if the terminal has it."""
-    lines = _lines(kept, report, is_verbose)
+    from grammar.diagnostics.rendering import rendered
+
+    lines = rendered(kept, is_verbose)
     if not (sys.stdout.isatty() or os.environ.get("FORCE_COLOR")):
         for line in lines:
             typer.echo(line)
@@ -164,7 +165,7 @@ def _coloured(line: str) -> "Text":
     return text
 
 
-def sum_up(kept: "Sequence[Diagnostic]", report: "CheckReport", more: str = "") -> None:
+def sum_up(found: "Mapping[Severity, int]", report: "CheckReport", more: str = "") -> None:
     """Print what was checked, found and skipped on stderr."""
     from grammar.diagnostics.rendering import summary
 
@@ -175,4 +176,4 @@ def sum_up(kept: "Sequence[Diagnostic]", report: "CheckReport", more: str = "") 
         typer.echo(f"skipped {rest:,} more", err=True)
     files = f"{report.files:,} file{'s' * (report.files != 1)} checked"
     unchanged = f" ({report.unchanged:,} unchanged)" if report.unchanged else ""
-    typer.echo(f"{files}{unchanged}: {summary(kept)}{more}", err=True)
+    typer.echo(f"{files}{unchanged}: {summary(found)}{more}", err=True)

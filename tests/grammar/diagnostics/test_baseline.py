@@ -12,28 +12,24 @@ TEXTS = st.sampled_from(["A = 1", "B = 2", "PTP P1"])
 FOUND = st.lists(st.tuples(st.sampled_from(["a.src", "b.dat"]), CODES, TEXTS), max_size=12)
 
 
-def made(
-    rows: list[tuple[str, str, str]], first: int = 1
-) -> tuple[list[Diagnostic], dict[int, str]]:
-    """Findings on lines of their own, and these lines by number."""
-    found, lines = [], {}
-    for number, (path, code, text) in enumerate(rows, first):
-        found.append(Diagnostic(path, Region(number, 1, number, 2), "error", code, "wrong"))
-        lines[number] = text
-    return found, lines
+def made(rows: list[tuple[str, str, str]], first: int = 1) -> list[tuple[Diagnostic, str]]:
+    """Findings with the texts of their lines, on lines of their own."""
+    return [
+        (Diagnostic(path, Region(number, 1, number, 2), "error", code, "wrong"), text)
+        for number, (path, code, text) in enumerate(rows, first)
+    ]
 
 
-def new(base: Baseline, found: list[Diagnostic], lines: dict[int, str]) -> tuple[int, int]:
-    kept, gone = base.new(found, lambda _, number: lines[number], str)
+def new(base: Baseline, found: list[tuple[Diagnostic, str]]) -> tuple[int, int]:
+    kept, gone = base.new(found, str)
     return len(kept), gone
 
 
 @given(FOUND, st.integers(1, 50))
 def test_known_findings_are_not_new(rows: list[tuple[str, str, str]], first: int) -> None:
     """What a baseline was made of is known, on whatever lines it now stands, and read back too."""
-    found, lines = made(rows)
-    base = Baseline.of(found, lambda _, number: lines[number], str)
-    assert (0, 0) == new(Baseline.read(base.record()), *made(rows, first))
+    base = Baseline.of(made(rows), str)
+    assert (0, 0) == new(Baseline.read(base.record()), made(rows, first))
 
 
 @given(FOUND, FOUND)
@@ -41,9 +37,7 @@ def test_new_and_gone_are_counted(
     before: list[tuple[str, str, str]], after: list[tuple[str, str, str]]
 ) -> None:
     """New ones are those beyond the known number of the same, gone ones those that are missing."""
-    found, lines = made(before)
-    base = Baseline.of(found, lambda _, number: lines[number], str)
-    added, gone = new(base, *made(after))
+    added, gone = new(Baseline.of(made(before), str), made(after))
     assert len(after) - len(before) == added - gone
     assert sum(max(0, after.count(row) - before.count(row)) for row in set(after)) == added
 

@@ -29,7 +29,7 @@ def finding(line: int = 2, column: int = 15, slug: str = "no-such-constant") -> 
 
 
 def text_of(diagnostic: Diagnostic, text: str = TEXT) -> list[str]:
-    return list(rendered([diagnostic], lambda _path, line: Source(text).line(line)))
+    return list(rendered([(diagnostic, Source(text).line(diagnostic.region.line))]))
 
 
 # ---------------------------------------------------------------------------------- values
@@ -128,7 +128,7 @@ def test_text_shows_line_caret_reason_and_fix() -> None:
         "    = did you mean #CONSTANT?",
         "",
     ] == text_of(found)
-    verbose = list(rendered([found], lambda _path, _line: "", is_verbose=True))
+    verbose = list(rendered([(found, "")], is_verbose=True))
     assert "    = a constant belongs to its place [TYP-20]" in verbose
 
 
@@ -189,16 +189,15 @@ def test_no_line_no_caret() -> None:
 def test_rendering_never_fails(line: str, column: int, length: int) -> None:
     """Whatever a line holds, and wherever the region lies, it is shown in printable lines."""
     found = diagnose("syntax", "a", Region(1, column, 1, column + length), line)
-    lines = list(rendered([found], lambda _path, _line: line))
+    lines = list(rendered([(found, line)]))
     assert "" == lines[-1]
     assert all(text.isprintable() for text in lines)
 
 
 def test_summary_counts() -> None:
     """How many of each, and none is said too."""
-    notes = [finding(line, slug="rounded") for line in (1, 2)]
-    assert "1 error, 2 notes" == summary([*notes, finding()])
-    assert "no findings" == summary([])
+    assert "1 error, 2 notes" == summary({"note": 2, "error": 1})
+    assert "no findings" == summary({})
 
 
 # ----------------------------------------------------------------------- suppress comments

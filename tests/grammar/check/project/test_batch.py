@@ -10,8 +10,9 @@ import pytest
 
 from grammar.check.project import batch as module
 from grammar.check.project import project_check
-from grammar.check.project.batch import CheckReport, check_paths
+from grammar.check.project.batch import check_paths
 from grammar.check.project.project_check import CheckOptions
+from grammar.check.project.report import CheckReport
 from grammar.diagnostics.diagnostic import Diagnostic
 from support.files.discovery import Found, IngestError, Skipped, read
 
@@ -47,7 +48,7 @@ def test_files_of_a_folder_are_checked_together(tmp_path: Path) -> None:
     found = check(root)
     assert [("CALLER.src", 2, "KRL301"), ("CALLER.src", 3, "KRL401")] == codes(found)
     assert (2, 1, 0) == (found.files, found.projects, found.unchanged)
-    assert "EXIT" == found.lines[f"{root.as_posix()}/CALLER.src", 3]
+    assert "EXIT" == [line for _, line in found.located()][1]
 
 
 def test_projects_see_nothing_of_each_other(tmp_path: Path) -> None:
@@ -76,7 +77,8 @@ def test_processes_find_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     root = lay(tmp_path, SHIFT__src=CALLED.replace("N:IN", ""), **files)
     alone = check(root)
     monkeypatch.setattr(module, "_LARGE", 0)
-    assert alone == check(root, jobs=2)
+    shared = check(root, jobs=2)
+    assert (alone, [*alone.located()]) == (shared, [*shared.located()])
 
 
 def test_trees_that_are_not_kept_are_read_again(
@@ -86,7 +88,7 @@ def test_trees_that_are_not_kept_are_read_again(
     root = lay(tmp_path, CALLER__src=CALLER, SHIFT__src=CALLED)
     whole = check(root)
     monkeypatch.setattr(project_check, "_MOST_KEPT", 0)
-    assert whole == check(root)
+    assert [*whole.located()] == [*check(root).located()]
 
 
 def test_unchanged_projects_are_not_checked_again(
@@ -98,7 +100,7 @@ def test_unchanged_projects_are_not_checked_again(
     with monkeypatch.context() as broken:
         broken.setattr(module, "recheck", None)
         again = check(root, cache=tmp_path / "cache")
-    assert (first.diagnostics, first.lines) == (again.diagnostics, again.lines)
+    assert [*first.located()] == [*again.located()]
     assert (0, 2) == (first.unchanged, again.unchanged)
     lay(root, SHIFT__src=CALLED.replace("END", "EXIT\nEND"))
     assert 1 == (changed := check(root, cache=tmp_path / "cache")).unchanged
@@ -141,7 +143,7 @@ def test_what_is_kept_is_what_would_be_found(
     for _ in range(1 if jobs > 1 else 6):
         edit(chance.choice(files), chance)
         found, fresh = check(root, cache=tmp_path, jobs=jobs), check(root)
-        assert (fresh.diagnostics, fresh.lines) == (found.diagnostics, found.lines)
+        assert [*fresh.located()] == [*found.located()]
 
 
 def edit(file: Path, chance: random.Random) -> None:

@@ -1,0 +1,97 @@
+"""The report of a check, made from the results of its projects.
+
+The findings of a large corpus take more memory than anything else of it, some 500 bytes each. So
+those of a finished project are compressed, and expanded again when it is their turn.
+"""
+
+from __future__ import annotations
+
+import pickle
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field
+
+from grammar.check.project.result_cache import ProjectResult
+from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order, merged
+from support.files import archives
+from support.files.discovery import Found, Skipped
+from support.lazy_dataclass import dataclass
+
+#: A finding and its source line, empty where that is not known.
+Located = tuple[Diagnostic, str]
+
+
+@dataclass(frozen=True, slots=True)
+class CheckReport:
+    """The findings, and what was checked.
+
+    ``files`` is the number of checked files, of ``bytes`` in all, in ``projects``; results of
+    ``unchanged`` files came from the cache. ``skipped`` are files that are not KRL, ``paths`` those
+    that are, sorted.
+    """
+
+    skipped: tuple[Skipped, ...]
+    files: int
+    bytes: int
+    projects: int
+    unchanged: int
+    paths: tuple[str, ...]
+    _parts: Sequence[_Part] = field(repr=False, compare=False)
+
+    def located(self) -> Iterator[Located]:
+        """Yield all findings in order, each with its source line."""
+        return merged(self._parts)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """All findings in order, which for a large corpus is too much to hold in memory."""
+        return tuple(finding for finding, _ in self.located())
+
+
+class _Part:
+    """The findings of a project in order; all but the first are compressed."""
+
+    def __init__(self, found: Sequence[Located]) -> None:
+        self._first = found[0]
+        self._rest = zlib.compress(pickle.dumps(found[1:], 5), 1)
+
+    def __iter__(self) -> Iterator[Located]:
+        yield self._first
+        yield from pickle.loads(zlib.decompress(self._rest))
+
+
+def together(results: Iterable[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
+    """Return the report of all projects; ``skipped`` are the files that none of them has."""
+    # a file that could be a program is a finding, not only skipped
+    start = Region(1, 1, 1, 1)
+    large = in_order(
+        diagnose("too-large", one.path, start, one.reason) for one in skipped if is_large(one)
+    )
+    left_out = [one for one in skipped if not is_large(one)]
+    parts = [_Part([(one, "") for one in large])] if large else []
+    paths: list[str] = []
+    size = projects = unchanged = 0
+    for result in results:
+        lines = result.lines
+        found = [(one, lines.get((one.path, one.region.line), "")) for one in result.diagnostics]
+        if found:
+            parts.append(_Part(found))
+        left_out += result.skipped
+        paths += result.sizes
+        size += sum(result.sizes.values())
+        unchanged += len(result.kept & result.sizes.keys())
+        projects += 1
+    return CheckReport(
+        tuple(sorted(left_out, key=lambda one: one.path)),
+        len(paths),
+        size,
+        projects,
+        unchanged,
+        tuple(sorted(paths)),
+        parts,
+    )
+
+
+def is_large(one: Found | Skipped) -> bool:
+    """Return whether a file was skipped for its size, though it may be a program."""
+    return isinstance(one, Skipped) and one.reason == archives.too_large()
