@@ -23,7 +23,7 @@ _LOOKED_AT: Final = 6
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class LawResult:
     """The result of a law: on how many programs it was tried, and on which it was broken.
 
     ``inapplicable`` is the number of programs that were examined and to which it does not apply.
@@ -47,7 +47,7 @@ def try_laws(
     jobs: int = 1,
     on_done: Callable[[int], None] = lambda _count: None,
     scheduler: str | None = None,
-) -> list[Standing]:
+) -> list[LawResult]:
     """Try each law on up to ``programs`` cases, generated programs, and moving programs each.
 
     The seed determines which these are. ``jobs`` processes try the laws, or the Dask cluster at
@@ -56,7 +56,7 @@ def try_laws(
     running = [case for case in cases if case.phase == "run"]
     tasks = ((law.name, running, programs, seed) for law in LAWS)
     found = []
-    for counted in ordered_map(_standing, tasks, jobs=max(1, jobs), scheduler=scheduler):
+    for counted in ordered_map(_tried, tasks, jobs=max(1, jobs), scheduler=scheduler):
         found.append(_whole(counted))
         on_done(1)
     return found
@@ -70,12 +70,12 @@ def _law(name: str) -> Law:
     return next(law for law in LAWS if law.name == name)
 
 
-def _whole(counted: _Counted) -> Standing:
+def _whole(counted: _Counted) -> LawResult:
     name, applied, inapplicable, broken = counted
-    return Standing(_law(name), applied, inapplicable, broken)
+    return LawResult(_law(name), applied, inapplicable, broken)
 
 
-def _standing(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
+def _tried(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
     law = _law(name)
     drawn = list(cases)
     Random(f"{seed}/{law.name}").shuffle(drawn)
@@ -120,7 +120,7 @@ def _program(seed: int, number: int) -> Program:
     return Program.of_sample(seeded(seed, number), f"generated/{seed}/{number}")
 
 
-def record_of(standings: Sequence[Standing], programs: int, seed: int) -> dict[str, Any]:
+def record_of(results: Sequence[LawResult], programs: int, seed: int) -> dict[str, Any]:
     """Return the results as JSON."""
     return {
         "programs": programs,
@@ -142,6 +142,6 @@ def record_of(standings: Sequence[Standing], programs: int, seed: int) -> dict[s
                     for attempt in one.broken
                 ],
             }
-            for one in standings
+            for one in results
         ],
     }

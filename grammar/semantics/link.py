@@ -32,7 +32,6 @@ from grammar.semantics.scopes import (
     Answer,
     Found,
     Globals,
-    MaybeElsewhere,
     Module,
     NotFound,
     Outer,
@@ -40,6 +39,7 @@ from grammar.semantics.scopes import (
     Reason,
     Scope,
     SystemScope,
+    Undetermined,
     nearest,
 )
 from grammar.semantics.symbol_table import table_of
@@ -194,7 +194,7 @@ class Project:
             return nearest(seen, module.folder)
         reason = self._gap.get(Space.VALUE)
         if reason is not None and not lists:
-            return MaybeElsewhere(reason)
+            return Undetermined(reason)
         return NotFound(next(filter(None, there), None))
 
     def _scope(self, module: Module, table: ModuleTable) -> Scope:

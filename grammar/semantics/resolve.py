@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from grammar.semantics.link import Project
-from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason, Scope
+from grammar.semantics.scopes import Answer, Found, Module, NotFound, Reason, Scope, Undetermined
 from grammar.semantics.symbols import Kind, TypeSymbol
 from grammar.syntax import ast
 from grammar.syntax.references import PLANS, Space
@@ -199,7 +199,7 @@ def _as_structure(answer: Answer | None) -> Found | None:
 
 
 def _no_member(structure: Found) -> Answer:
-    return MaybeElsewhere(Reason.SYSTEM) if structure.is_open else NotFound()
+    return Undetermined(Reason.SYSTEM) if structure.is_open else NotFound()
 
 
 # ---------------------------------------------------------------- nodes that need more than a plan

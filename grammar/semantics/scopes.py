@@ -4,10 +4,10 @@ Scopes are nested: a routine (parameters, local data), its program (the routines
 data list of the same name [SCO-05], everything GLOBAL in the project [SCO-04], the controller
 itself. The innermost declaration counts, so a local name shadows a global one.
 
-A look-up answers `Found`, `NotFound` or `MaybeElsewhere`. The last one is the answer if the files
+A look-up answers `Found`, `NotFound` or `Undetermined`. The last one is the answer if the files
 at hand cannot decide it: a single file without its $CONFIG, a module with syntax errors, a call of
 a missing package; `Reason` says which. A check may rely on `Found` and `NotFound` and must report
-nothing for `MaybeElsewhere`.
+nothing for `Undetermined`.
 """
 
 from __future__ import annotations
@@ -133,14 +133,14 @@ class NotFound:
 
 
 @dataclass(frozen=True, slots=True)
-class MaybeElsewhere:
+class Undetermined:
     """No declaration at hand is the right one for certain; one may exist elsewhere."""
 
     reason: Reason
     candidates: tuple[Found, ...] = ()
 
 
-Answer = Found | NotFound | MaybeElsewhere
+Answer = Found | NotFound | Undetermined
 
 
 class Outer(Protocol):
@@ -360,7 +360,7 @@ class Globals:
         if isinstance(answer, Found):
             return answer
         if key.startswith("$"):
-            return MaybeElsewhere(Reason.SYSTEM)
+            return Undetermined(Reason.SYSTEM)
         hidden = self.hidden[space].get(key)
         unread = self.unread[space]
         reason = Reason.UNREADABLE if key in unread or REST in unread else self.gap.get(space)
@@ -369,7 +369,7 @@ class Globals:
             reason = Reason.UNREADABLE if is_head_unread else reason
         if reason is None:
             return NotFound(hidden)
-        return MaybeElsewhere(reason, (hidden,) if hidden else ())
+        return Undetermined(reason, (hidden,) if hidden else ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -400,8 +400,8 @@ class PartlyRead:
         if isinstance(answer, Found) and answer.module is None:  # predefined by the controller
             return answer
         if isinstance(answer, Found):
-            return MaybeElsewhere(Reason.AMBIGUOUS, (answer,))
-        return MaybeElsewhere(Reason.UNREADABLE)
+            return Undetermined(Reason.AMBIGUOUS, (answer,))
+        return Undetermined(Reason.UNREADABLE)
 
 
 def nearest(found: Sequence[Found], folder: str) -> Answer:
@@ -426,7 +426,7 @@ def _by_folder(found: Sequence[Found], *, takes_copies: bool = False) -> dict[st
     return {
         folder: min(some, key=_rank_of_copy)
         if takes_copies or len(some) == 1
-        else MaybeElsewhere(Reason.AMBIGUOUS, tuple(some))
+        else Undetermined(Reason.AMBIGUOUS, tuple(some))
         for folder, some in below.items()
     }
 

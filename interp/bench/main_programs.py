@@ -74,7 +74,7 @@ class MainProgram:
 
 
 @dataclass(frozen=True, slots=True)
-class Ran:
+class MainProgramResult:
     """The result of a main program: virtual seconds, number of motions, where and why it ended.
 
     ``at`` is the place that it had reached. ``inputs`` is the number of changes of inputs that
@@ -182,7 +182,7 @@ def run_main(
     main: MainProgram,
     setup: RunSetup,
     is_over: Callable[[], bool] = lambda: False,
-) -> Ran:
+) -> MainProgramResult:
     """Run a main program, with the actions of the operator and of the cell.
 
     ``is_over`` is called after each virtual second, and says whether the program has taken too
@@ -205,14 +205,14 @@ def run_main(
     try:
         run = run_program(main.prepared, setup, take=seen.take, on_time=on_time)
     except LinkError as error:
-        return Ran("refused", 0.0, 0, reason=str(error))
+        return MainProgramResult("refused", 0.0, 0, reason=str(error))
     except _Over:
         over: Result = "goes on" if seen.is_in_loop else "cpu"
         reason = "no CPU time is left"
-        return Ran(over, seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
+        return MainProgramResult(over, seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        return Ran("crash", seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
+        return MainProgramResult("crash", seen.now / 1e6, seen.motions, at=seen.at, reason=reason)
     outcome = run.outcome
     program = main.prepared.program
     starts = program.starts(main.routine, main.submit)
@@ -234,7 +234,7 @@ def run_main(
     number = getattr(outcome.error, "number", None)
     if number is not None:
         reason += f" (message {number})"
-    return Ran(
+    return MainProgramResult(
         result,
         outcome.time / 1e6,
         seen.motions,

@@ -54,7 +54,7 @@ Part = Literal["whole", "modules", "code", "file"]
 
 
 @dataclass(frozen=True, slots=True)
-class Chance:
+class RandomSample:
     """Draws a random sample of paths; each path is drawn independently of the others."""
 
     share: float = 1.0
@@ -89,7 +89,7 @@ def _remains(source: Source, part: Part) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class RunBounds:
     """How programs are run, and which of them: those that ``sample`` draws.
 
     ``until`` is the limit of virtual time in µs, ``cpu`` that of processor time in s.
@@ -100,15 +100,15 @@ class Bounds:
     until: int = 600_000_000
     cpu: float = 30.0
     stands_in: bool = True
-    sample: Chance = Chance()
+    sample: RandomSample = RandomSample()
 
 
 @dataclass(frozen=True, slots=True)
-class Surveyed:
+class SurveyedOrigin:
     """An origin whose programs have run: their rows, and the unreadable files with reasons.
 
-    A row has ``origin``, ``damage`` and ``path``, the fields of `interp.bench.main_programs.Ran`,
-    and ``wall`` in seconds.
+    A row has ``origin``, ``damage`` and ``path``, the fields of
+    `interp.bench.main_programs.MainProgramResult`, and ``wall`` in seconds.
     """
 
     origin: Origin
@@ -118,13 +118,13 @@ class Surveyed:
 
 def survey(
     origins: Sequence[Origin],
-    bounds: Bounds,
+    bounds: RunBounds,
     *,
     jobs: int = 1,
     cache: Path | None = None,
     on_found: Callable[[int], None] = lambda _count: None,
     on_done: Callable[[], None] = lambda: None,
-) -> Iterator[Surveyed]:
+) -> Iterator[SurveyedOrigin]:
     """Yield the result of each origin when it is complete; the largest origins are begun first.
 
     ``on_found`` is called with the number of further programs found, ``on_done`` for each that has
@@ -159,7 +159,7 @@ class _Survey:
         self,
         pool: StickyPool,
         store: ResultStore,
-        bounds: Bounds,
+        bounds: RunBounds,
         on_found: Callable[[int], None],
         on_done: Callable[[], None],
     ) -> None:
@@ -171,7 +171,7 @@ class _Survey:
         #: The program of each pending result; ``None`` for the list of an origin's programs.
         self._pending: dict[Future[Any], tuple[_Running, int | None]] = {}
 
-    def run(self, origins: Sequence[Origin]) -> Iterator[Surveyed]:
+    def run(self, origins: Sequence[Origin]) -> Iterator[SurveyedOrigin]:
         """See `survey`."""
         todo = deque(sorted(origins, key=lambda origin: -_size(origin.sources)))
         for process in range(min(self._pool.count, len(todo))):
@@ -215,9 +215,9 @@ class _Survey:
         self._on_done()
 
     @staticmethod
-    def _finished(running: _Running) -> Surveyed:
+    def _finished(running: _Running) -> SurveyedOrigin:
         rows = tuple(row for _, row in sorted(running.rows.items()))
-        return Surveyed(running.origin, rows, tuple(running.unread))
+        return SurveyedOrigin(running.origin, rows, tuple(running.unread))
 
 
 def _size(sources: Sequence[Source]) -> int:
@@ -230,14 +230,14 @@ def _size(sources: Sequence[Source]) -> int:
 _programs: list[MainProgram] = []
 
 
-def _list_programs(origin: Origin, bounds: Bounds) -> tuple[list[str], list[tuple[str, str]]]:
+def _list_programs(origin: Origin, bounds: RunBounds) -> tuple[list[str], list[tuple[str, str]]]:
     """Return the paths of the main programs of an origin, and its unreadable files."""
     mains, unread = main_programs(origin.sources, stands_in=bounds.stands_in)
     _programs[:] = [main for main in mains if bounds.sample.draws(main.path)]
     return [main.path for main in _programs], unread
 
 
-def _run_program(place: int, bounds: Bounds) -> dict[str, Any]:
+def _run_program(place: int, bounds: RunBounds) -> dict[str, Any]:
     """Return the row of one program: the fields of `Ran`, and its wall-clock time."""
     profile = survey_profile()
     setup = RunSetup(

@@ -127,10 +127,10 @@ class QuietTime:
         is_waiting = blocked is not None and isinstance(blocked.request, (*REPEATABLE, Wait))
         if not is_waiting or blocked is None or task.levels or task.signals or task.is_halted:
             return None
-        standing = None if task.recurrent is None else task.recurrent.standing()
-        if standing is None:
+        state = None if task.recurrent is None else task.recurrent.recurrence_state()
+        if state is None:
             return None
-        place = (standing, repr(blocked.request), task.exempt_line)
+        place = (state, repr(blocked.request), task.exempt_line)
         if _is_timed(task):
             return place
         wake = None if blocked.wake is None else blocked.wake - now

@@ -26,7 +26,7 @@ from interp.controller.requests.waits import Waits
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
-from interp.port.executor import Unhurried
+from interp.port.executor import SliceScheduling
 from interp.port.requests import At, Crash, End, Fail, Poll, Request, Slice, StopAdvance, Wait
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
@@ -92,7 +92,7 @@ class Scheduler:
     _free_until: int = 0
 
     def __post_init__(self) -> None:
-        if isinstance(executor := self._robot.executor, Unhurried):
+        if isinstance(executor := self._robot.executor, SliceScheduling):
             executor.free_slices = self._free_slices
 
     def run(self, until: int) -> RunOutcome:

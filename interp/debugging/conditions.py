@@ -14,7 +14,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.walk import left_chain
 from interp.port.executor import Reader
-from interp.port.inspection import RELATIONS, Guard, Seen
+from interp.port.inspection import RELATIONS, Guard, InspectedValue
 from interp.port.requests import Path
 from interp.program.literals import LITERALS, known_enumeration
 from interp.values.faults import LinkError, RuntimeFailure
@@ -31,7 +31,7 @@ from interp.values.values import (
     position_type,
 )
 
-_Look = Callable[[str], Seen | None]
+_Look = Callable[[str], InspectedValue | None]
 #: Returns the first and the last variable that a signal denotes, by the name of the signal.
 _Signal = Callable[[str], tuple[ast.Expression, ast.Expression | None] | None]
 

@@ -14,7 +14,7 @@ from interp.debugging.conditions import evaluated, parsed, place_of
 from interp.debugging.executor import DebuggedExecutor
 from interp.debugging.history import Assigned
 from interp.debugging.names import Names, names_in, signal_in
-from interp.port.inspection import Seen, StackFrame
+from interp.port.inspection import InspectedValue, StackFrame
 from interp.port.requests import Path, Value
 from interp.program.load import CheckedProgram
 from interp.values.faults import LinkError
@@ -81,7 +81,7 @@ class Inspection:
         """Return the names of the variables that are visible in a frame."""
         return names_in(self._program, self._tasks[task].inside.frames()[frame])
 
-    def seen(self, text: str, task: TaskName, frame: int = 0) -> Seen | None:
+    def seen(self, text: str, task: TaskName, frame: int = 0) -> InspectedValue | None:
         """Return a variable of a frame by its name; ``None`` if the program has none there."""
         return self._tasks[task].inside.look(text, frame)
 
@@ -124,7 +124,7 @@ class Inspection:
         read = None if self._world is None else self._world.look
         place = self._tasks[task].inside.frames()[frame]
 
-        def look(text: str) -> Seen | None:
+        def look(text: str) -> InspectedValue | None:
             return self.seen(text, task, frame)
 
         return look, read, partial(signal_in, self._program, place)

@@ -17,7 +17,8 @@ from interp.values.faults import RuntimeFailure
 class _Watched:
     """A watch with its last value, and where it applies.
 
-    ``home`` is the data list variable that the watch is about, as in `interp.port.inspection.Seen`.
+    ``home`` is the data list variable that the watch is about, as in
+    `interp.port.inspection.InspectedValue`.
     ``place`` is (program, height of the stack, routine) if it is about data of a routine.
     ``is_known`` is set once the watch has been evaluated in this run.
     """

@@ -70,7 +70,7 @@ class Executor(Protocol):
 
 
 @runtime_checkable
-class Counting(Protocol):
+class StatementCounting(Protocol):
     """An executor that counts statements."""
 
     @property
@@ -80,7 +80,7 @@ class Counting(Protocol):
 
 
 @runtime_checkable
-class Unhurried(Protocol):
+class SliceScheduling(Protocol):
     """An executor that asks how many slices may pass before it makes a `Slice` for each."""
 
     #: How many may pass without a request: with ``True`` where a `Slice` was just answered, the one
@@ -89,7 +89,7 @@ class Unhurried(Protocol):
 
 
 @runtime_checkable
-class Recurrent(Counting, Protocol):
+class RecurrenceDetecting(StatementCounting, Protocol):
     """An executor that can detect that its state recurs, so that idle loops can be skipped."""
 
     @property
@@ -97,7 +97,7 @@ class Recurrent(Counting, Protocol):
         """The number of statements that may be skipped before a limit of the run is reached."""
         ...
 
-    def standing(self) -> object | None:
+    def recurrence_state(self) -> object | None:
         """Return the state on which all further requests depend, apart from the replies.
 
         If two such states are equal, equal replies lead to the same requests from both. Return

@@ -17,7 +17,7 @@ from support.lazy_dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class InspectedValue:
     """A variable, or a part of one: its type and a copy of its value.
 
     ``value`` is ``None`` if the variable has none. ``home`` is ``MODULE.NAME`` in upper case for
@@ -87,7 +87,7 @@ class Inspectable(Executor, Protocol):
         """Return the call stack, innermost frame first."""
         ...
 
-    def look(self, text: str, frame: int = 0) -> Seen | None:
+    def look(self, text: str, frame: int = 0) -> InspectedValue | None:
         """Return the variable of the program, or its part, that ``text`` denotes in a frame.
 
         ``text`` is for example ``"I"``, ``"F.X"``, ``"A[2,1]"`` or ``"T[]"``. Return ``None`` if

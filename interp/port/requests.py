@@ -46,7 +46,7 @@ class CodeHandle:
 
 
 @dataclass(frozen=True, slots=True)
-class Asking:
+class BaseRequest:
     """Base of all requests: the place that the request comes from."""
 
     at: At
@@ -56,14 +56,14 @@ class Asking:
 
 
 @dataclass(frozen=True, slots=True)
-class Read(Asking):
+class Read(BaseRequest):
     """Read a system variable. Reply: its value, or a `interp.values.faults.Fault`."""
 
     path: Path
 
 
 @dataclass(frozen=True, slots=True)
-class Write(Asking):
+class Write(BaseRequest):
     """Assign a value to a system variable. Reply: ``None`` or a fault."""
 
     path: Path
@@ -71,7 +71,7 @@ class Write(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class Invoke(Asking):
+class Invoke(BaseRequest):
     """Call a predefined routine of the controller (PULSE, CWRITE, SET_KRLMSG …) by its name.
 
     An omitted argument is ``None``. ``paths`` has one entry for each argument: the path of the
@@ -86,7 +86,7 @@ class Invoke(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class SetCyclicFlag(Asking):
+class SetCyclicFlag(BaseRequest):
     """``$CYCFLAG[number] = condition``: the condition is assigned, not its value [IOT-11].
 
     Reply: ``None`` or a fault.
@@ -97,7 +97,7 @@ class SetCyclicFlag(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class StopAdvance(Asking):
+class StopAdvance(BaseRequest):
     """An imported variable is accessed or a text formatted, which stops the advance run [ADV-05].
 
     If the reply is a number, no motion is ahead that the executor would have to wait for. It may
@@ -112,14 +112,14 @@ class StopAdvance(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class Wait(Asking):
+class Wait(BaseRequest):
     """WAIT SEC: stops the advance run, then waits for ``seconds`` [CTL-12, TIM-06]."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
-class Poll(Asking):
+class Poll(BaseRequest):
     """WAIT FOR: requested before the condition is evaluated, and each time it was FALSE [CTL-12].
 
     The request with ``is_first`` stops the advance run [ADV-04]. To each of the others, the
@@ -130,28 +130,28 @@ class Poll(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class Halt(Asking):
+class Halt(BaseRequest):
     """HALT: stops the advance run and the program until it is started again [CTL-08]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Continue(Asking):
+class Continue(BaseRequest):
     """CONTINUE: the next line of the file does not stop the advance run [ADV-08]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Slice(Asking):
+class Slice(BaseRequest):
     """The executor has run a full slice of statements without another request: time must pass.
 
     ``count`` is the number of slices that have passed since the previous request; see
-    `interp.port.executor.Unhurried`.
+    `interp.port.executor.SliceScheduling`.
     """
 
     count: int = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Confirm(Asking):
+class Confirm(BaseRequest):
     """CONFIRM: acknowledges a message."""
 
     number: int
@@ -161,7 +161,7 @@ class Confirm(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class Move(Asking):
+class Move(BaseRequest):
     """Plan a motion. The words are those of `grammar.syntax.ast.Motion`; targets are structures.
 
     ``values`` are the assignments after WITH: system variables and their values for this motion
@@ -200,7 +200,7 @@ class SplineStop:
 
 
 @dataclass(frozen=True, slots=True)
-class SetTrigger(Asking):
+class SetTrigger(BaseRequest):
     """A trigger of the next motion; ``action`` is entered when it fires [TRG-01 to TRG-06].
 
     ``place`` is 0 or 1 for DISTANCE, and in mm for PATH; ``delay`` is in ms. ``priority`` is
@@ -221,7 +221,7 @@ SplineItem = Move | SplineRange | SplineStop | SetTrigger
 
 
 @dataclass(frozen=True, slots=True)
-class MoveSpline(Asking):
+class MoveSpline(BaseRequest):
     """A spline block, planned and executed as one motion [SPL-01]."""
 
     keyword: str
@@ -231,7 +231,7 @@ class MoveSpline(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class MoveEmily(Asking):
+class MoveEmily(BaseRequest):
     """MOVE_EMI: a motion along a path that an option package has recorded."""
 
     device: Text
@@ -243,7 +243,7 @@ class MoveEmily(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class DeclareInterrupt(Asking):
+class DeclareInterrupt(BaseRequest):
     """An interrupt is declared at the depth of ``at`` [INT-01, INT-04]."""
 
     number: int
@@ -253,7 +253,7 @@ class DeclareInterrupt(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class SwitchInterrupt(Asking):
+class SwitchInterrupt(BaseRequest):
     """INTERRUPT ON, OFF, ENABLE or DISABLE; ``number`` is ``None`` for all interrupts [INT-07]."""
 
     action: str
@@ -261,19 +261,19 @@ class SwitchInterrupt(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class BrakeArm(Asking):
+class BrakeArm(BaseRequest):
     """BRAKE; ``mode`` is F, FF or ``None`` [INT-09]."""
 
     mode: str | None
 
 
 @dataclass(frozen=True, slots=True)
-class Resume(Asking):
+class Resume(BaseRequest):
     """RESUME: the controller responds by calling `Executor.unwind` [INT-10]."""
 
 
 @dataclass(frozen=True, slots=True)
-class SwitchSignal(Asking):
+class SwitchSignal(BaseRequest):
     """ANIN, ANOUT or DIGIN, ON or OFF [IOT-04, IOT-05, IOT-09].
 
     ``cycle`` is the code that computes and assigns the value once; the controller enters it in
@@ -293,26 +293,26 @@ class SwitchSignal(Asking):
 
 
 @dataclass(frozen=True, slots=True)
-class End(Asking):
+class End(BaseRequest):
     """The routine or action that was entered last has ended; at depth 0, the program has ended."""
 
 
 @dataclass(frozen=True, slots=True)
-class Fail(Asking):
+class Fail(BaseRequest):
     """The program cannot continue because of a fault that it did not catch [design section 8]."""
 
     fault: Exception
 
 
 @dataclass(frozen=True, slots=True)
-class Skip(Asking):
+class Skip(BaseRequest):
     """A statement has failed, and the program continues after it. Reply: ``None``."""
 
     fault: Exception
 
 
 @dataclass(frozen=True, slots=True)
-class Crash(Asking):
+class Crash(BaseRequest):
     """A defect of the executor itself: it has failed in a way that should be impossible."""
 
     reason: str

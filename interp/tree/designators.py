@@ -14,7 +14,7 @@ from grammar.semantics.symbols import Kind, SignalSymbol
 from grammar.semantics.types import BOOL, INT, UNKNOWN, Type
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from interp.port.inspection import Seen
+from interp.port.inspection import InspectedValue
 from interp.port.requests import At, Read, StopAdvance, Write
 from interp.program.variables import (
     is_complete,
@@ -162,7 +162,7 @@ class Designators(ABC):
 
     # ----------------------------------------------------------------------- by text
 
-    def look(self, text: str) -> Seen | None:
+    def look(self, text: str) -> InspectedValue | None:
         """Look up a variable of the program, as `interp.port.inspection.Inspectable.look` does."""
         found = self.find(text)
         answer = self.frame.scope.find(
@@ -172,9 +172,9 @@ class Designators(ABC):
             return None
         whole = self.run.program.declaration(answer)
         if whole.scope.routine is not None or whole.module is None:
-            return Seen(found[0], copied(found[1]), "")
+            return InspectedValue(found[0], copied(found[1]), "")
         module = PurePosixPath(whole.module.path).stem.upper()
-        return Seen(found[0], copied(found[1]), f"{module}.{whole.symbol.key}")
+        return InspectedValue(found[0], copied(found[1]), f"{module}.{whole.symbol.key}")
 
     def find(self, text: str) -> tuple[Type, Value | None] | None:
         """Return type and value of the variable with this name in the frame [TYP-18].

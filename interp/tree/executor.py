@@ -12,7 +12,7 @@ from typing import Any
 
 from interp.port.events import Sink
 from interp.port.executor import Reader
-from interp.port.inspection import Breaks, Seen, StackFrame
+from interp.port.inspection import Breaks, InspectedValue, StackFrame
 from interp.port.requests import (
     At,
     CodeHandle,
@@ -213,7 +213,7 @@ class TreeExecutor:
             depth -= not is_action
         return tuple(found)
 
-    def look(self, text: str, frame: int = 0) -> Seen | None:
+    def look(self, text: str, frame: int = 0) -> InspectedValue | None:
         """Look up a variable in a frame; see `interp.port.inspection`."""
         return Statements(self._run, self._stack[-1 - frame].frame).look(text)
 

@@ -11,7 +11,7 @@ from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from krl.language_server.symbols import nodes_in, parameter, signature
-from krl.language_server.workspace import Looked, certain
+from krl.language_server.workspace import AnalysedFile, certain
 
 _TOKEN = re.compile(r'"[^"]*"|;.*|[$A-Za-z_][\w$]*|\S')
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
@@ -34,7 +34,7 @@ class ArgumentHint:
     name: str
 
 
-def signature_at(looked: Looked, offset: int) -> Signature | None:
+def signature_at(looked: AnalysedFile, offset: int) -> Signature | None:
     """Return the routine whose arguments are at an offset, even in an incomplete line."""
     line, column = looked.source.place(offset)
     called = _open_call(looked.source.line(line)[: column - 1])
@@ -73,7 +73,7 @@ def _open_call(before: str) -> tuple[str, int] | None:
     return stack[-1] if stack else None
 
 
-def argument_hints(looked: Looked, first: int, last: int) -> Iterator[ArgumentHint]:
+def argument_hints(looked: AnalysedFile, first: int, last: int) -> Iterator[ArgumentHint]:
     """Yield the parameters of arguments in some lines, except where the argument has that name."""
     if looked.checked is None:
         return

@@ -14,7 +14,7 @@ from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind
 from grammar.syntax.source import Source
 from krl.language_server.symbols import signature
-from krl.language_server.workspace import Looked, OpenProject
+from krl.language_server.workspace import AnalysedFile, OpenProject
 
 _WORD = re.compile(r"\$?[A-Za-z_][A-Za-z0-9_$]*")
 _MOST_RULES = 6
@@ -36,7 +36,7 @@ class Definition:
     region: Region
 
 
-def definition(project: OpenProject, looked: Looked, offset: int) -> Definition | None:
+def definition(project: OpenProject, looked: AnalysedFile, offset: int) -> Definition | None:
     """Return the declaration of the name at an offset, or ``None`` if no file declares it."""
     found = found_at(looked, offset)
     if found is None or found.module is None:
@@ -47,7 +47,7 @@ def definition(project: OpenProject, looked: Looked, offset: int) -> Definition 
     return Definition(source.path, Region.of(source, found.symbol.span))
 
 
-def hover(project: OpenProject, looked: Looked, offset: int) -> tuple[str, Region] | None:
+def hover(project: OpenProject, looked: AnalysedFile, offset: int) -> tuple[str, Region] | None:
     """Return the hover text for the word at an offset as Markdown, and the region of the word.
 
     Findings at that place are explained first, with the message number of the controller.
@@ -67,7 +67,7 @@ def hover(project: OpenProject, looked: Looked, offset: int) -> tuple[str, Regio
     return "\n\n---\n\n".join(parts), region
 
 
-def _findings(looked: Looked, offset: int) -> list[Diagnostic]:
+def _findings(looked: AnalysedFile, offset: int) -> list[Diagnostic]:
     place = looked.source.place(offset)
     return [
         one
@@ -96,14 +96,14 @@ def _word_at(source: Source, offset: int) -> tuple[str, Region] | None:
     return None
 
 
-def found_at(looked: Looked, offset: int) -> Found | None:
+def found_at(looked: AnalysedFile, offset: int) -> Found | None:
     """Return the declaration of the name at an offset or ending there, or ``None``."""
     return next(
         (found for name, found in looked.names() if name.span[0] <= offset <= name.span[1]), None
     )
 
 
-def _declared(project: OpenProject, looked: Looked, found: Found) -> str:
+def _declared(project: OpenProject, looked: AnalysedFile, found: Found) -> str:
     assert found.module is not None, "asked only of what a file declares"
     symbol = found.symbol
     path = found.module.path

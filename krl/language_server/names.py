@@ -22,7 +22,7 @@ from grammar.syntax.build import builder
 from grammar.syntax.references import Space
 from krl.language_server.hover import found_at
 from krl.language_server.symbols import seen_everywhere, type_name
-from krl.language_server.workspace import Looked, OpenProject, certain
+from krl.language_server.workspace import AnalysedFile, OpenProject, certain
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
 _WORD = re.compile(r"[$\w]*$")
@@ -49,7 +49,7 @@ class Candidate:
 # ------------------------------------------------------------------------------- places of a name
 
 
-def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str, Region]]:
+def places(project: OpenProject, looked: AnalysedFile, offset: int) -> list[tuple[str, Region]]:
     """Return all places of the name at an offset, including declarations, by path and line.
 
     The list is empty if no file declares the name.
@@ -69,7 +69,7 @@ def places(project: OpenProject, looked: Looked, offset: int) -> list[tuple[str,
     return sorted(listed)
 
 
-def highlights(looked: Looked, found: Found) -> set[Region]:
+def highlights(looked: AnalysedFile, found: Found) -> set[Region]:
     """Return the places of a declared name in one file."""
     return {
         Region.of(looked.source, name.span)
@@ -79,7 +79,7 @@ def highlights(looked: Looked, found: Found) -> set[Region]:
 
 
 def renaming(
-    project: OpenProject, looked: Looked, offset: int, name: str
+    project: OpenProject, looked: AnalysedFile, offset: int, name: str
 ) -> list[tuple[str, Region]]:
     """Return the places at which to write ``name`` instead of the name at an offset.
 
@@ -109,7 +109,7 @@ def renaming(
     return listed
 
 
-def _is_taken(looked: Looked, key: str) -> bool:
+def _is_taken(looked: AnalysedFile, key: str) -> bool:
     """Return whether a file uses, declares or can see a name."""
     if key in words_of(looked.source.text):
         return True
@@ -125,7 +125,7 @@ _SPACES = (Space.VALUE, Space.ROUTINE, Space.TYPE)
 # ------------------------------------------------------------------------------------ completion
 
 
-def completions(looked: Looked, offset: int) -> list[Candidate]:
+def completions(looked: AnalysedFile, offset: int) -> list[Candidate]:
     """Return the words that can be written at an offset: keywords, then names, nearest first.
 
     After ``#`` these are the constants of all enumerations, after a dot the members of the
@@ -162,14 +162,14 @@ def _keywords(before: str) -> Iterator[Candidate]:
         yield Candidate(word, None)
 
 
-def _labels(looked: Looked, line: int) -> Iterator[Candidate]:
+def _labels(looked: AnalysedFile, line: int) -> Iterator[Candidate]:
     scope = looked.scope(line)
     if scope is not None and scope.routine is not None:
         for symbol in scope.routine.table.spaces[Space.LABEL].values():
             yield Candidate(symbol.name, Kind.LABEL)
 
 
-def _visible(looked: Looked, line: int) -> Iterator[Candidate]:
+def _visible(looked: AnalysedFile, line: int) -> Iterator[Candidate]:
     scope, module, project = looked.scope(line), looked.module, looked.project
     if scope is not None and module is not None and project is not None and module.table:
         if scope.routine is not None:
@@ -198,7 +198,7 @@ def _declared(table: Table, file: str | None = None) -> Iterator[Candidate]:
             yield Candidate(symbol.name, symbol.kind, type_name(symbol))
 
 
-def _constants(looked: Looked) -> Iterator[Candidate]:
+def _constants(looked: AnalysedFile) -> Iterator[Candidate]:
     modules = looked.project.modules if looked.project else ()
     for module in modules:
         for _, symbol in module.table.table.symbols() if module.table else ():
@@ -211,7 +211,7 @@ def _constants(looked: Looked) -> Iterator[Candidate]:
                 yield Candidate(name, Kind.ENUM_CONSTANT, type_.name)
 
 
-def _members(looked: Looked, line: int, chain: str) -> Iterator[Candidate]:
+def _members(looked: AnalysedFile, line: int, chain: str) -> Iterator[Candidate]:
     """Yield the members of an expression such as ``A.B[1]``."""
     scope = looked.scope(line)
     if scope is None:

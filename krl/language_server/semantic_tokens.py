@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from grammar.semantics.symbols import Kind
-from krl.language_server.workspace import Looked
+from krl.language_server.workspace import AnalysedFile
 
 #: Types and modifiers of the protocol, in the order of their numbers there.
 TYPES: Final = (
@@ -26,7 +26,7 @@ _TYPE_OF: Final = {
 }
 
 
-def semantic_tokens(looked: Looked) -> Iterator[tuple[int, int, int, int]]:
+def semantic_tokens(looked: AnalysedFile) -> Iterator[tuple[int, int, int, int]]:
     """Yield offset, length, token type and modifier bits of each known name, in order.
 
     Labels have no token.

@@ -26,7 +26,7 @@ from krl.language_server.names import RenameError, completions, highlights, plac
 from krl.language_server.protocol import location, path_of, range_of
 from krl.language_server.semantic_tokens import MODIFIERS, TYPES, semantic_tokens
 from krl.language_server.symbols import folds, outline, wanted
-from krl.language_server.workspace import Looked, OpenProject
+from krl.language_server.workspace import AnalysedFile, OpenProject
 from krl.project_settings import FILE_NAME
 from krl.running.program_loading import project_root
 
@@ -382,7 +382,7 @@ class _Handlers:
                 found.append(protocol.action(f"ignore {one.code} here", uri, edit, shown))
         return found
 
-    def _asked(self, given: _AtPlace) -> tuple[Looked, int] | None:
+    def _asked(self, given: _AtPlace) -> tuple[AnalysedFile, int] | None:
         """Return the file and the offset of a request; ``None`` if the file has no such place."""
         looked = self._project.look(path_of(given.text_document.uri))
         if looked is None or given.position.line >= len(looked.source.lines):

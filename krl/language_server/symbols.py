@@ -10,7 +10,7 @@ from grammar.semantics.symbols import Access, Kind, ParameterSymbol, RoutineSymb
 from grammar.syntax import ast
 from grammar.syntax.references import PLANS
 from grammar.syntax.source import Source
-from krl.language_server.workspace import Looked, OpenProject
+from krl.language_server.workspace import AnalysedFile, OpenProject
 
 _MOST_SYMBOLS = 500
 _BLOCKS = (
@@ -40,7 +40,7 @@ class Outline:
     inner: tuple[Outline, ...] = ()
 
 
-def outline(looked: Looked) -> tuple[Outline, ...]:
+def outline(looked: AnalysedFile) -> tuple[Outline, ...]:
     """Return the routines of a program with their data, or the data of a data list."""
     module, source = looked.module, looked.source
     if module is None or module.table is None or module.syntax is None:
@@ -120,7 +120,7 @@ def seen_everywhere(symbol: Symbol, file: str) -> bool:
     return symbol.access is Access.GLOBAL or symbol.key == file
 
 
-def folds(looked: Looked) -> list[tuple[int, int]]:
+def folds(looked: AnalysedFile) -> list[tuple[int, int]]:
     """Return first and last lines of ;FOLD … ;ENDFOLD, routines and blocks; ends stay visible."""
     source = looked.source
     found = {(fold.first, fold.last) for fold in source.folds if fold.last is not None}
@@ -131,7 +131,7 @@ def folds(looked: Looked) -> list[tuple[int, int]]:
     return sorted((first, last) for first, last in found if last > first)
 
 
-def nodes_in(looked: Looked) -> Iterator[ast.Node]:
+def nodes_in(looked: AnalysedFile) -> Iterator[ast.Node]:
     """Yield all inner nodes of the syntax tree of a file, in no particular order."""
     module = looked.module
     todo: list[ast.Node | None] = []

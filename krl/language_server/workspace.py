@@ -23,7 +23,7 @@ from grammar.check.project.suppression_comments import apply_suppressions, suppr
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.diagnostics.suppression import Selection
 from grammar.semantics.link import File, Project, Workspace, link
-from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, Scope
+from grammar.semantics.scopes import Answer, Found, Module, Scope, Undetermined
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
 from grammar.syntax.ast import Name
@@ -65,7 +65,7 @@ class _Judged:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Looked:
+class AnalysedFile:
     """All that is known of one file.
 
     ``module``, ``project`` and ``checked`` are ``None`` for a file that cannot be read.
@@ -97,7 +97,7 @@ class Looked:
 
 def certain(answer: Answer) -> Answer:
     """Return the only candidate, even if the line being typed makes it uncertain."""
-    if isinstance(answer, MaybeElsewhere) and len(answer.candidates) == 1:
+    if isinstance(answer, Undetermined) and len(answer.candidates) == 1:
         return answer.candidates[0]
     return answer
 
@@ -110,7 +110,7 @@ class OpenProject:
         self._linked: Mapping[str, tuple[Project, Module]] | None = None
         self._workspaces: dict[Settings, Workspace] = {}
         self._caught_up: set[Project] = set()
-        self._looked: dict[str, Looked] = {}
+        self._looked: dict[str, AnalysedFile] = {}
         self._judged: dict[str, _Judged] = {}
         self._origins: dict[Path, str] = {}
         self._agreed: dict[Path, Settings] = {}
@@ -192,7 +192,7 @@ class OpenProject:
         known = self._files.get(path)
         return None if known is None else known.source
 
-    def look(self, path: str) -> Looked | None:
+    def look(self, path: str) -> AnalysedFile | None:
         """Return all that is known of a file, or ``None`` if it is unknown."""
         known = self._files.get(path)
         if known is None:
@@ -201,18 +201,18 @@ class OpenProject:
             self._looked[path] = self._fresh(known)
         return self._looked[path]
 
-    def _fresh(self, known: _Read) -> Looked:
+    def _fresh(self, known: _Read) -> AnalysedFile:
         source = known.source
         place = self._projects().get(source.path)
         if place is None:
-            return Looked(source, ())
+            return AnalysedFile(source, ())
         project, module = place
         checked = self._check(known, project, module)
         found = [one for one in self._graded(project, source.path) if one.path == source.path]
         kept = _kept(source, found, self._settings(source.path))
         if checked is None:
-            return Looked(source, kept)
-        return Looked(source, kept, module, project, checked)
+            return AnalysedFile(source, kept)
+        return AnalysedFile(source, kept, module, project, checked)
 
     def _check(
         self, known: _Read, project: Project, module: Module, needs: Needs | None = None

@@ -28,7 +28,7 @@ from grammar.diagnostics.typos import Series, Typos, small_prefix
 from grammar.semantics.link import SHARED, Project
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
-from grammar.semantics.scopes import Found, MaybeElsewhere, Module, NotFound, Reason
+from grammar.semantics.scopes import Found, Module, NotFound, Reason, Undetermined
 from grammar.semantics.symbols import Access, Kind, Symbol, Table
 from grammar.semantics.types import CHAR, SCALARS, Array, Enumeration, Structure
 from grammar.syntax import ast
@@ -171,7 +171,7 @@ def lacks_data_list(project: Project, module: Module, resolution: Resolution) ->
         return False
     return any(
         use.space is Space.VALUE
-        and isinstance(use.answer, MaybeElsewhere)
+        and isinstance(use.answer, Undetermined)
         and not use.name.text.startswith("$")
         for use in resolution.open_uses
     )
@@ -327,7 +327,7 @@ def _members(context: Context) -> Iterator[UnresolvedName]:
     for name in context.resolution.unknown_members:
         unknown.setdefault(name.key, []).append(name)
     open_ = (
-        [use.name for use in some if isinstance(use.answer, MaybeElsewhere)]
+        [use.name for use in some if isinstance(use.answer, Undetermined)]
         for (space, _), some in context.open_uses.items()
         if space is None
     )
@@ -393,13 +393,13 @@ _FOR_BAS = re.compile(
 
 def _may_be_elsewhere(use: Use) -> bool:
     """Return whether a missing file may declare a name; not if several files declare it."""
-    if isinstance(use.answer, MaybeElsewhere):
+    if isinstance(use.answer, Undetermined):
         return use.answer.reason is not Reason.AMBIGUOUS
     return isinstance(use.answer, Found)  # only EXT announces it
 
 
 def _may_be_unread(use: Use) -> bool:
-    return isinstance(use.answer, MaybeElsewhere) and use.answer.reason is Reason.UNREADABLE
+    return isinstance(use.answer, Undetermined) and use.answer.reason is Reason.UNREADABLE
 
 
 def _near(
@@ -458,7 +458,7 @@ def _is_all_read(context: Context, use: Use) -> bool:
     program whose name is a prefix of the variable's name, and that list may be missing.
     """
     project, begin = context.project, use.name.key[:SHARED]
-    if not isinstance(use.answer, MaybeElsewhere) or _may_be_unread(use):
+    if not isinstance(use.answer, Undetermined) or _may_be_unread(use):
         return False
     if use.space not in (Space.VALUE, Space.CHANNEL) or not project.has_config or begin[0] == "$":
         return False

@@ -34,7 +34,7 @@ class Label:
 
 
 @dataclass(slots=True, eq=False)
-class Later:
+class DeferredOperand:
     """An operand that is known only when the code object is complete."""
 
     value: int = -1
@@ -51,15 +51,15 @@ class CopyBuffer:
     element: Type
     dimensions: int
     given: set[Bound] = field(default_factory=set)
-    offset: Later = field(default_factory=Later)
-    type: Later = field(default_factory=Later)
+    offset: DeferredOperand = field(default_factory=DeferredOperand)
+    type: DeferredOperand = field(default_factory=DeferredOperand)
 
 
-Operand = int | Label | Later
+Operand = int | Label | DeferredOperand
 
 
 @dataclass(slots=True)
-class Written:
+class PendingInstruction:
     """An instruction whose jump targets are labels."""
 
     op: Op
@@ -81,7 +81,7 @@ class Writer:
     captures: list[int] = field(default_factory=list)
     _locals: list[Local] = field(default_factory=list)
     _cells: int = 0
-    _code: list[Written] = field(default_factory=list)
+    _code: list[PendingInstruction] = field(default_factory=list)
     _labels: list[Label] = field(default_factory=list)
     _free: dict[int, list[int]] = field(default_factory=dict)
     _buffers: list[CopyBuffer] = field(default_factory=list)
@@ -150,7 +150,7 @@ class Writer:
 
     def emit(self, op: Op, *operands: Operand) -> None:
         """Append an instruction."""
-        self._code.append(Written(op, operands))
+        self._code.append(PendingInstruction(op, operands))
 
     @property
     def here(self) -> int:
@@ -159,9 +159,9 @@ class Writer:
 
     def insert(self, place: int, op: Op, *operands: Operand) -> None:
         """Insert an instruction into the code of the current expression, which has no labels."""
-        self._code.insert(place, Written(op, operands))
+        self._code.insert(place, PendingInstruction(op, operands))
 
-    def last(self) -> Written | None:
+    def last(self) -> PendingInstruction | None:
         """Return the last instruction, or ``None`` if a label follows it."""
         if not self._code or any(label.place == self.here for label in self._labels[-3:]):
             return None
@@ -212,13 +212,13 @@ class Writer:
             buffer.offset.value = self.local(f"%{len(self._locals)}", type_)
             buffer.type.value = self.tables.number(type_)
 
-    def _instruction(self, written: Written, places: dict[int, int]) -> Instruction:
+    def _instruction(self, written: PendingInstruction, places: dict[int, int]) -> Instruction:
         operands: list[int] = []
         for operand in written.operands:
             match operand:
                 case Label(place):
                     operands.append(places[place])
-                case Later(value):
+                case DeferredOperand(value):
                     operands.append(value)
                 case _:
                     operands.append(operand)

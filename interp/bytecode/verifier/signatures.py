@@ -73,7 +73,7 @@ _REQUESTS: Mapping[str, tuple[str, ...]] = {
 }
 #: The items of a spline block: their fields, and whether they have a place in the source.
 _SPLINE_ITEMS: Mapping[str, tuple[tuple[str, ...], bool]] = {
-    one.__name__: (_kinds(one), issubclass(one, requests.Asking))
+    one.__name__: (_kinds(one), issubclass(one, requests.BaseRequest))
     for one in get_args(requests.SplineItem)
 }
 

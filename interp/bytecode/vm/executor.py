@@ -26,7 +26,7 @@ from interp.bytecode.vm.statement_budget import Guard
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
-from interp.port.inspection import Breaks, Seen, StackFrame
+from interp.port.inspection import Breaks, InspectedValue, StackFrame
 from interp.port.requests import (
     At,
     CodeHandle,
@@ -136,7 +136,7 @@ class Machine:
 
     @property
     def free_slices(self) -> Callable[[bool], int]:
-        """See `interp.port.executor.Unhurried`."""
+        """See `interp.port.executor.SliceScheduling`."""
         return self._services.free_slices
 
     @free_slices.setter
@@ -243,10 +243,10 @@ class Machine:
 
     # ----------------------------------------------------------------------- skipping
 
-    def standing(self) -> object | None:
+    def recurrence_state(self) -> object | None:
         """Return everything that determines the continuation; see `interp.port.executor`."""
         now, state, counter, random = self._open, self._state, self._services.counter, self._random
-        counted = counter.standing
+        counted = counter.recurrence_state
         is_known = state.site is not None and now.request is not None and not self._entered
         if counted is None or not is_known or not isinstance(random, Randomness):
             return None
@@ -304,7 +304,7 @@ class Machine:
             depth -= not is_action
         return tuple(found)
 
-    def look(self, text: str, frame: int = 0) -> Seen | None:
+    def look(self, text: str, frame: int = 0) -> InspectedValue | None:
         """Return a variable as seen from a frame; see `interp.port.inspection`."""
         return self._names(frame).look(text)
 

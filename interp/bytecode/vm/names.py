@@ -20,7 +20,7 @@ from interp.bytecode.cell_layout import (
 )
 from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
 from interp.bytecode.vm.state import State
-from interp.port.inspection import Seen
+from interp.port.inspection import InspectedValue
 from interp.port.requests import Path
 from interp.values.faults import LinkError
 from interp.values.values import Value
@@ -168,7 +168,7 @@ class Names:
         type_, address = self._place(text) or (None, None)
         return None if type_ is None or address is None else (type_, address, slot is not None)
 
-    def look(self, text: str) -> Seen | None:
+    def look(self, text: str) -> InspectedValue | None:
         """Return type, value and further facts for a debugger; see `interp.port.inspection`."""
         found = self.find(text)
         if found is None:
@@ -176,9 +176,9 @@ class Names:
         root = str(_STEP.findall(text.upper())[0])
         number = None if self._slot(root) else self._number(root)
         if number is None:
-            return Seen(*found, "")
+            return InspectedValue(*found, "")
         data = self._program.data[number]
-        return Seen(*found, f"{data.module.upper()}.{data.name.upper()}")
+        return InspectedValue(*found, f"{data.module.upper()}.{data.name.upper()}")
 
     def _variable(self, name: str) -> tuple[Type, int | None] | None:
         slot = self._slot(name)

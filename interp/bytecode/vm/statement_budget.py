@@ -93,7 +93,7 @@ class Counter:
             self._allowed = self._state.stops = max(min(stops, most), 0)
 
     @property
-    def standing(self) -> tuple[int, ...] | None:
+    def recurrence_state(self) -> tuple[int, ...] | None:
         """The state of the counter; ``None`` close to the budget or with ON_ERROR_PROCEED."""
         if self._guard is not Guard.OFF or self.spare <= 0:
             return None

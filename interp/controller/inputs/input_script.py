@@ -29,14 +29,14 @@ class ScriptError(RuntimeFailure):
 
 
 @dataclass(frozen=True, slots=True)
-class Word:
+class EnumWord:
     """``#NAME``, a constant of the enumeration that the variable has as its type."""
 
     name: str
 
 
 #: A value as written in a script.
-Literal = bool | int | float | str | Word
+Literal = bool | int | float | str | EnumWord
 
 # ------------------------------------------------------------------------------------- causes
 
@@ -49,7 +49,7 @@ class AtTime:
 
 
 @dataclass(frozen=True, slots=True)
-class Becomes:
+class VariableChanged:
     """``on OUT[3]=TRUE``: a variable changes to this value."""
 
     path: Path
@@ -57,31 +57,31 @@ class Becomes:
 
 
 @dataclass(frozen=True, slots=True)
-class Halted:
+class ProgramHalted:
     """``on HALT``: the program executes HALT."""
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class MessageShown:
     """``on message 1442``: a message appears; any message if there is no number."""
 
     number: int | None
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class DialogueShown:
     """``on dialogue``: a dialogue appears."""
 
 
 @dataclass(frozen=True, slots=True)
-class Received:
+class TextReceived:
     """``on channel SER_1 gets "ping"``: the program sends a text; any text if none is given."""
 
     channel: str
     text: str | None
 
 
-Cause = AtTime | Becomes | Halted | Shown | Asked | Received
+Cause = AtTime | VariableChanged | ProgramHalted | MessageShown | DialogueShown | TextReceived
 
 # ------------------------------------------------------------------------------------- actions
 
@@ -267,20 +267,20 @@ class _Line:
         if not self.take("ON"):
             self.fail("a line begins with t=SECONDS, with on, with fulfil waits, or with stop at")
         if self.take("HALT"):
-            return Halted()
+            return ProgramHalted()
         if self.take("DIALOGUE"):
-            return Asked()
+            return DialogueShown()
         if self.take("MESSAGE"):
             is_any = self.is_done or self._tokens[self._place][0] != "number"
-            return Shown(None if is_any else self._count("the number of a message"))
+            return MessageShown(None if is_any else self._count("the number of a message"))
         if self.take("CHANNEL"):
             channel = self._channel()
             self.need("GETS")
             is_any = self.is_done or self._tokens[self._place][0] != "text"
-            return Received(channel, None if is_any else self._next("text", "a text")[1:-1])
+            return TextReceived(channel, None if is_any else self._next("text", "a text")[1:-1])
         path = self._path()
         self.need("=")
-        return Becomes(path, self._literal())
+        return VariableChanged(path, self._literal())
 
     def _action(self) -> Action:
         if self.take("PRESS"):
@@ -334,7 +334,7 @@ class _Line:
         if kind == "text":
             return text[1:-1]
         if text.startswith("#"):
-            return Word(text[1:].upper())
+            return EnumWord(text[1:].upper())
         if text.upper() not in ("TRUE", "FALSE"):
             self.fail(f"{text!r} is not a value")
         return text.upper() == "TRUE"

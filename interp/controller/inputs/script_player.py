@@ -9,21 +9,21 @@ from grammar.semantics.types import Enumeration
 from interp.controller.inputs.channels import Channels
 from interp.controller.inputs.input_script import (
     Answer,
-    Asked,
     Assign,
     AtTime,
-    Becomes,
     Cause,
-    Halted,
+    DialogueShown,
+    EnumWord,
     Literal,
+    MessageShown,
     Press,
-    Received,
+    ProgramHalted,
     Script,
     ScriptError,
     ScriptStep,
     Send,
-    Shown,
-    Word,
+    TextReceived,
+    VariableChanged,
 )
 from interp.controller.inputs.operator_panel import OperatorPanel
 from interp.controller.state.state import ControllerState
@@ -47,8 +47,8 @@ class ScriptPlayer:
         self._panel = panel
         self._channels = channels
         self._steps: dict[Cause, list[ScriptStep]] = defaultdict(list)
-        self._watched: dict[str, list[tuple[Becomes, Value]]] = defaultdict(list)
-        self._held: dict[Becomes, bool] = {}
+        self._watched: dict[str, list[tuple[VariableChanged, Value]]] = defaultdict(list)
+        self._held: dict[VariableChanged, bool] = {}
         self._pending: list[ScriptStep] = []
         #: Whether the script may do anything.
         self.has_steps = bool(script.steps)
@@ -59,7 +59,7 @@ class ScriptPlayer:
             else:
                 self._steps[step.cause].append(step)
         for cause in self._steps:
-            if isinstance(cause, Becomes):
+            if isinstance(cause, VariableChanged):
                 wanted = self._typed(cause.path, cause.value)
                 self._watched[str(cause.path[0])].append((cause, wanted))
                 self._held[cause] = self._variables.read(cause.path) == wanted
@@ -76,19 +76,19 @@ class ScriptPlayer:
 
     def halted(self) -> None:
         """Note that the program executes HALT."""
-        self._happened(Halted())
+        self._happened(ProgramHalted())
 
     def shown(self, number: int, kind: str) -> None:
         """Note that a message or a dialogue has appeared."""
-        self._happened(Shown(number))
-        self._happened(Shown(None))
+        self._happened(MessageShown(number))
+        self._happened(MessageShown(None))
         if kind == "dialogue":
-            self._happened(Asked())
+            self._happened(DialogueShown())
 
     def received(self, channel: str, text: str) -> None:
         """Note that a program has sent a text to the peer of a channel."""
-        self._happened(Received(channel, text))
-        self._happened(Received(channel, None))
+        self._happened(TextReceived(channel, text))
+        self._happened(TextReceived(channel, None))
 
     def _happened(self, cause: Cause) -> None:
         for step in self._steps.get(cause, ()):
@@ -107,7 +107,7 @@ class ScriptPlayer:
         may_come = [
             step
             for cause, steps in self._steps.items()
-            if not isinstance(cause, Halted)
+            if not isinstance(cause, ProgramHalted)
             for step in steps
         ]
         return any(
@@ -136,7 +136,7 @@ class ScriptPlayer:
 
     def _check(self, step: ScriptStep) -> None:
         pairs = [(one.path, one.value) for one in step.actions if isinstance(one, Assign)]
-        if isinstance(step.cause, Becomes):
+        if isinstance(step.cause, VariableChanged):
             pairs.append((step.cause.path, step.cause.value))
         for path, value in pairs:
             name = str(path[0])
@@ -150,7 +150,7 @@ class ScriptPlayer:
 
     def _typed(self, path: Path, value: Literal) -> Value:
         """Return a literal as a value of the type that the variable has."""
-        if isinstance(value, Word):
+        if isinstance(value, EnumWord):
             type_ = self._variables.part_type(path)
             if not isinstance(type_, Enumeration):
                 raise LinkError(f"#{value.name} is given to what is no enumeration")

@@ -12,7 +12,7 @@ from typing import Final, Literal
 
 from interp.controller.state.interrupts import Interrupt, Interrupts
 from interp.controller.state.trace import TaskName, TaskSink
-from interp.port.executor import Counting, Executor, Reader, Recurrent
+from interp.port.executor import Executor, Reader, RecurrenceDetecting, StatementCounting
 from interp.port.requests import At, CodeHandle, Request, SetTrigger, SwitchSignal, Value
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
@@ -105,12 +105,12 @@ class Task:
     signals: dict[str, SwitchSignal] = field(default_factory=dict)
     is_over: bool = False
     is_halted: bool = False
-    counting: Counting | None = field(init=False)
-    recurrent: Recurrent | None = field(init=False)
+    counting: StatementCounting | None = field(init=False)
+    recurrent: RecurrenceDetecting | None = field(init=False)
 
     def __post_init__(self) -> None:
-        self.counting = self.executor if isinstance(self.executor, Counting) else None
-        self.recurrent = self.executor if isinstance(self.executor, Recurrent) else None
+        self.counting = self.executor if isinstance(self.executor, StatementCounting) else None
+        self.recurrent = self.executor if isinstance(self.executor, RecurrenceDetecting) else None
 
     @property
     def level(self) -> Level | None:

@@ -21,7 +21,7 @@ from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.kinematics.targets import check_path, follow
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.robot.path.transition import Transition, chained
-from interp.robot.path.uniform_spline import Table
+from interp.robot.path.uniform_spline import UniformSpline
 from interp.values.faults import Fault
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Curve(Protocol):
         ...
 
 
-class Others(Protocol):
+class ExternalAxes(Protocol):
     """The path of the external axes, as a function of u; arrays are ``(n, axes)``."""
 
     def at(self, u: Array) -> Array:
@@ -98,39 +98,39 @@ class Others(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class InStep:
+class LinearExternals:
     """External axes that are linear in u."""
 
     start: Array
     end: Array
 
     def at(self, u: Array) -> Array:
-        """See `Others.at`."""
+        """See `ExternalAxes.at`."""
         return self.start + u[:, None] * (self.end - self.start)
 
     def rates(self, u: Array) -> Rates:
-        """See `Others.rates`."""
+        """See `ExternalAxes.rates`."""
         zeros = np.zeros((len(u), len(self.start)))
         return zeros + (self.end - self.start), zeros, zeros
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BlendedOthers:
+class BlendedExternals:
     """External axes of a blend, combined as in `BlendedAxes`."""
 
-    first: Others
-    second: Others
+    first: ExternalAxes
+    second: ExternalAxes
     transition: Transition
 
     def at(self, u: Array) -> Array:
-        """See `Others.at`."""
+        """See `ExternalAxes.at`."""
         one, other = self.transition.at(u)
         corner = self.first.at(np.ones(1))
         axes: Array = self.first.at(one) - corner + self.second.at(other)
         return axes
 
     def rates(self, u: Array) -> Rates:
-        """See `Others.rates`."""
+        """See `ExternalAxes.rates`."""
         return _blended_rates(self, u)
 
 
@@ -143,12 +143,12 @@ class Piecewise:
     length: float
 
     def at(self, u: Array) -> Array:
-        """See `Others.at`."""
+        """See `ExternalAxes.at`."""
         axes: Array = self.spline(self.start + u * self.length)
         return axes
 
     def rates(self, u: Array) -> Rates:
-        """See `Others.rates`."""
+        """See `ExternalAxes.rates`."""
         where = self.start + u * self.length
         first, second, third = (self.spline(where, n) * self.length**n for n in (1, 2, 3))
         return first, second, third
@@ -282,7 +282,7 @@ class PosePathCurve:
         placement: Placement,
         pose_path: PosePath,
         start: Array,
-        others: Others,
+        others: ExternalAxes,
     ) -> None:
         self.arm = arm
         self.placement = placement
@@ -293,7 +293,7 @@ class PosePathCurve:
         self._tool = matrix_of(placement.tool)
         self.others = others
         self.grid, axes = self._points(start)
-        self._table = Table(axes)
+        self._table = UniformSpline(axes)
         ends = np.concatenate((axes[[0, -1]], others.at(np.array([0.0, 1.0]))), axis=1)
         self.start: Array = ends[0]
         self.end: Array = ends[1]
@@ -360,7 +360,7 @@ class PosePathCurve:
         return grid, axes
 
 
-def _blended_rates(blend: BlendedAxes | BlendedOthers, u: Array) -> Rates:
+def _blended_rates(blend: BlendedAxes | BlendedExternals, u: Array) -> Rates:
     """Return the derivatives of a blend by u, from those of its two parts."""
     parameters, rates = blend.transition.at(u), blend.transition.rates(u)
     leaving = chained(blend.first.rates(parameters[0]), rates[0][:, :, None])

@@ -13,10 +13,10 @@ from typing import Protocol
 import numpy as np
 
 from interp.robot.kinematics.solver import Array
+from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation
 from interp.robot.path.transition import Transition
-from interp.robot.path.way import Way
 
 
 class PosePath(Protocol):
@@ -113,7 +113,7 @@ class Blend:
     @property
     def length(self) -> float:
         """See `PosePath.length`."""
-        return Way(self.tangents).length
+        return ArcLength(self.tangents).length
 
     @property
     def angles(self) -> tuple[float, float]:

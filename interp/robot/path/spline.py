@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from interp.robot.kinematics.solver import Array
+from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, turning
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine
-from interp.robot.path.way import Way
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RotationSpline
@@ -98,7 +98,7 @@ class _Swept:
         return rotations
 
 
-class Free:
+class FreeSegment:
     """An SPL segment: a quintic polynomial, reparametrised by its length.
 
     ``ends`` has position, first and second derivative at both ends, ``(2, 3, 3)``, by a parameter
@@ -108,7 +108,7 @@ class Free:
     def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
         self._coefficients = _quintic(ends, span)
         self._orientation = orientation
-        self.way = Way(self._slopes)
+        self.way = ArcLength(self._slopes)
         self.length = self.way.length
         grid = np.linspace(0.0, 1.0, _SAMPLES)
         from scipy.interpolate import CubicSpline
@@ -120,9 +120,9 @@ class Free:
         """See `interp.robot.path.pose_path.PosePath.angles`; here the largest rate over u."""
         return self._orientation.swivel, self._orientation.rotation
 
-    def turned(self, orientation: Orientation) -> Free:
+    def turned(self, orientation: Orientation) -> FreeSegment:
         """Return the same curve with another orientation."""
-        other = object.__new__(Free)
+        other = object.__new__(FreeSegment)
         other.__dict__.update(self.__dict__, _orientation=orientation)
         return other
 
@@ -166,7 +166,7 @@ def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
         turned = turning(start.rotation, end.rotation)
         return [StraightLine(start.position, start.position, turned)]
     still = turning(chain[0].start.rotation, chain[0].start.rotation)
-    shapes: list[StraightLine | Arc | Free] = []
+    shapes: list[StraightLine | Arc | FreeSegment] = []
     place = 0
     while place < len(chain):
         if chain[place].is_exact:
@@ -180,13 +180,13 @@ def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
         following = chain[last] if last < len(chain) else None
         ends, spans = _run(chain[place:last], before, following)
         shapes += [
-            Free(ends[number : number + 2], span, still) for number, span in enumerate(spans)
+            FreeSegment(ends[number : number + 2], span, still) for number, span in enumerate(spans)
         ]
         place = last
     swept = _orientations(chain, [shape.length for shape in shapes], still)
     return [
         shape.turned(orientation)
-        if isinstance(shape, Free)
+        if isinstance(shape, FreeSegment)
         else replace(shape, orientation=orientation)
         for shape, orientation in zip(shapes, swept, strict=True)
     ]

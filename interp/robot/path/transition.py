@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 
 from interp.robot.kinematics.solver import Array
-from interp.robot.path.way import Way
+from interp.robot.path.arc_length import ArcLength
 
 _ROUNDS = 60
 _EXACT = 1e-15
@@ -123,7 +123,7 @@ class Rounding:
         return self._way.parameters(u * self._length)
 
     @cached_property
-    def _way(self) -> Way:
+    def _way(self) -> ArcLength:
         """The length along the curve as a function of v, in sums of both sides."""
         (a, b), c = self._shares, self.cosine
 
@@ -131,7 +131,7 @@ class Rounding:
             one, other = a * _side(1.0 - v, self.slope)[1], b * _side(v, self.slope)[1]
             return np.stack((one + c * other, math.sqrt(1.0 - c * c) * other), axis=1)
 
-        return Way(tangents)
+        return ArcLength(tangents)
 
     @property
     def _length(self) -> float:

@@ -17,7 +17,7 @@ _MAPPED = 129
 """The number of points above which the matrix would need too much memory."""
 
 
-class Table:
+class UniformSpline:
     """A cubic spline on [0, 1] through points ``(n, columns)``, with its derivatives."""
 
     def __init__(self, points: Array) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Array, Kinematics
 from interp.robot.kinematics.targets import ptp_target
-from interp.robot.path.axis_path import Others, PosePathCurve
+from interp.robot.path.axis_path import ExternalAxes, PosePathCurve
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -37,7 +37,7 @@ class WristCurve(PosePathCurve):
         placement: Placement,
         pose_path: PosePath,
         start: Array,
-        others: Others,
+        others: ExternalAxes,
     ) -> None:
         (end,) = poses_of(pose_path, np.ones(1))
         try:

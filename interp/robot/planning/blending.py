@@ -18,7 +18,7 @@ from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.targets import check_path
 from interp.robot.path.axis_path import (
     BlendedAxes,
-    BlendedOthers,
+    BlendedExternals,
     Curve,
     PosePathCurve,
     Rates,
@@ -51,7 +51,7 @@ _STEP = 1.0 / 64.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Joint:
+class PlannedBlend:
     """A blend: its curve, the bounds along it, and its connection to both motions.
 
     ``zone`` is what it replaces of both, which may be less than the zone requested. ``into`` and
@@ -74,7 +74,7 @@ def blend_of(
     machine: MachineData,
     limits: AxisLimits,
     run: StraightRun | None = None,
-) -> Joint:
+) -> PlannedBlend:
     """Return the blend of a zone; ``run`` is the straight run that ends with the first motion.
 
     Among the transitions with about the same duration, the one nearest to a parabola is used.
@@ -100,7 +100,7 @@ def blend_of(
     else:
         pose_path = Blend(common[0].tool_path, common[1].tool_path, transition)
         (start,) = one.axes(np.array([1.0 - zone.before]))
-        others = BlendedOthers(common[0].others, common[1].others, transition)
+        others = BlendedExternals(common[0].others, common[1].others, transition)
         curve = PosePathCurve(one.arm, one.placement, pose_path, start[:ROBOT_AXES], others)
     # The spline of the axes sees little of how quickly the curve begins to bend.
     ends = axes.rates(np.array([0.0, 1.0]))
@@ -109,7 +109,7 @@ def blend_of(
     in_t1 = reduced_paths(curve, machine, *settings)
     slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
     ceiling = _ceiling(first, second, transition, curve, (x, y, z), machine, slowest)
-    return Joint(zone, curve, ceiling, *_junctions(transition))
+    return PlannedBlend(zone, curve, ceiling, *_junctions(transition))
 
 
 def _ceiling(
@@ -157,10 +157,10 @@ def _straight_on(
     machine: MachineData,
     limits: AxisLimits,
     run: StraightRun | None,
-) -> Joint | None:
-    """Return the joint of two straight motions of which the second continues in the same direction.
+) -> PlannedBlend | None:
+    """Return the blend of two straight motions of which the second continues in the same direction.
 
-    The joint is straight, too. Return ``None`` if it would miss the point between them.
+    The blend is straight, too. Return ``None`` if it would miss the point between them.
     """
     one, other = first.pieces[-1], second.pieces[0]
     parts = StraightPart.of(one.curve), StraightPart.of(other.curve)
@@ -186,7 +186,7 @@ def _straight_on(
         )
         ceiling = ceiling_of(curve, limits, allowed, paths)
     into, out = Junction(ways[0] / length), Junction(length / ways[1])
-    return Joint(zone, curve, ceiling, into, out, straight)
+    return PlannedBlend(zone, curve, ceiling, into, out, straight)
 
 
 def _soonest(

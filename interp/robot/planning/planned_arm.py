@@ -162,17 +162,17 @@ class PlannedArm:
             return False
         try:
             machine, limits = self._tracks.machine, self._tracks.limits
-            joint = blend_of(before.last, track, zone, machine, limits, before.straight)
+            planned = blend_of(before.last, track, zone, machine, limits, before.straight)
         except Fault:
             return False
         number = track.motion.number
-        shorter = replace(body, end=1.0 - joint.zone.before)
-        blend = Section(body.number, number, joint.curve, joint.ceiling, junction=joint.into)
+        shorter = replace(body, end=1.0 - planned.zone.before)
+        blend = Section(body.number, number, planned.curve, planned.ceiling, junction=planned.into)
         first, *others = _sections(track)
-        rest = (replace(first, start=joint.zone.after, junction=joint.out), *others)
+        rest = (replace(first, start=planned.zone.after, junction=planned.out), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
-        if joint.straight is not None:
-            route = tuple(joint.straight.bounded(section) for section in route)
+        if planned.straight is not None:
+            route = tuple(planned.straight.bounded(section) for section in route)
             shorter = route[len(before.route) - 1]
         if not self._reschedule(route, new_behind=shorter):
             return False
@@ -185,7 +185,7 @@ class PlannedArm:
                 Passage(track.motion, rest, into=blend),
             ),
             track,
-            joint.straight,
+            planned.straight,
         )
         return True
 

@@ -16,7 +16,13 @@ from interp.robot.arm import Motion, Settings, SplinePart
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.kinematics.targets import check_path
-from interp.robot.path.axis_path import InStep, JointLine, JointSpline, Others, Piecewise
+from interp.robot.path.axis_path import (
+    ExternalAxes,
+    JointLine,
+    JointSpline,
+    LinearExternals,
+    Piecewise,
+)
 from interp.robot.path.circle import circle_through
 from interp.robot.path.pose_path import PosePath
 from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
@@ -130,10 +136,10 @@ def _pieces(
     return tuple(pieces)
 
 
-def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> Others:
+def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> ExternalAxes:
     """Return the external axes along a segment: a spline over the length of the chain."""
     if len(pose_paths) == 1 or not externals.shape[1]:
-        return InStep(externals[place], externals[place + 1])
+        return LinearExternals(externals[place], externals[place + 1])
     knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
     from scipy.interpolate import CubicSpline
 

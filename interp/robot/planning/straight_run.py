@@ -14,7 +14,7 @@ import numpy as np
 
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
-from interp.robot.path.axis_path import Curve, InStep, JointLine, PosePathCurve
+from interp.robot.path.axis_path import Curve, JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine
 from interp.robot.planning.limits import AxisLimits, Ceiling, ceiling_of
@@ -151,7 +151,7 @@ def straight_through(
     (point,), (turned,) = lines[0].at(np.array([start]))
     (there,), (turn,) = lines[1].at(np.array([end]))
     whole = StraightLine(point, there, turning(turned, turn))
-    others = InStep(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
+    others = LinearExternals(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
     places, rotations = whole.at(shares)
     is_through = (
         _is_near(places, np.array([part.point for part in parts[:-1]]), whole.length)

@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from interp.robot.arm import Samples
 from interp.robot.kinematics.solver import Array
+from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.axis_path import Curve, tool_tangents
-from interp.robot.path.way import Way
 from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import Ceiling, Stretch
 from interp.robot.planning.profile import SpeedProfile
@@ -66,9 +66,9 @@ class Section:
         ]
 
     @cached_property
-    def way(self) -> Way:
+    def way(self) -> ArcLength:
         """The distance that the tool travels along the curve from u = 0 on."""
-        return Way(lambda u: tool_tangents(self.curve, u))
+        return ArcLength(lambda u: tool_tangents(self.curve, u))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,9 +16,9 @@ from interp.robot.kinematics.placement import IpoMode
 from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.path.axis_path import (
     Curve,
-    InStep,
+    ExternalAxes,
     JointLine,
-    Others,
+    LinearExternals,
     PosePathCurve,
     tool_tangents,
 )
@@ -177,7 +177,7 @@ class Tracks:
         if max(pose_path.length, swivel, rotation, travel) < _STILL:
             track = Track(motion, (self.still(before.axes, settings),), self.limits)
             return track, before.reached(before.axes, point, settings.placement)
-        others = InStep(before.axes[ROBOT_AXES:], externals)
+        others = LinearExternals(before.axes[ROBOT_AXES:], externals)
         piece = self.along(pose_path, before.axes[:ROBOT_AXES], others, motion.kind, settings)
         track = Track(motion, (piece,), self.limits.carrying(settings.loads))
         axes = piece.curve.end
@@ -185,7 +185,7 @@ class Tracks:
         return track, before.reached(axes, reached, settings.placement)
 
     def along(
-        self, pose_path: PosePath, start: Array, others: Others, kind: str, settings: Settings
+        self, pose_path: PosePath, start: Array, others: ExternalAxes, kind: str, settings: Settings
     ) -> Piece:
         """Return the piece for a path, from the axes of the robot at its start. Raises `Fault`."""
         limits = self.limits.carrying(settings.loads)

@@ -26,7 +26,7 @@ from krl.terminal.progress import progress_bar
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source
-    from interp.bench.program_survey import Origin, Surveyed
+    from interp.bench.program_survey import Origin, SurveyedOrigin
 
 _RESULTS = {
     "end": "to its end",
@@ -120,17 +120,17 @@ def programs(
     its arm has stood still for 20 s. Stand-ins replace what a backup lacks, as in `krl run`. Each
     origin is shown as soon as its programs have run. Exit status 1 after a defect of the workbench.
     """
-    from interp.bench.program_survey import Bounds, Chance, damaged, remaining, survey
+    from interp.bench.program_survey import RandomSample, RunBounds, damaged, remaining, survey
     from interp.executors import available
 
     check_files(json_file)
-    bounds = Bounds(
+    bounds = RunBounds(
         executor=executor.value if executor is not None else available()[-1],
         robot=robot.value,
         until=round(max_time * 1e6),
         cpu=max_cpu,
         stands_in=not strict,
-        sample=Chance(sample, seed),
+        sample=RandomSample(sample, seed),
     )
     whole = _origins(programs_or_ours(paths))
     left = remaining(whole, part.value)
@@ -152,7 +152,7 @@ def programs(
         "unread": [],
     }
     console = Console(highlight=False)
-    finished: dict[Origin, Surveyed] = {}
+    finished: dict[Origin, SurveyedOrigin] = {}
     expected = 0
     with progress_bar("running programs") as bar:
 
@@ -184,7 +184,7 @@ def _origins(paths: list[Path]) -> "list[Origin]":
     return [Origin(name, tuple(sources)) for name, sources in files.items()]
 
 
-def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
+def _fill(record: dict[str, Any], finished: "Sequence[SurveyedOrigin]") -> None:
     """Put the results so far into the record."""
     rows = [row for one in finished for row in one.rows]
     record["programs"] = rows
@@ -207,7 +207,7 @@ def _fill(record: dict[str, Any], finished: "Sequence[Surveyed]") -> None:
     ]
 
 
-def _print_origin(console: Console, done: "Surveyed") -> None:
+def _print_origin(console: Console, done: "SurveyedOrigin") -> None:
     if not done.rows:
         return
     damage = f" ({done.origin.damage})" if done.origin.damage else ""

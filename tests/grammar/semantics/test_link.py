@@ -10,7 +10,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.semantics.link import File, Project, Workspace, link
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, resolve
-from grammar.semantics.scopes import Answer, Found, MaybeElsewhere, Module, NotFound, Reason
+from grammar.semantics.scopes import Answer, Found, Module, NotFound, Reason, Undetermined
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.types import REAL, UNKNOWN, Array, Structure, Type
 from grammar.syntax import ast
@@ -158,7 +158,7 @@ def test_two_backups_see_nothing_of_one_another() -> None:
     assert () == first.clashes + second.clashes
     path = "Program/a.src"
     assert "one/KRC/R1/System/$config.dat" == declared_in(use(first, f"one/KRC/R1/{path}", "N"))
-    assert isinstance(use(second, f"other/KRC/R1/{path}", "N"), MaybeElsewhere)
+    assert isinstance(use(second, f"other/KRC/R1/{path}", "N"), Undetermined)
     assert "other/KRC/R1/Program/b.src" == declared_in(use(second, f"other/KRC/R1/{path}", "B"))
 
 
@@ -228,7 +228,7 @@ def test_origins_are_never_mixed() -> None:
     """Files of two origins are two projects, whatever their paths."""
     files = [file("a.src", src("A()", "B()"), "one"), file("b.src", src("B()"), "two")]
     first, second = link(files).projects
-    assert isinstance(use(first, "a.src", "B"), MaybeElsewhere)
+    assert isinstance(use(first, "a.src", "B"), Undetermined)
     assert "two" not in {module.path for module in second.modules}
 
 
@@ -251,7 +251,7 @@ def test_same_module_in_two_folders() -> None:
     )
     assert "new/lib.src" == declared_in(use(of, "new/deep/a.src", "LIB"))
     answer = use(of, "c.src", "LIB")
-    assert isinstance(answer, MaybeElsewhere)
+    assert isinstance(answer, Undetermined)
     assert (Reason.AMBIGUOUS, 2) == (answer.reason, len(answer.candidates))
     (clash,) = of.clashes
     assert ["old/lib.src", "new/lib.src"] == list(map(declared_in, clash.declarations))
@@ -287,7 +287,7 @@ def test_backup_without_one_of_its_files(missing: str) -> None:
     texts = {path: text for path, text in BACKUP.items() if path != missing}
     path = "KRC/R1/Program/a.src"
     of = project(texts | {path: src("A()", "N=1")})
-    assert MaybeElsewhere(Reason.MODULES_MISSING) == use(of, path, "N")
+    assert Undetermined(Reason.MODULES_MISSING) == use(of, path, "N")
 
 
 def test_backup_that_calls_a_package_which_is_not_there() -> None:
@@ -295,20 +295,20 @@ def test_backup_that_calls_a_package_which_is_not_there() -> None:
     path = "KRC/R1/Program/a.src"
     of = project(BACKUP | {path: src("A()", "N=1", "PACKAGE()")})
     assert not of.is_complete
-    assert MaybeElsewhere(Reason.MODULES_MISSING) == use(of, path, "N")
+    assert Undetermined(Reason.MODULES_MISSING) == use(of, path, "N")
 
 
 def test_routine_that_no_controller_has() -> None:
     """FCT-01: ROUND is no predefined function; where nothing is missing the call leads nowhere."""
     texts = {"neg.src": src("NEG()", "DECL REAL R", "R=ROUND(2.5)")}
     assert NotFound() == use(project(texts, is_complete=True), "neg.src", "ROUND")
-    assert isinstance(use(project(texts), "neg.src", "ROUND"), MaybeElsewhere)
+    assert isinstance(use(project(texts), "neg.src", "ROUND"), Undetermined)
 
 
 def test_unknown_system_variable() -> None:
     """No table of system variables is complete, so none of them is certain to be missing."""
     of = project({"a.src": src("A()", "$OF_SOME_RELEASE=1")}, is_complete=True)
-    assert MaybeElsewhere(Reason.SYSTEM) == use(of, "a.src", "$OF_SOME_RELEASE")
+    assert Undetermined(Reason.SYSTEM) == use(of, "a.src", "$OF_SOME_RELEASE")
 
 
 def test_data_list_that_cannot_be_read() -> None:
@@ -324,22 +324,22 @@ def test_data_list_that_cannot_be_read() -> None:
         is_complete=True,
     )
     shadowed = use(of, "a.src", "N")
-    assert isinstance(shadowed, MaybeElsewhere)
+    assert isinstance(shadowed, Undetermined)
     assert ["g.dat"] == list(map(declared_in, shadowed.candidates))
-    assert MaybeElsewhere(Reason.UNREADABLE) == use(of, "a.src", "M")
+    assert Undetermined(Reason.UNREADABLE) == use(of, "a.src", "M")
     assert declared_in(use(of, "a.src", "$OV_PRO")) is None
     assert "$machine.dat" == declared_in(use(of, "a.src", "$NUM_AX"))
     assert NotFound() == use(of, "a.src", "X")
     assert "b.src" == declared_in(use(of, "a.src", "B"))
     assert "g.dat" == declared_in(use(of, "b.src", "N"))
-    assert MaybeElsewhere(Reason.UNREADABLE) == use(of, "b.src", "M")
+    assert Undetermined(Reason.UNREADABLE) == use(of, "b.src", "M")
 
 
 def test_program_that_cannot_be_read() -> None:
     """It may hold any routine, but no data of others."""
     texts = {"a.src": src("A()", "N=B()"), "b.src": BROKEN}
     of = project(texts, is_complete=True)
-    assert MaybeElsewhere(Reason.UNREADABLE) == use(of, "a.src", "B")
+    assert Undetermined(Reason.UNREADABLE) == use(of, "a.src", "B")
     assert NotFound() == use(of, "a.src", "N")
 
 

@@ -1,7 +1,7 @@
 """What option packages declare for a project."""
 
 from grammar.semantics.link import File, Project, link
-from grammar.semantics.scopes import Found, MaybeElsewhere
+from grammar.semantics.scopes import Found, Undetermined
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
@@ -28,7 +28,7 @@ def test_a_called_package_is_there() -> None:
     assert isinstance(scope.find(Space.ROUTINE, "EKI_GETREAL"), Found)
     status = scope.find(Space.TYPE, "EKI_STATUS")
     assert isinstance(status, Found)
-    assert isinstance(scope.find(Space.ROUTINE, "RSI_CREATE"), MaybeElsewhere)
+    assert isinstance(scope.find(Space.ROUTINE, "RSI_CREATE"), Undetermined)
 
 
 def test_a_package_is_named() -> None:
@@ -51,7 +51,7 @@ def test_a_run_knows_no_packages() -> None:
     """Where packages are not asked for, nothing is declared that no file has."""
     known = project(CALLS, packages=None)
     scope = known.scope(known.modules[0])
-    assert isinstance(scope.find(Space.ROUTINE, "EKI_OPEN"), MaybeElsewhere)
+    assert isinstance(scope.find(Space.ROUTINE, "EKI_OPEN"), Undetermined)
 
 
 def test_every_controller_has_bas() -> None:

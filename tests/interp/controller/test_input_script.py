@@ -12,17 +12,17 @@ from grammar.syntax.source import Source
 from interp.controller import Script, ScriptError
 from interp.controller.inputs.input_script import (
     Answer,
-    Asked,
     Assign,
     AtTime,
-    Becomes,
-    Halted,
+    DialogueShown,
+    EnumWord,
+    MessageShown,
     Press,
-    Received,
+    ProgramHalted,
     ScriptStep,
     Send,
-    Shown,
-    Word,
+    TextReceived,
+    VariableChanged,
 )
 from interp.program.load import load
 from interp.session import EXECUTORS, RunSetup, run_program
@@ -51,14 +51,14 @@ def test_language() -> None:
     found = [(one.cause, one.delay, one.actions) for one in script.steps]
     assert [
         (AtTime(500_000), 0, (Assign(("$IN", 1), True), Assign(("$ANIN", 2), -0.4))),
-        (AtTime(1_000_000), 0, (Assign(("$MODE_OP",), Word("T1")),)),
+        (AtTime(1_000_000), 0, (Assign(("$MODE_OP",), EnumWord("T1")),)),
         (AtTime(2_000_000), 0, (Assign(("$IN", 1, "TO", 8), 17),)),
-        (Becomes(("$OUT", 3), True), 200_000, (Assign(("$IN", 7), True),)),
-        (Halted(), 1_000_000, (Press("START"),)),
-        (Shown(1442), 0, (Press("CONFIRM"),)),
-        (Shown(None), 0, (Press("CONFIRM", 1442),)),
-        (Asked(), 0, (Answer(2),)),
-        (Received("SER_1", "ping"), 100_000, (Send("SER_1", "pong"),)),
+        (VariableChanged(("$OUT", 3), True), 200_000, (Assign(("$IN", 7), True),)),
+        (ProgramHalted(), 1_000_000, (Press("START"),)),
+        (MessageShown(1442), 0, (Press("CONFIRM"),)),
+        (MessageShown(None), 0, (Press("CONFIRM", 1442),)),
+        (DialogueShown(), 0, (Answer(2),)),
+        (TextReceived("SER_1", "ping"), 100_000, (Send("SER_1", "pong"),)),
     ] == found
     assert (10_000_000, 1_500_000) == (script.stop, script.fulfils)
     assert 0 == Script.read("FULFIL WAITS").fulfils

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.circle import circle_through
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import Arc, Blend, PosePath, StraightLine
 from interp.robot.path.transition import Rounding
-from interp.robot.path.way import Way
 
 STILL = turning(np.eye(3), np.eye(3))
 FIRST = StraightLine(np.zeros(3), np.array([100.0, 0.0, 0.0]), STILL)
@@ -34,7 +34,7 @@ def test_way_and_tangents(pose_path: PosePath) -> None:
     u = np.linspace(0.0, 1.0, 20001)
     places, _ = pose_path.at(u)
     chords = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))))
-    assert np.allclose(chords, Way(pose_path.tangents).at(u), atol=1e-4)
+    assert np.allclose(chords, ArcLength(pose_path.tangents).at(u), atol=1e-4)
     assert pose_path.length == pytest.approx(chords[-1], rel=1e-6)
     assert np.allclose(np.gradient(places, u, axis=0)[1:-1], pose_path.tangents(u)[1:-1], atol=1e-3)
 
@@ -42,7 +42,7 @@ def test_way_and_tangents(pose_path: PosePath) -> None:
 @pytest.mark.parametrize("pose_path", PATHS, ids=lambda pose_path: type(pose_path).__name__)
 def test_from_the_way_to_the_place(pose_path: PosePath) -> None:
     """The parameter at a length has that length before it."""
-    way = Way(pose_path.tangents)
+    way = ArcLength(pose_path.tangents)
     lengths = np.linspace(0.0, way.length, 57)
     assert np.allclose(lengths, way.at(way.parameters(lengths)), atol=1e-9)
 

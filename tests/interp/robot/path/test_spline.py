@@ -11,7 +11,7 @@ import pytest
 from interp.port.requests import SplineRange
 from interp.robot.arm import Approximation, Place, SplinePart
 from interp.robot.path.pose_path import Arc, StraightLine
-from interp.robot.path.spline import Free
+from interp.robot.path.spline import FreeSegment
 from interp.values.faults import Fault
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def test_lines_and_arcs_are_exact(driver: Driver) -> None:
     """SLIN is a straight line and SCIRC an arc, whatever lies beside them."""
     sections = run(driver, MIXED)
     kinds = [type(section.curve.pose_path) for section in sections]
-    assert kinds == [Free, Free, StraightLine, Free, Arc, Free]
+    assert kinds == [FreeSegment, FreeSegment, StraightLine, FreeSegment, Arc, FreeSegment]
 
 
 def test_tangent_and_curvature_go_on(driver: Driver) -> None:

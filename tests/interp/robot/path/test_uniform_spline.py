@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from interp.robot.path.uniform_spline import Table
+from interp.robot.path.uniform_spline import UniformSpline
 
 
 @pytest.mark.parametrize("count", [33, 257])
 def test_a_smooth_function(count: int) -> None:
     """Between the points, values and derivatives are those of the function, as far as can be."""
     grid = np.linspace(0.0, 1.0, count)
-    table = Table(np.stack((np.sin(3 * grid), np.exp(grid)), axis=1))
+    table = UniformSpline(np.stack((np.sin(3 * grid), np.exp(grid)), axis=1))
     u = np.linspace(0.0, 1.0, 1001)
     first, second, third = table.rates(u)
     assert np.allclose(table.at(u), np.stack((np.sin(3 * u), np.exp(u)), axis=1), atol=1e-6)
@@ -22,4 +22,4 @@ def test_a_smooth_function(count: int) -> None:
 def test_through_its_points() -> None:
     """The points themselves are met."""
     points = np.random.default_rng(4).normal(size=(65, 6))
-    assert np.allclose(Table(points).at(np.linspace(0.0, 1.0, 65)), points)
+    assert np.allclose(UniformSpline(points).at(np.linspace(0.0, 1.0, 65)), points)

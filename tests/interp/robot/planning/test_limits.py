@@ -12,7 +12,7 @@ import pytest
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.targets import follow
-from interp.robot.path.axis_path import InStep, JointLine, PosePathCurve
+from interp.robot.path.axis_path import JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine, poses_of
 from interp.robot.planning.limits import Ceiling, PathLimits, axis_limits, ceiling_of
@@ -33,7 +33,7 @@ def line(
     pose = arm.forward(start[:6])
     still = turning(pose[:3, :3], pose[:3, :3])
     pose_path = StraightLine(pose[:3, 3], pose[:3, 3] + np.array(shift), still)
-    return PosePathCurve(arm, Placement(), pose_path, start[:6], InStep(NONE, NONE))
+    return PosePathCurve(arm, Placement(), pose_path, start[:6], LinearExternals(NONE, NONE))
 
 
 def test_limits_are_those_of_the_machine_data(machine: MachineData) -> None:

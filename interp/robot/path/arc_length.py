@@ -14,7 +14,7 @@ _PARTS = 32
 _EXACT = 1e-12  # of u
 
 
-class Way:
+class ArcLength:
     """The arc length of a curve up to any parameter, computed from its tangents."""
 
     def __init__(self, tangents: Callable[[Array], Array], parts: int = _PARTS) -> None:
