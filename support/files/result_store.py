@@ -66,6 +66,11 @@ class ResultStore:
         if self._base is not None:
             self._base.close()
 
+    @property
+    def is_open(self) -> bool:
+        """Whether values are stored."""
+        return self._base is not None
+
     def get(self, digest: str) -> object:
         """Return the value stored under a digest, or ``None`` if none can be read."""
         body = self.get_bytes(digest)

@@ -53,6 +53,10 @@ class Needs:
         return self.facts == before.facts != "" and (self.names == before.names or not is_open)
 
 
+#: Those of a file whose findings are not kept, or never stand.
+NO_NEEDS = Needs("", "")
+
+
 def contribution(
     path: str, text: str, table: ModuleTable | None, unread: frozenset[str] | None
 ) -> Contribution:

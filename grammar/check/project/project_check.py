@@ -18,7 +18,13 @@ from grammar.check.analysis.spelling import Spelling
 from grammar.check.flow import advance_stops
 from grammar.check.flow.effects import effects_of_unread
 from grammar.check.names.undeclared_names import uses_of_unread
-from grammar.check.project.dependencies import Contribution, Needs, contribution, needs_of
+from grammar.check.project.dependencies import (
+    NO_NEEDS,
+    Contribution,
+    Needs,
+    contribution,
+    needs_of,
+)
 from grammar.check.project.framework import Findings, check_module, check_project
 from grammar.check.project.suppression_comments import SuppressionComment, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
@@ -200,14 +206,21 @@ _KEPT: dict[int, dict[int, _Tree]] = {}
 
 
 def recheck(
-    contents: Sequence[Content], options: CheckOptions, known: Mapping[int, KnownFile]
+    contents: Sequence[Content],
+    options: CheckOptions,
+    known: Mapping[int, KnownFile],
+    *,
+    is_kept: bool = True,
 ) -> list[KnownFile]:
-    """Check a project in this process, except for ``known`` files that are still valid."""
+    """Check a project in this process, except for ``known`` files that are still valid.
+
+    If the results are not ``is_kept`` for a later check, nothing is worked out for that.
+    """
     project = -1
     new = {index: one for index, one in enumerate(contents) if index not in known}
     looked = {index: one.read for index, one in known.items()}
-    looked |= read_part(project, new, options)
-    needed = needs(contents, looked)
+    looked |= read_part(project, new, options, is_kept=is_kept)
+    needed = needs(contents, looked) if is_kept else [NO_NEEDS] * len(contents)
     stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
     places = [(content.path, content.origin) for content in contents]
     checked = check_part(project, places, looked, stale, options)
@@ -217,7 +230,7 @@ def recheck(
 def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list[Needs]:
     """Return the needs of each file of a project, from the results of reading all of them."""
     places = [(content.path, content.origin) for content in contents]
-    found = [Needs("", "")] * len(contents)
+    found = [NO_NEEDS] * len(contents)
     by_path = {path: index for index, (path, _) in enumerate(places)}
     for project in _linked(_files(places, looked, {}), CheckOptions()):
         members = [by_path[module.path] for module in project.modules]
@@ -249,22 +262,25 @@ def completed(
 
 
 def read_part(
-    project: int, part: Mapping[int, Content], options: CheckOptions
+    project: int, part: Mapping[int, Content], options: CheckOptions, *, is_kept: bool = True
 ) -> dict[int, FileResult]:
-    """Read a share of the files of a project, and keep their trees for `check_part`."""
-    looked, _KEPT[project] = _read_all(part, options)
+    """Read a share of the files of a project, and keep their trees for `check_part`.
+
+    ``is_kept`` as in `recheck`.
+    """
+    looked, _KEPT[project] = _read_all(part, options, is_kept=is_kept)
     return looked
 
 
 def _read_all(
-    part: Mapping[int, Content], options: CheckOptions
+    part: Mapping[int, Content], options: CheckOptions, *, is_kept: bool = True
 ) -> tuple[dict[int, FileResult], dict[int, _Tree]]:
     """Read some files; return their results and what is kept of them."""
     looked, kept = {}, {}
     size = 0
     for index, content in part.items():
         with gc_paused(MANY_OBJECTS):
-            looked[index], tree = _read(content, options)
+            looked[index], tree = _read(content, options, is_kept=is_kept)
         if tree is not None:
             size += len(content.data)
             if size > _MOST_KEPT:
@@ -273,7 +289,9 @@ def _read_all(
     return looked, kept
 
 
-def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | None]:
+def _read(
+    content: Content, options: CheckOptions, *, is_kept: bool
+) -> tuple[FileResult, _Tree | None]:
     path = content.path
     if content.is_unread:
         return FileResult(Reading(None, (), frozenset({REST})).alone()), None
@@ -296,7 +314,7 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
         looked = FileResult(reading.alone(), None, None, lines, comments, reading.words, given)
         return looked, None
     table = table_of(tree)
-    given = contribution(path, source.text, table, reading.words)
+    given = contribution(path, source.text, table if is_kept else None, reading.words)
     looked = FileResult(Findings(found, ()), None, table, None, comments, reading.words, given)
     return looked, _Tree(table, source, comments, reading)
 

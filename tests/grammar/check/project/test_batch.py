@@ -107,6 +107,19 @@ def test_unchanged_projects_are_not_checked_again(
     assert ("SHIFT.src", 4, "KRL401") in codes(changed)
 
 
+def test_without_a_cache_nothing_is_computed_for_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What later checks would need to know of each file is left out, and nothing is missing."""
+    root = lay(tmp_path / "root", CALLER__src=CALLER.replace("5", "5, 6"), SHIFT__src=CALLED)
+    expected = codes(check(root, cache=tmp_path / "cache"))
+    monkeypatch.setattr(project_check, "needs", None)
+    assert expected == codes(check(root))
+    monkeypatch.setattr(module, "needs", None)
+    monkeypatch.setattr(module, "_LARGE", 0)
+    assert expected == codes(check(root, jobs=2))
+
+
 def test_a_declaration_that_changes_reaches_those_who_use_it(tmp_path: Path) -> None:
     """A caller is checked again when the parameters of what it calls change, others are not."""
     root = lay(tmp_path / "root", CALLER__src=CALLER, SHIFT__src=CALLED, A__src="DEF A()\nEND\n")
