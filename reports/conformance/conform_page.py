@@ -8,7 +8,7 @@ from reports.conformance.conform_view import VERDICTS, conform_view
 from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render, source
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import plain, shown
+from reports.rendering.sanitizing import plain, shown, shown_texts
 from support.files.atomic_write import write_atomic
 
 Json = dict[str, Any]
@@ -89,20 +89,15 @@ def _case(case: Record, *, has_details: bool) -> Json:
     Without details its files are omitted, as are the events, paths and findings of its results.
     """
     return {
-        "name": shown(text(case, "name"), 200),
-        "suite": shown(text(case, "suite"), 80),
-        "title": shown(text(case, "title"), 300),
+        **shown_texts(case, name=200, suite=80, title=300, phase=20, profile=40),
+        **shown_texts(case, unconfirmed=300, verdict=20),
         "rules": [shown(rule, 20) for rule in texts(case, "rules")],
-        "phase": shown(text(case, "phase"), 20),
-        "profile": shown(text(case, "profile"), 40),
         "negative": bool(case.get("negative")),
-        "unconfirmed": shown(text(case, "unconfirmed"), 300),
-        "verdict": shown(text(case, "verdict"), 20),
         "io": [shown(line, 200) for line in texts(case, "io")],
         "files": [
             {
-                "name": shown(text(file, "name"), 200),
-                "lines": [shown(line, 400) for line in text(file, "text").splitlines()[:3000]],
+                **shown_texts(file, name=200),
+                "lines": [shown(line) for line in text(file, "text").splitlines()[:3000]],
             }
             for file in (records(case, "files") if has_details else ())
         ],
@@ -117,11 +112,7 @@ def _result(result: Record) -> Json:
     """Return a result as the page's script reads it; the script completes what is empty."""
     path = nested(result, "path")
     whole = {
-        "executor": shown(text(result, "executor"), 40),
-        "robot": shown(text(result, "robot"), 40),
-        "verdict": shown(text(result, "verdict"), 20),
-        "reason": shown(text(result, "reason"), 600),
-        "ending": shown(text(result, "ending"), 60),
+        **shown_texts(result, executor=40, robot=40, verdict=20, reason=600, ending=60),
         "checks": [
             {name: plain(check.get(name)) for name in _CHECK} for check in records(result, "checks")
         ],
@@ -140,11 +131,8 @@ def _result(result: Record) -> Json:
 
 def _rule(rule: Record) -> Json:
     return {
-        "tier": shown(text(rule, "tier"), 10),
+        **shown_texts(rule, tier=10, statement=600, source=100, unshown=300),
         "mayFail": bool(rule.get("may_fail")),
-        "statement": shown(text(rule, "statement"), 600),
-        "source": shown(text(rule, "source"), 100),
-        "unshown": shown(text(rule, "unshown"), 300),
         "cases": count(rule, "cases"),
     }
 

@@ -150,9 +150,7 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> _Nigh
         date=shown(text(record, "date"), 40),
         failures=tuple(map(_failure, records(record, "failures")[:_MAX_CHANGES])),
         figures=tuple(_figures(record)),
-        changes=tuple(
-            (_tone(one), shown(one, 400)) for one in texts(record, "changes")[:_MAX_CHANGES]
-        ),
+        changes=tuple((_tone(one), shown(one)) for one in texts(record, "changes")[:_MAX_CHANGES]),
         steps=tuple(_step(name, step) for name, step in nested(record, "steps").items()),
         bench=tuple(
             (
@@ -202,7 +200,7 @@ def _failure(record: Record) -> _Failure:
     is_ours = page.startswith(_PAGES)
     return _Failure(
         text(record, "what").startswith(OF_THE_RUN),
-        shown(text(record, "what"), 400),
+        shown(text(record, "what")),
         page if is_ours else "",
         shown(text(record, "command"), 200),
         tuple(

@@ -5,12 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from reports.rendering.embedding import printable
-from reports.rendering.number_format import clip, counted
+from reports.rendering.number_format import counted
 from reports.rendering.record_fields import Record, count, nested, records, text, texts
+from reports.rendering.sanitizing import shown
 
 _MOST = 2_000
-_LONGEST = 400
 #: Angles below this are rounding errors.
 _SMALLEST_ANGLE = 0.005
 #: Components that are summarised by the distance and the angles.
@@ -91,10 +90,10 @@ def diff_view(record: Record) -> DiffView:
         ),
     ]
     return DiffView(
-        _shown(text(record, "old")),
-        _shown(text(record, "new")),
+        shown(text(record, "old")),
+        shown(text(record, "new")),
         figures,
-        [(_shown(text(one, "old")), _shown(text(one, "new"))) for one in records(record, "names")],
+        [(shown(text(one, "old")), shown(text(one, "new"))) for one in records(record, "names")],
         [*_files(files)][:_MOST],
         [_routine(one) for one in routines[:_MOST]],
         [_point(one) for one in far[:_MOST]],
@@ -114,24 +113,20 @@ def _figure(label: str, value: int, section: str, note: str = "") -> Mapping[str
 
 
 def _files(files: Record) -> Iterator[str]:
-    yield from (f"{_shown(path)} added" for path in texts(files, "added"))
-    yield from (f"{_shown(path)} removed" for path in texts(files, "removed"))
+    yield from (f"{shown(path)} added" for path in texts(files, "added"))
+    yield from (f"{shown(path)} removed" for path in texts(files, "removed"))
     moved = [*records(files, "moved")]
     folders = Counter(tuple(texts(one, "folders")) for one in moved)
     for (old, new), number in folders.items():
         if number > 1:
-            yield f"{number:,} files of {_shown(old)} are in {_shown(new)} now"
+            yield f"{number:,} files of {shown(old)} are in {shown(new)} now"
     for one in moved:
         if folders[tuple(texts(one, "folders"))] == 1:
-            yield f"{_shown(text(one, 'new'))} was {_shown(text(one, 'old'))}"
-
-
-def _shown(words: str) -> str:
-    return printable(clip(words, _LONGEST))
+            yield f"{shown(text(one, 'new'))} was {shown(text(one, 'old'))}"
 
 
 def _place(one: Record) -> str:
-    return _shown(f"{text(one, 'file')}:{count(one, 'line')}")
+    return shown(f"{text(one, 'file')}:{count(one, 'line')}")
 
 
 # ---------------------------------------------------------------------------------------- routines
@@ -163,13 +158,11 @@ def _routine(one: Record) -> RoutineRow:
     hunks = []
     for hunk in records(one, "hunks"):
         sides = [(mark, texts(hunk, key)) for key, mark in (("old", "-"), ("new", "+"))]
-        lines = [(mark, _shown(line)) for mark, side in sides for line in side]
+        lines = [(mark, shown(line)) for mark, side in sides for line in side]
         was, now = count(hunk, "old_line"), count(hunk, "new_line")
         hunks.append((f"line {was}" if was == now else f"line {was}, now {now}", lines))
     size = sum(len(lines) for _, lines in hunks)
-    return RoutineRow(
-        _place(one), _shown(routine_name(one)), _shown(routine_words(one)), hunks, size
-    )
+    return RoutineRow(_place(one), shown(routine_name(one)), shown(routine_words(one)), hunks, size)
 
 
 # ------------------------------------------------------------------------------- points and data
@@ -241,9 +234,9 @@ def _point(one: Record) -> PointRow:
     is_measured = text(one, "kind") == "changed" and any(_measures(one))
     said = ", ".join(_others(one)) if is_measured else point_words(one)
     name = text(one, "name")
-    return PointRow(_place(one), _shown(name), _shown(said), *_measures(one), _shown(_frames(one)))
+    return PointRow(_place(one), shown(name), shown(said), *_measures(one), shown(_frames(one)))
 
 
 def _datum(one: Record) -> DatumRow:
-    old, new = _shown(text(one, "old")), _shown(text(one, "new"))
-    return DatumRow(_place(one), _shown(text(one, "name")), text(one, "kind"), old, new)
+    old, new = shown(text(one, "old")), shown(text(one, "new"))
+    return DatumRow(_place(one), shown(text(one, "name")), text(one, "kind"), old, new)

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from reports.programs.run_view import run_view
-from reports.rendering.embedding import embedded_json, printable
-from reports.rendering.number_format import clip
+from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render, source
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import plain
+from reports.rendering.sanitizing import plain, shown, shown_texts
 from support.files.atomic_write import write_atomic
 
 _MAX_SAMPLES = 6_000
@@ -94,7 +93,7 @@ def _events(events: Sequence[Record]) -> Sequence[Record]:
 def _event(event: Record) -> Json:
     """Return an event with all its fields; those used in calculations have their types."""
     fields: Json = plain(event, 200)
-    named = {name: printable(clip(text(event, name), 200)) for name in ("task", "kind", "at")}
+    named = shown_texts(event, task=200, kind=200, at=200)
     return {**fields, **named, "t": count(event, "t")}
 
 
@@ -102,7 +101,7 @@ def _observation(seen: Record) -> Json:
     return {
         **_event({name: seen[name] for name in ("t", "kind", "at") if name in seen}),
         "end": count(seen, "end"),
-        "parts": [printable(clip(part, 60)) for part in texts(seen, "parts")],
+        "parts": [shown(part, 60) for part in texts(seen, "parts")],
         "value": number(seen, "value"),
         "limit": number(seen, "limit"),
     }
@@ -111,8 +110,8 @@ def _observation(seen: Record) -> Json:
 def _file(file: Record) -> Json:
     lines = text(file, "text").splitlines()[:_MAX_LINES]
     return {
-        "path": printable(clip(text(file, "path"), 400)),
-        "lines": [printable(clip(line.replace("\t", "    "), 400)) for line in lines],
+        **shown_texts(file, path=400),
+        "lines": [shown(line) for line in lines],
     }
 
 
@@ -133,16 +132,16 @@ def _path(path: Record) -> Json:
 
     axes, tool, measured = columns("axes"), places("tool"), places("tool_measured")
     samples = _samples([*axes, *zip(*tool, strict=True)] if tool else axes, len(times))
-    shown = [rows[0] for rows in samples]
+    firsts = [rows[0] for rows in samples]
 
     def peaks(column: Sequence[float], digits: int) -> list[float]:
         return _rounded([max((column[row] for row in rows), key=abs) for rows in samples], digits)
 
     return {
-        "t": _rounded([times[row] for row in shown], 0),
-        "axes": [_rounded([column[row] for row in shown], 2) for column in axes],
-        "tool": [_rounded(tool[row], 2) for row in shown if row < len(tool)],
-        "measured": [_rounded(measured[row], 2) for row in shown if row < len(measured)],
+        "t": _rounded([times[row] for row in firsts], 0),
+        "axes": [_rounded([column[row] for row in firsts], 2) for column in axes],
+        "tool": [_rounded(tool[row], 2) for row in firsts if row < len(tool)],
+        "measured": [_rounded(measured[row], 2) for row in firsts if row < len(measured)],
         "speed": peaks(_column(path["speed"], len(times)), 4) if path.get("speed") else [],
         "speeds": [peaks(column, 2) for column in columns("axis_speeds")],
         "accelerations": [peaks(column, 1) for column in columns("axis_accelerations")],
@@ -187,10 +186,10 @@ def _arm(arm: Record) -> Json:
     """Return links, flange and frames, as in `interp.run_record`."""
     links = records(arm, "links")[:_MAX_LINKS]
     return {
-        "axes": [printable(clip(name, 20)) for name in texts(arm, "axes")],
+        "axes": [shown(name, 20) for name in texts(arm, "axes")],
         "links": [
             {
-                "name": printable(clip(text(link, "name"), 40)),
+                **shown_texts(link, name=40),
                 "parent": min(_index(link, "parent"), place - 1),
                 "frame": _rounded(_column(link.get("frame"), 16), 6),
                 "joint": _index(link, "joint"),
@@ -216,7 +215,7 @@ def _arm(arm: Record) -> Json:
 
 def _object(thing: Record) -> Json:
     return {
-        "name": printable(clip(text(thing, "name"), 60)),
+        **shown_texts(thing, name=60),
         "shape": text(thing, "shape"),
         "frame": _rounded(_column(thing.get("frame"), 16), 6),
         "edges": _rounded(_column(thing.get("edges"), 3), 2),
@@ -236,8 +235,7 @@ def _shape(shape: Record) -> Json:
 def _point(point: Record) -> Json:
     return {
         "motion": count(point, "motion"),
-        "kind": printable(clip(text(point, "kind"), 20)),
-        "at": printable(clip(text(point, "at"), 400)),
+        **shown_texts(point, kind=20, at=400),
         "place": _rounded(_finite(point.get("place"))[:3], 3),
         "blended": bool(point.get("blended")),
     }

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from reports.rendering.embedding import printable
-from reports.rendering.number_format import Figure, clip, counted, moment
+from reports.rendering.number_format import Figure, counted, moment
 from reports.rendering.record_fields import Record, count, nested, number, records, text
+from reports.rendering.sanitizing import shown
 
 _ENDS = {
     "end": "ran to its end",
@@ -39,11 +40,11 @@ def run_view(record: Mapping[str, Any]) -> RunView:
     outcome, path = nested(record, "outcome"), nested(record, "path")
     kind = text(outcome, "kind")
     how = [text(record, name) for name in ("executor", "robot", "profile", "machine")]
-    program = printable(clip(text(record, "main"), 300))
+    program = shown(text(record, "main"), 300)
     return RunView(
         name=program.replace("\\", "/").rpartition("/")[2],
         program=program,
-        how=" · ".join(printable(clip(one, 100)) for one in how if one),
+        how=" · ".join(shown(one, 100) for one in how if one),
         made=printable(moment(text(record, "generated"))),
         ending=_ending(kind, outcome),
         is_fine=kind == "end",
@@ -58,7 +59,7 @@ def run_view(record: Mapping[str, Any]) -> RunView:
 
 def _ending(kind: str, outcome: Record) -> str:
     said = [_ENDS.get(kind, kind or "no outcome"), text(outcome, "text"), text(outcome, "at")]
-    return printable(clip(": ".join(part for part in said if part), 400))
+    return shown(": ".join(part for part in said if part))
 
 
 def _figures(record: Mapping[str, Any], outcome: Record) -> list[Figure]:

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from reports.rendering.embedding import printable
 from reports.rendering.number_format import clip
 from reports.rendering.record_fields import Record, count, nested, text, texts
+from reports.rendering.sanitizing import shown, shown_texts
 
 _MAX_TEXT = 8000
 _MAX_EXAMPLES = 12
@@ -23,27 +23,17 @@ def construct_data(construct: Record) -> Json:
     return {
         "anchor": anchor(construct),
         "number": count(construct, "number"),
-        "id": printable(clip(text(construct, "id"), 80)),
-        "title": printable(clip(text(construct, "title") or text(construct, "id"), 200)),
-        "summary": printable(clip(text(construct, "summary"), 2000)),
-        "grounds": clipped(texts(construct, "grounds"), 20),
+        **shown_texts(construct, id=80, summary=2000),
+        "title": shown(text(construct, "title") or text(construct, "id"), 200),
+        "grounds": [shown(one, 20) for one in texts(construct, "grounds")],
         "evidence": {
-            "files": count(evidence, "files"),
-            "origins": count(evidence, "origins"),
-            "lines": count(evidence, "lines"),
-            "rules": clipped(texts(evidence, "rules"), 20),
-            "manual": printable(clip(text(evidence, "manual"), 600)),
-            "verdict": printable(clip(text(evidence, "verdict"), 400)),
-            "oracle": printable(clip(text(evidence, "oracle"), 200)),
-            "seen": clipped(texts(evidence, "seen")[:_MAX_EXAMPLES], 400),
+            **{name: count(evidence, name) for name in ("files", "origins", "lines")},
+            "rules": [shown(one, 20) for one in texts(evidence, "rules")],
+            **shown_texts(evidence, manual=600, verdict=400, oracle=200),
+            "seen": [shown(one) for one in texts(evidence, "seen")[:_MAX_EXAMPLES]],
         },
-        "edits": clipped(texts(construct, "edits"), 600),
+        "edits": [shown(one, 600) for one in texts(construct, "edits")],
         "diff": clip(text(construct, "diff"), _MAX_TEXT),
         "accept": [clip(t, _MAX_TEXT) for t in texts(construct, "accept")[:_MAX_EXAMPLES]],
         "reject": [clip(t, _MAX_TEXT) for t in texts(construct, "reject")[:_MAX_EXAMPLES]],
     }
-
-
-def clipped(foreign: list[str], width: int) -> list[str]:
-    """Return the texts in printable form, each of limited length."""
-    return [printable(clip(line, width)) for line in foreign]

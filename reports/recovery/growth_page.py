@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from reports.recovery.construct_data import clipped, construct_data
+from reports.recovery.construct_data import construct_data
 from reports.recovery.growth_view import growth_view
-from reports.rendering.embedding import embedded_json, printable
-from reports.rendering.number_format import clip
+from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render, source
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import shown
 from support.files.atomic_write import write_atomic
 
 _MAX_STEPS = 2000
@@ -40,10 +40,7 @@ def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
         {
             "files": count(record, "files"),
             "bytes": number(record, "bytes"),
-            "meanings": {
-                printable(clip(name, 20)): printable(clip(text(meanings, name), 200))
-                for name in meanings
-            },
+            "meanings": {shown(name, 20): shown(text(meanings, name), 200) for name in meanings},
             "steps": [_step(step) for step in steps],
         }
     )
@@ -67,8 +64,8 @@ def _step(step: Record) -> Json:
         "parsedBytes": number(step, "parsed_bytes"),
         "restored": count(step, "restored"),
         "broken": count(step, "broken"),
-        "restoredFiles": clipped(texts(step, "restored_files")[:_MAX_FILES], 400),
-        "brokenFiles": clipped(texts(step, "broken_files")[:_MAX_FILES], 400),
+        "restoredFiles": [shown(one) for one in texts(step, "restored_files")[:_MAX_FILES]],
+        "brokenFiles": [shown(one) for one in texts(step, "broken_files")[:_MAX_FILES]],
         "failing": count(step, "failing_lines"),
-        "metrics": {printable(clip(name, 20)): number(metrics, name) for name in metrics},
+        "metrics": {shown(name, 20): number(metrics, name) for name in metrics},
     }

@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from reports.recovery.construct_data import anchor
+from reports.recovery.skipped_files import Skipped, skipped_files
 from reports.rendering.embedding import printable
 from reports.rendering.number_format import Figure, clip, counted, moment, percent, share, size
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
+from reports.rendering.sanitizing import shown
 
 _BIGGEST = 40
 _MAX_FILES = 400
@@ -93,8 +95,7 @@ class GrowthView:
     ambiguous: int
     ambiguous_of: int
     ambiguous_examples: tuple[tuple[str, str], ...]
-    skipped: tuple[tuple[str, int, tuple[str, ...]], ...]
-    skipped_total: int
+    skipped: tuple[Skipped, ...]
 
 
 def growth_view(record: Record) -> GrowthView:
@@ -108,9 +109,9 @@ def growth_view(record: Record) -> GrowthView:
     undecided = texts(look, "others")
     return GrowthView(
         state=_state(record, steps),
-        grammar=_plain(text(record, "grammar"), 400),
-        grammar_hash=_plain(text(record, "grammar_sha256"), 64),
-        made=" · ".join(_plain(part, 80) for part in made if part),
+        grammar=shown(text(record, "grammar")),
+        grammar_hash=shown(text(record, "grammar_sha256"), 64),
+        made=" · ".join(shown(part, 80) for part in made if part),
         headline=_headline(record, steps),
         figures=_figures(record, steps),
         rows=rows,
@@ -122,21 +123,16 @@ def growth_view(record: Record) -> GrowthView:
         decisions=count(look, "decisions"),
         one=percent(number(look, "one"), 100),
         two=percent(number(look, "two"), 100),
-        undecided=tuple(_plain(line, 400) for line in undecided[:_MAX_OTHERS]),
+        undecided=tuple(shown(line) for line in undecided[:_MAX_OTHERS]),
         undecided_total=len(undecided),
         ambiguous=count(ambiguous, "lines"),
         ambiguous_of=count(ambiguous, "of"),
         ambiguous_examples=tuple(
-            (f"{_plain(text(e, 'path'), 300)}:{count(e, 'line')}", _plain(text(e, "text"), 300))
+            (f"{shown(text(e, 'path'), 300)}:{count(e, 'line')}", shown(text(e, "text"), 300))
             for e in records(ambiguous, "examples")
         ),
-        skipped=_skipped(records(record, "skipped")),
-        skipped_total=count(record, "skipped"),
+        skipped=tuple(skipped_files(record, _MAX_FILES)),
     )
-
-
-def _plain(foreign: str, width: int) -> str:
-    return printable(clip(foreign, width))
 
 
 def _state(record: Record, steps: Sequence[Record]) -> str:
@@ -198,8 +194,8 @@ def _rows(steps: Sequence[Record]) -> tuple[StepRow, ...]:
             StepRow(
                 anchor=anchor(step),
                 number=count(step, "number"),
-                title=_plain(text(step, "title") or text(step, "id"), 200),
-                grounds=tuple(_plain(ground, 20) for ground in texts(step, "grounds")),
+                title=shown(text(step, "title") or text(step, "id"), 200),
+                grounds=tuple(shown(ground, 20) for ground in texts(step, "grounds")),
                 files=count(evidence, "files"),
                 origins=count(evidence, "origins"),
                 restored=count(step, "restored"),
@@ -224,10 +220,10 @@ def _left(record: Record, files: Sequence[Record]) -> tuple[LeftFile, ...]:
         own = lines.get(text(file, "path"), [])
         rows.append(
             LeftFile(
-                path=_plain(text(file, "path"), 400),
+                path=shown(text(file, "path")),
                 failing=count(file, "failing"),
-                kind=_plain(text(file, "kind"), 20),
-                why=_plain(text(file, "reason"), 200),
+                kind=shown(text(file, "kind"), 20),
+                why=shown(text(file, "reason"), 200),
                 why_line=count(file, "fact_line") * (text(file, "fact") == text(file, "reason")),
                 lines=tuple(map(_left_line, own[:_MAX_LINES])),
                 more=max(0, len(own) - _MAX_LINES),
@@ -244,18 +240,4 @@ def _left_line(line: Record) -> LeftLine:
         before=printable(source[:at].lstrip()[-160:]),
         token=printable(clip(token, 80)),
         after=printable(clip(source[at + len(token) :], 160)),
-    )
-
-
-def _skipped(skipped: Sequence[Record]) -> tuple[tuple[str, int, tuple[str, ...]], ...]:
-    """Return each reason with its number of files and first paths, the most frequent one first."""
-    groups: dict[str, list[str]] = {}
-    for entry in skipped:
-        groups.setdefault(text(entry, "reason") or "no reason given", []).append(
-            text(entry, "path")
-        )
-    ordered = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0]))
-    return tuple(
-        (_plain(reason, 300), len(paths), tuple(_plain(path, 400) for path in paths[:_MAX_FILES]))
-        for reason, paths in ordered
     )

@@ -20,6 +20,7 @@ from reports.rendering.record_fields import (
     text,
     texts,
 )
+from reports.rendering.sanitizing import shown
 
 Json = dict[str, Any]
 
@@ -122,7 +123,7 @@ def _cluster(cluster: Record, strings: Strings, detail: Detail) -> Json:
         "failures": count(cluster, "failures"),
         "lines": optional_count(cluster, "lines"),
         "follows": count(cluster, "follows"),
-        "rule": printable(clip(text(cluster, "rule"), 120)),
+        "rule": shown(text(cluster, "rule"), 120),
         "token": clip(text(cluster, "token"), 120),
         "stack": strings.numbers(clip(name, 120) for name in stack),
         "expected": strings.numbers(clip(word, 60) for word in expected[: detail.words]),
@@ -211,7 +212,7 @@ def _proposal(proposal: Record, detail: Detail) -> Json:
     edit = proposal.get("edit")
     return {
         "edit": clip(edit if isinstance(edit, str) else _spelled(edit), 400),
-        "kind": printable(clip(text(proposal, "kind"), 60)),
+        "kind": shown(text(proposal, "kind"), 60),
         "restores": optional_count(proposal, "restores"),
         "breaks": optional_count(proposal, "breaks"),
         "negatives": optional_count(proposal, "accepts_negatives"),

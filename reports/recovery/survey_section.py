@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 from reports.recovery.survey_cluster import cluster_id, is_follower, title_of
 from reports.rendering.embedding import printable
-from reports.rendering.number_format import clip, percent, share
+from reports.rendering.number_format import percent, share
 from reports.rendering.record_fields import Record, count, records, text
+from reports.rendering.sanitizing import shown
 
 _NUMBER_WORDS = dict(
     enumerate(("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=2)
@@ -79,7 +80,7 @@ def section(record: Record, clusters: Sequence[Record], prefix: str = "") -> Sec
     """Return the section of ``record`` with the shown ``clusters``."""
     mending = _mending(record, clusters)
     constructs = records(record, "constructs")
-    titles = {text(c, "id"): printable(clip(text(c, "title"), 200)) for c in constructs}
+    titles = {text(c, "id"): shown(text(c, "title"), 200) for c in constructs}
     rows = _rows(clusters, mending, titles)
     files, parsed = count(record, "files"), count(record, "parsed")
     return Section(
@@ -142,7 +143,7 @@ def _rows(
         ClusterRow(
             id=cluster_id(cluster),
             title=printable(title_of(cluster)),
-            rule=printable(clip(text(cluster, "rule"), 120)),
+            rule=shown(text(cluster, "rule"), 120),
             unlocks=count(cluster, "unlocks"),
             files=count(cluster, "files"),
             origins=count(cluster, "origins"),

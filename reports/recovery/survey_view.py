@@ -6,9 +6,9 @@ All texts can be printed as they are: untrusted ones have passed through `printa
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from reports.recovery.skipped_files import Skipped, skipped_files
 from reports.recovery.survey_section import Section, section
-from reports.rendering.embedding import printable
-from reports.rendering.number_format import Figure, clip, counted, moment, percent, share, size
+from reports.rendering.number_format import Figure, counted, moment, percent, share, size
 from reports.rendering.record_fields import (
     Record,
     count,
@@ -18,6 +18,7 @@ from reports.rendering.record_fields import (
     records,
     text,
 )
+from reports.rendering.sanitizing import shown
 
 _MAX_CLUSTERS = 2000
 _MAX_PATHS = 200
@@ -33,16 +34,6 @@ class OriginRow:
     failed: int
     share: float
     rate: str
-
-
-@dataclass(frozen=True, slots=True)
-class Skipped:
-    """The files skipped for one reason; ``paths`` are listed, ``more`` is the number of others."""
-
-    reason: str
-    total: int
-    paths: tuple[str, ...]
-    more: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,24 +78,23 @@ def survey_view(record: Record) -> SurveyView:
     """Return the static parts of the page of ``record``."""
     clusters = _shown(record)
     begun = nested(record, "start")
-    skipped = records(record, "skipped")
     version = text(record, "version")
     made = [version and f"krl {version}", moment(text(record, "generated"))]
     return SurveyView(
         state=_state(record, clusters),
-        pending=printable(clip(text(record, "pending"), 400)),
-        grammar=printable(clip(text(record, "grammar"), 400)),
-        grammar_hash=printable(clip(text(record, "grammar_sha256"), 64)),
-        grammar_note=printable(clip(text(record, "grammar_note"), 400)),
-        made=" · ".join(printable(clip(part, 80)) for part in made if part),
+        pending=shown(text(record, "pending")),
+        grammar=shown(text(record, "grammar")),
+        grammar_hash=shown(text(record, "grammar_sha256"), 64),
+        grammar_note=shown(text(record, "grammar_note")),
+        made=" · ".join(shown(part, 80) for part in made if part),
         files=count(record, "files"),
         parsed=count(record, "parsed"),
         figures=tuple(_figures(record, clusters)),
         section=section(record, clusters),
         start=section(begun, _shown(begun), "start-") if begun else None,
         origins=_origins(record),
-        skipped=_skipped(skipped),
-        skipped_total=len(skipped),
+        skipped=tuple(skipped_files(record, _MAX_PATHS)),
+        skipped_total=len(records(record, "skipped")),
         copies=_copies(record),
     )
 
@@ -165,7 +155,7 @@ def _origins(record: Record) -> tuple[OriginRow, ...]:
         failed = optional_count(origin, "failed")
         rows.append(
             OriginRow(
-                name=printable(clip(text(origin, "name"), 200)),
+                name=shown(text(origin, "name"), 200),
                 files=files,
                 parsed=parsed,
                 failed=files - parsed if failed is None else failed,
@@ -176,27 +166,9 @@ def _origins(record: Record) -> tuple[OriginRow, ...]:
     return tuple(rows)
 
 
-def _skipped(skipped: Sequence[Record]) -> tuple[Skipped, ...]:
-    groups: dict[str, list[str]] = {}
-    for entry in skipped:
-        reason = text(entry, "reason") or "no reason given"
-        groups.setdefault(reason, []).append(text(entry, "path"))
-    ordered = sorted(groups.items(), key=lambda group: (-len(group[1]), group[0]))
-    return tuple(
-        Skipped(
-            reason=printable(clip(reason, 300)),
-            total=len(paths),
-            paths=tuple(printable(clip(path, 400)) for path in paths[:_MAX_PATHS]),
-            more=max(0, len(paths) - _MAX_PATHS),
-        )
-        for reason, paths in ordered
-    )
-
-
 def _copies(record: Record) -> Copies:
     copies = records(record, "copies")
     pairs = tuple(
-        (printable(clip(text(copy, "path"), 400)), printable(clip(text(copy, "same_as"), 400)))
-        for copy in copies[:_MAX_PATHS]
+        (shown(text(copy, "path")), shown(text(copy, "same_as"))) for copy in copies[:_MAX_PATHS]
     )
     return Copies(total=len(copies), pairs=pairs, more=len(copies) - len(pairs))

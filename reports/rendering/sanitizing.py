@@ -6,14 +6,20 @@ from typing import Any
 
 from reports.rendering.embedding import printable
 from reports.rendering.number_format import clip
+from reports.rendering.record_fields import Record, text
 
 _MOST_ITEMS = 2_000
 _DEEPEST = 8
 
 
-def shown(text: str, width: int) -> str:
+def shown(foreign: str, width: int = 400) -> str:
     """Return untrusted text as one line: cut to a width, tabs widened, all characters visible."""
-    return printable(clip(text.replace("\t", "    "), width))
+    return printable(clip(foreign.replace("\t", "    "), width))
+
+
+def shown_texts(record: Record, **widths: int) -> dict[str, str]:
+    """Return texts of a record by their names, each as `shown` in its width."""
+    return {name: shown(text(record, name), width) for name, width in widths.items()}
 
 
 def plain(value: Any, width: int = 400, depth: int = 0) -> Any:
