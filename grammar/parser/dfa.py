@@ -28,6 +28,7 @@ from grammar.notation.model import (
     complement,
     normalised,
 )
+from grammar.parser.nfa import Nfa
 from support.lazy_dataclass import dataclass
 
 #: Distance of the two cases of an ASCII letter; ANTLR's ``caseInsensitive`` adds the other case.
@@ -78,18 +79,13 @@ def both_cases(ranges: Iterable[CharRange]) -> tuple[CharRange, ...]:
     return normalised(out)
 
 
-class _Nfa:
-    """Thompson's construction; an edge carries character ranges, or ``None`` for an empty step."""
+class _CharNfa(Nfa[tuple[CharRange, ...]]):
+    """An automaton over ranges of characters."""
 
     def __init__(self, grammar: Grammar) -> None:
+        super().__init__()
         self.grammar = grammar
-        self.edges: list[list[tuple[tuple[CharRange, ...] | None, int]]] = [[]]
         self.open_rules: list[str] = []
-        self._closures: dict[int, frozenset[int]] = {}
-
-    def state(self) -> int:
-        self.edges.append([])
-        return len(self.edges) - 1
 
     def rule(self, rule: Rule, start: int) -> int:
         if rule.name in self.open_rules:
@@ -105,7 +101,7 @@ class _Nfa:
             last = start
             for element in elements:
                 last = self.element(element, last)
-            self.edges[last].append((None, end))
+            self.skip(last, end)
         return end
 
     def element(self, element: Element, start: int) -> int:
@@ -122,39 +118,12 @@ class _Nfa:
             case Group(alternatives=alternatives):
                 return self.choice((a.elements for a in alternatives), start)
             case Repeat(item=item, operator=operator):
-                before, after = self.state(), self.state()
-                self.edges[start].append((None, before))
-                end = self.element(item, before)
-                self.edges[end].append((None, after))
-                if operator != "+":
-                    self.edges[before].append((None, after))
-                if operator != "?":
-                    self.edges[end].append((None, before))
-                return after
-
-    def step(self, ranges: tuple[CharRange, ...], start: int) -> int:
-        end = self.state()
-        self.edges[start].append((ranges, end))
-        return end
-
-    def closure(self, state: int) -> frozenset[int]:
-        """Return the epsilon closure of a state; call it only when all edges have been added."""
-        found = self._closures.get(state)
-        if found is None:
-            seen = {state}
-            todo = [state]
-            while todo:
-                for ranges, target in self.edges[todo.pop()]:
-                    if ranges is None and target not in seen:
-                        seen.add(target)
-                        todo.append(target)
-            found = self._closures[state] = frozenset(seen)
-        return found
+                return self.repeated(operator, start, lambda before: self.element(item, before))
 
 
 def automaton_of(grammar: Grammar, rules: Sequence[Rule]) -> CharAutomaton:
     """Return the minimal automaton for the union of the lexer rules."""
-    nfa = _Nfa(grammar)
+    nfa = _CharNfa(grammar)
     ends = frozenset([nfa.choice(((Reference(r.name, (0, 0)),) for r in rules), 0)])
     cuts = sorted(
         {0, MAX_CODE_POINT + 1}

@@ -13,6 +13,7 @@ from dataclasses import field, replace
 
 from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
 from grammar.parser.lexer import Lexer, lexer_of
+from grammar.parser.nfa import Nfa
 from support.lazy_dataclass import dataclass
 
 Symbol = str  # the name of a token or a rule
@@ -263,22 +264,17 @@ def _elements(rule: Rule) -> Iterable[Element]:
             stack.append(element.item)
 
 
-class _Fragments:
-    """Thompson's construction over symbols; an edge with ``None`` reads nothing.
+class _Fragments(Nfa[Symbol]):
+    """An automaton over symbols, which knows the addresses of its states.
 
     Alternatives begin in one common state or, if ``is_split``, each in a state of its own.
     """
 
     def __init__(self, names: Mapping[str, str], *, is_split: bool = False) -> None:
+        super().__init__()
         self.names = names
         self.is_split = is_split
-        self.edges: list[list[tuple[Symbol | None, int]]] = [[]]
         self.places: dict[int, list[tuple[int, ...]]] = {}
-        self._reachable: dict[int, frozenset[int]] = {}
-
-    def state(self) -> int:
-        self.edges.append([])
-        return len(self.edges) - 1
 
     def choice(
         self, sequences: Iterable[tuple[Element, ...]], start: int, address: tuple[int, ...] = ()
@@ -288,12 +284,12 @@ class _Fragments:
             last = start
             if self.is_split:
                 last = self.state()
-                self.edges[start].append((None, last))
+                self.skip(start, last)
             for place, element in enumerate(elements, 1):
                 self.places.setdefault(last, []).append((*address, number, place))
                 last = self.element(element, last, (*address, number, place))
             self.places.setdefault(last, []).append((*address, number, len(elements) + 1))
-            self.edges[last].append((None, end))
+            self.skip(last, end)
         return end
 
     def element(self, element: Element, start: int, address: tuple[int, ...]) -> int:
@@ -305,39 +301,17 @@ class _Fragments:
             case Group(alternatives=alternatives):
                 return self.choice((a.elements for a in alternatives), start, address)
             case Repeat(item=item, operator=operator):
-                before, after = self.state(), self.state()
-                self.edges[start].append((None, before))
-                end = self.element(item, before, address)
-                if self.is_split:  # before another item, and after one
-                    self.places.setdefault(before, []).append((*address, 0))
-                    self.places.setdefault(end, []).append((*address, -1))
-                self.edges[end].append((None, after))
-                if operator != "+":
-                    self.edges[before].append((None, after))
-                if operator != "?":
-                    self.edges[end].append((None, before))
-                return after
+
+                def added(before: int) -> int:
+                    end = self.element(item, before, address)
+                    if self.is_split:  # before another item, and after one
+                        self.places.setdefault(before, []).append((*address, 0))
+                        self.places.setdefault(end, []).append((*address, -1))
+                    return end
+
+                return self.repeated(operator, start, added)
             case _:
                 raise AssertionError("sets of characters do not occur in parser rules")
-
-    def step(self, symbol: Symbol, start: int) -> int:
-        end = self.state()
-        self.edges[start].append((symbol, end))
-        return end
-
-    def reachable(self, state: int) -> frozenset[int]:
-        """Return the epsilon closure of a state; call it only when all edges have been added."""
-        found = self._reachable.get(state)
-        if found is None:
-            seen = {state}
-            todo = [state]
-            while todo:
-                for symbol, target in self.edges[todo.pop()]:
-                    if symbol is None and target not in seen:
-                        seen.add(target)
-                        todo.append(target)
-            found = self._reachable[state] = frozenset(seen)
-        return found
 
 
 def _subsets(
@@ -351,11 +325,7 @@ def _subsets(
 
     If ``is_apart``, no edge leads back to the start.
     """
-
-    def closure(states: Iterable[int]) -> frozenset[int]:
-        return frozenset[int]().union(*map(fragments.reachable, states))
-
-    order = [fragments.reachable(start)]
+    order = [fragments.closure(start)]
     index = {} if is_apart else {order[0]: 0}
     table: list[dict[Symbol, int]] = []
     for states in order:  # grows while it is walked
@@ -366,7 +336,8 @@ def _subsets(
                     targets.setdefault(symbol, set()).add(target)
         row: dict[Symbol, int] = {}
         for symbol, raw in targets.items():
-            closed = closure(raw)
+            first, *others = map(fragments.closure, raw)
+            closed = first.union(*others) if others else first
             if closed not in index:
                 index[closed] = len(order)
                 order.append(closed)
@@ -380,7 +351,7 @@ def _minimal(
     table: list[dict[Symbol, int]], final: list[bool], places: list[set[tuple[int, ...]]]
 ) -> RuleAutomaton:
     block = [int(f) for f in final]
-    while True:
+    while True:  # of few states, so simpler than Hopcroft's algorithm in `dfa`, and faster
         keys: dict[object, int] = {}
         refined = [
             keys.setdefault(
