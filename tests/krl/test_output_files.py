@@ -35,6 +35,20 @@ def test_records_one_by_one_are_the_same_json(records: list[object]) -> None:
     assert "".join(json_list_pieces(iter(records))) == "".join(json_pieces(records, 1))
 
 
+@pytest.mark.parametrize("record", [{}, [1], {"a": 1, "é": [], "b": [{"c": []}, "\n"], "d": {}}])
+def test_a_record_in_pieces_is_the_same_json(record: object) -> None:
+    """To the character, whatever its fields are; a list is written item by item."""
+    assert json.dumps(record, ensure_ascii=False) == "".join(json_pieces(record))
+
+
+def test_no_piece_is_as_long_as_the_record() -> None:
+    """A long list comes in many pieces."""
+    record = {"long": [{"number": number} for number in range(50_000)]}
+    pieces = list(json_pieces(record))
+    assert len(pieces) > 4
+    assert record == json.loads("".join(pieces))
+
+
 def test_places_where_no_file_can_be(tmp_path: Path) -> None:
     """A folder, and a place below a file, are refused before any work; a new folder is none."""
     file = tmp_path / "a"
