@@ -21,7 +21,9 @@ from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.tree import Outline, Tree
 from support.lazy_dataclass import dataclass
 
-# The caches of lines and outlines are bounded, and enormous lines are not cached at all.
+# The caches of lines and outlines are bounded, and enormous lines are not cached at all; so is the
+# automaton, of which a state with its back pointers takes a kilobyte.
+_MOST_STATES = 20_000
 _MOST_REMEMBERED = 5_000
 _LONGEST_REMEMBERED = 1_000
 
@@ -63,6 +65,10 @@ class Parser:
         if not lexer.leaves_out_skipped:
             lexemes = [lexeme for lexeme in lexemes if lexer.kinds[lexeme] != SKIPPED]
         lexemes.append("")
+        if self._deriver.size > _MOST_STATES:
+            self._deriver.release()
+            self._deriver = Deriver(self.recognizer.grammar, lexer)
+            self._changes.clear()  # the numbers of its actions begin anew
         derivation = self._deriver.derive(kinds)
         if derivation is None:
             return self._stop(text, kinds, lexemes)

@@ -11,7 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 
 from grammar.check.analysis.context import Context
 from grammar.check.names.unresolved_names import (
@@ -316,7 +316,7 @@ def _system_constants() -> Mapping[str, str]:
     return {name.upper(): name for one in known for name in one.constants}
 
 
-@cache
+@lru_cache(maxsize=256)
 def _constant_typos(names: tuple[str, ...]) -> Typos:
     return Typos(names, 3, series=Series.DIGITS)
 

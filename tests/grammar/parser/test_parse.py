@@ -1,6 +1,7 @@
 """Parse trees: what they consist of, where, and which one where there are several."""
 
 import gc
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from random import Random
@@ -402,6 +403,19 @@ def test_rules_that_end_as_one(text: str, expected: Plain) -> None:
         "t : NEWLINE?",
     ]
     assert expected == tree_of(rules, text)
+
+
+def test_an_automaton_that_is_too_large_is_built_again(
+    recognizer: Recognizer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Trees are the same with a new automaton for each text, and no states of old ones stay."""
+    texts = [f"DEF A()\n{line}\nEND\n" for line in ("HALT", "RETURN", "EXIT", "X=1", "X=Y+1")]
+    parser, small = Parser(recognizer), Parser(recognizer)
+    monkeypatch.setattr(parsing, "_MOST_STATES", sys.maxsize)
+    expected = [plain(parsed(parser, text).root) for text in texts]
+    monkeypatch.setattr(parsing, "_MOST_STATES", 0)
+    assert expected == [plain(parsed(small, text).root) for text in texts]
+    assert 0 < small._deriver.size < parser._deriver.size
 
 
 def test_what_is_forgotten_is_worked_out_again(
