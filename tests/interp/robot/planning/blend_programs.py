@@ -1,6 +1,6 @@
 """Programs of blended motions, drawn by seed, and what is measured of them.
 
-Motions are planned all at once, and axes differenced at every millisecond.
+Motions are planned all at once or a few ahead, and axes differenced at every millisecond.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
+from interp.robot.planning.profile import Bounds, ramp
+from interp.robot.planning.profile import travel as whole_way
 from interp.robot.planning.torque_limits import Dynamics
 
 _HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
@@ -123,8 +125,12 @@ def travel(
     override: float = 100.0,
     machine: MachineData | None = None,
     dynamics: Dynamics | None = None,
+    ahead: float = math.inf,
 ) -> tuple[Travelled, PlannedArm]:
-    """A program travelled from home. Raises `Fault` where a motion is refused."""
+    """A program travelled from home, of which so many motions ahead of the running one are known.
+
+    Raises `Fault` where a motion is refused.
+    """
     machine = machine or default_machine()
     arm = PlannedArm(machine, _HOME, dynamics)
     first, *others = program
@@ -132,12 +138,48 @@ def travel(
     now = 0
     while arm.next_event() is not None:
         now = arm.take().time
+    begin = now
     arm.override(now, override)
-    for motion in others:
-        arm.plan(now, motion)
+    while others:
+        if arm.pending() <= ahead:
+            arm.plan(now, others.pop(0))
+        else:
+            now = arm.take().time
     end = math.ceil(arm.path()[-1].ends * _SECOND)
-    used = _used(machine, arm.sample(np.arange(now, end + 20 * _STEP, _STEP)).axes)
-    return Travelled((end - now) / _SECOND, *used), arm
+    used = _used(machine, arm.sample(np.arange(begin, end + 20 * _STEP, _STEP)).axes)
+    return Travelled((end - begin) / _SECOND, *used), arm
+
+
+def longest(line: PlannedArm, program: Sequence[Motion], ahead: int) -> float:
+    """The seconds that a straight way may take of which so many motions ahead are known.
+
+    ``line`` has travelled it in one motion, ``program`` has points on it. At each point the arm has
+    to be able to stop within what is known, also while it still accelerates. If it can do so from
+    the speed of the line, points cost nothing; else they cost at most what the speed costs from
+    which it can, with the least acceleration and jerk along the line.
+    """
+    leg = line.path()[-1]
+    stretches, size = leg.section.ceiling.stretches, leg.section.ceiling.stretches[0].size
+    speeds = [min(one.velocity, one.programmed) * size for one in stretches]
+    acceleration = min(one.acceleration for one in stretches) * size
+    jerk = min(one.jerk for one in stretches) * size
+    names = program[1].target or {}
+    points = np.array([[(motion.target or {})[name] for name in names] for motion in program])
+    ways = np.linalg.norm(points - points[0], axis=1)
+    places = ways / ways[-1] * size
+    known = float((places[1 + ahead : -1] - places[1 : -1 - ahead]).min(initial=math.inf))
+
+    def needed(speed: float) -> float:
+        braking = ramp(speed, 0.0, 0.0, Bounds(speed, acceleration, jerk)).distance
+        return braking + speed * min(acceleration / jerk, math.sqrt(speed / jerk))
+
+    whole = leg.ends - leg.begins
+    if needed(max(speeds)) <= known:
+        return whole
+    tried = np.linspace(0.0, max(speeds), 10_000)[1:]
+    speed = max((one for one in tried.tolist() if needed(one) <= known), default=tried[0])
+    bounds = Bounds(min(speed, *speeds), acceleration, jerk)
+    return max(whole, whole_way(size, 0.0, 0.0, 0.0, bounds).duration)
 
 
 def _used(machine: MachineData, axes: Array) -> tuple[float, float, float]:

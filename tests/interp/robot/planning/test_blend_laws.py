@@ -16,6 +16,7 @@ from interp.values.faults import Fault
 from tests.interp.robot.planning.blend_programs import (
     draw,
     exact,
+    longest,
     programmed_share,
     straight,
     travel,
@@ -51,6 +52,20 @@ def test_points_on_a_straight_way_cost_nothing(seed: int) -> None:
     except Fault:
         assume(False)
     assert parts <= whole * 1.00001
+
+
+@FEW
+@given(seed=SEEDS, ahead=st.integers(1, 5))
+@example(seed=1795902126, ahead=5)  # is known far enough ahead, so it costs nothing
+@example(seed=1795902112, ahead=3)  # is not, so it takes half as long again
+def test_points_on_a_straight_way_cost_what_is_not_known(seed: int, ahead: int) -> None:
+    """The arm is slower only where it could not stop within the motions that it knows."""
+    whole, parts = straight(seed)
+    try:
+        travelled, (_, line) = travel(parts, ahead=ahead)[0], travel(whole)
+    except Fault:
+        assume(False)
+    assert travelled.seconds <= longest(line, parts, ahead) * 1.00001
 
 
 @FEW
