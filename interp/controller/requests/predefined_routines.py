@@ -74,6 +74,7 @@ class PredefinedRoutines:
         self._frames = frames
         self._channels = channels
         self._advance = advance
+        self._solver: Kinematics | None = None
         self._functions = System.load(state.profile.release).functions
         self._newest = System.load().functions
 
@@ -301,9 +302,11 @@ class PredefinedRoutines:
         return frame, {}
 
     def _kinematics(self) -> tuple[Kinematics, Placement]:
-        if self._state.machine is None:
-            raise own_fault("unsupported")
-        return kinematics_of(self._state.machine), self._frames.advance_run()
+        if self._solver is None:
+            if self._state.machine is None:
+                raise own_fault("unsupported")
+            self._solver = kinematics_of(self._state.machine)
+        return self._solver, self._frames.advance_run()
 
     # ---------------------------------------------------------------------------------- others
 

@@ -38,6 +38,8 @@ IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
 _ENDLESS: Final = 100_000
 _MOST: Final = 120_000
+#: Requests that count as so many others, because they take as long.
+_LONG: Final = {"FORWARD": 5, "INVERSE": 30}
 #: Requests that change nothing, those that always do something, and those that an executor makes
 #: for several at once.
 _LOOKS: Final = (Read, Slice, Continue)
@@ -138,7 +140,7 @@ class Waits:
             known, self._points = self._points, len(self._queue.points)
             self._automatic.begin(has_moved=known != self._points)
         if not isinstance(request, _UNCOUNTED) and not self._is_idle(task):
-            task.unbroken += 1
+            task.unbroken += _LONG.get(request.name, 1) if isinstance(request, Invoke) else 1
             if task.unbroken >= _MOST and not self._player.has_steps:
                 raise BudgetExhausted(f"it has not ended or waited after {_MOST:,} requests")
 

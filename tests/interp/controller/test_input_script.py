@@ -24,7 +24,7 @@ from interp.controller.inputs.input_script import (
     TextReceived,
     VariableChanged,
 )
-from interp.program.load import load
+from interp.program.load import Limits, load
 from interp.session import EXECUTORS, RunSetup, run_program
 
 Go = Callable[..., Any]
@@ -235,6 +235,15 @@ def test_endless_loops_end(body: str) -> None:
     assert all(first.events == other.events for other in others)
     script = Script.read("t=59 IN[1]=TRUE")
     assert "time" == run_program(program, replace(setups[-1], script=script)).outcome.ending
+
+
+def test_inverse_counts_as_many_requests() -> None:
+    """A loop of INVERSE ends after some 4,000 of them: each takes as long as many requests."""
+    body = "LOOP\nJ=INVERSE($POS_ACT,$AXIS_ACT,E)\nENDLOOP\n"
+    text = f"DEF main ( )\nE6AXIS J\nINT E\n{body}END\n"
+    program = load([Source(text, "main.src")], "main.src")
+    ran = run_program(program, RunSetup(until=60_000_000, limits=Limits(statements=9_000)))
+    assert "requests" in str(ran.outcome.error)
 
 
 def test_loop_that_moves_is_no_wait(go: Go) -> None:
