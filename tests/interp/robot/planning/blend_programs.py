@@ -17,8 +17,8 @@ from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
-from interp.robot.planning.profile import Bounds, ramp
 from interp.robot.planning.profile import travel as whole_way
+from interp.robot.planning.ramps import Bounds, ramp
 from interp.robot.planning.torque_limits import Dynamics
 
 _HOME = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
