@@ -31,7 +31,7 @@ static int is_ready(struct core *core)
 {
     if (krl_ready(&core->machine))
         return 1;
-    PyErr_SetString(PyExc_MemoryError, "there is no room for so many calls");
+    PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this depth of calls");
     return 0;
 }
 
@@ -53,7 +53,7 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
                                      &most_calls, &beside))
         return NULL;
     if (beside != Py_None && !PyObject_TypeCheck(beside, core_type)) {
-        PyErr_SetString(PyExc_TypeError, "beside is a machine or None");
+        PyErr_SetString(PyExc_TypeError, "beside must be a machine or None");
         return NULL;
     }
     allocfunc allocate = (allocfunc)PyType_GetSlot(type, Py_tp_alloc);
@@ -67,7 +67,7 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     struct krl_machine *other = beside == Py_None ? NULL : &((struct core *)beside)->machine;
     if (!krl_give_memory(&core->machine, most_calls, other)) {
         Py_DECREF(core);
-        PyErr_SetString(PyExc_MemoryError, "there is no room for so many calls, or the images differ");
+        PyErr_SetString(PyExc_MemoryError, "there is not enough memory for this depth of calls, or the images differ");
         return NULL;
     }
     core->machine.fp = core->machine.first;
@@ -144,7 +144,7 @@ static int range_of(struct core *core, PyObject *key, Py_ssize_t *start, Py_ssiz
     if (PySlice_Unpack(key, start, &stop, &step) < 0)
         return 0;
     if (step != 1) {
-        PyErr_SetString(PyExc_ValueError, "cells are taken one behind the other");
+        PyErr_SetString(PyExc_ValueError, "a slice of cells must have the step 1");
         return 0;
     }
     *count = PySlice_AdjustIndices(core->machine.memory->count, start, &stop, step);
@@ -175,7 +175,7 @@ static int core_set(PyObject *self, PyObject *key, PyObject *value)
     struct core *core = (struct core *)self;
     Py_ssize_t start, count;
     if (value == NULL) {
-        PyErr_SetString(PyExc_TypeError, "cells stay");
+        PyErr_SetString(PyExc_TypeError, "cells cannot be deleted");
         return -1;
     }
     if (!PySlice_Check(key)) {
@@ -189,7 +189,7 @@ static int core_set(PyObject *self, PyObject *key, PyObject *value)
     if (!range_of(core, key, &start, &count))
         return -1;
     if (!PyList_Check(value) || PyList_Size(value) != count) {
-        PyErr_SetString(PyExc_ValueError, "a list of as many cells is needed");
+        PyErr_SetString(PyExc_ValueError, "a list with the same number of cells is required");
         return -1;
     }
     for (Py_ssize_t i = 0; i < count; i++) {
@@ -229,7 +229,7 @@ static PyObject *core_step(PyObject *self, PyObject *arguments)
         return NULL;
     const struct krl_routine *routine = &core->machine.routines[code];
     if (place < 0 || place >= routine->code->length || routine->steps[place] < 0) {
-        PyErr_SetString(PyExc_IndexError, "no way leads there");
+        PyErr_SetString(PyExc_IndexError, "the instruction cannot be reached");
         return NULL;
     }
     return PyLong_FromLong(routine->steps[place]);

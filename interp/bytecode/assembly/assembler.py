@@ -175,7 +175,7 @@ class _Assembler:
 
     def _part(self, line: Line, depth: int = 0) -> Argument:
         if depth > 8:
-            raise line.error("parts lie too deep")
+            raise line.error("parts are nested too deeply")
         token = line.peek()
         if token is not None and token.kind in ("string", "real", "int"):
             return _constant(line, token.kind)

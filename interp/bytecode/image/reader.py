@@ -69,7 +69,7 @@ def read_image(data: bytes) -> Program:
         raise ImageError("the image is damaged: its checksum is wrong")
     start = 20 + 8 * count
     if count != len(SECTIONS) or start > length:
-        raise ImageError("the image has other sections than it should")
+        raise ImageError("the sections of the image are not those of its format")
     sections: dict[str, bytes] = {}
     for number, name in enumerate(SECTIONS):
         tag, size_ = struct.unpack_from("<4sI", data, 20 + 8 * number)
@@ -117,7 +117,7 @@ class _Reader:
         self._words = struct.unpack(f"<{len(data) // 4}I", data)
         found = self._list(read)
         if self._next != len(self._words):
-            raise self._error("it is longer than what it holds")
+            raise self._error("it is longer than its contents")
         return found
 
     def _word(self) -> int:
@@ -139,7 +139,7 @@ class _Reader:
     def _choice(self, choices: Sequence[_T]) -> _T:
         number = self._word()
         if number >= len(choices):
-            raise self._error("a number stands for nothing")
+            raise self._error("a number is out of range")
         return choices[number]
 
     def _optional(self) -> int | None:
@@ -192,7 +192,7 @@ class _Reader:
                 return Enumeration(self._string(), self._list(self._string))
             case TypeTag.ARRAY:
                 return Array(self._choice(self._types), self._list(self._word))
-        raise self._error("a number stands for no type")
+        raise self._error("there is no such kind of type")
 
     def _member(self) -> Member:
         return Member(self._string(), self._choice(self._types))
@@ -209,7 +209,7 @@ class _Reader:
 
     def _part(self, depth: int = 0) -> Argument:
         if depth > _DEEPEST:
-            raise self._error("parts lie too deep")
+            raise self._error("parts are nested too deeply")
         tag = self._word()
         match tag:
             case PartTag.NIL:
@@ -234,7 +234,7 @@ class _Reader:
             case PartTag.RECORD:
                 line, name = self._word(), self._string()
                 return Record(name, line, self._list(lambda: self._part(depth + 1)))
-        raise self._error("a number stands for no part")
+        raise self._error("there is no such kind of part")
 
     def _changed(self, depth: int) -> Changed:
         given, through = Input(*self._handed_over()), self._optional()
@@ -269,13 +269,13 @@ class _Reader:
         place = 0
         while place < len(words):
             if not 0 <= words[place] < len(shapes):
-                raise self._error(f"{words[place]} is no opcode")
+                raise self._error(f"{words[place]} is not an opcode")
             shape = shapes[words[place]]
             numbers[place] = len(found)
             found.append((shape, tuple(words[place + 1 : place + shape.words])))
             place += shape.words
         if place != len(words):
-            raise self._error("the last instruction is not complete")
+            raise self._error("the last instruction is incomplete")
         return tuple(
             Instruction(Op(shape.number), self._targets(shape, operands, numbers))
             for shape, operands in found
@@ -290,6 +290,6 @@ class _Reader:
         found = []
         for kind, operand in zip(shape.operands, operands, strict=True):
             if kind == "target" and operand not in numbers:
-                raise self._error("a target is no instruction")
+                raise self._error("a jump target is not an instruction")
             found.append(numbers[operand] if kind == "target" else operand)
         return tuple(found)

@@ -91,10 +91,10 @@ class _Fit:
 
     def fields(self, kinds: Sequence[str], parts: Sequence[Argument]) -> str | None:
         if len(kinds) != len(parts):
-            return f"{len(kinds)} fields are needed, and there are {len(parts)}"
+            return f"{len(kinds)} fields are required, not {len(parts)}"
         for number, (kind, part) in enumerate(zip(kinds, parts, strict=True), start=1):
             if not self._fits(kind, part):
-                return f"field {number} is no {kind.rstrip('?')}"
+                return f"field {number} is not of the kind {kind.rstrip('?')}"
         return None
 
     def _fits(self, kind: str, part: Argument) -> bool:
@@ -181,18 +181,18 @@ def call_mismatch(program: Program, builtin: Builtin) -> str | None:
         return f"it has {least} arguments, not {given}"
     result = None if builtin.result is None else program.types[builtin.result]
     if result != known.result:
-        return f"it gives {known.result or 'nothing'}"
+        return f"its result is {known.result or 'nothing'}"
     for place, part in enumerate(builtin.parts):
         if part == Constant(None):  # left out
             continue
         is_changed = isinstance(part, Changed)
         type_ = _type_of(program, part.given if isinstance(part, Changed) else part)
         if type_ is None or (is_changed and not known.is_out(place)):
-            return f"argument {place + 1} cannot be handed over"
+            return f"argument {place + 1} cannot be passed"
         wanted = known.parameters[place].type if place < least else UNKNOWN
         fits = is_same(wanted, type_) if is_changed else assignable(wanted, type_).is_fine
         if not fits or not _is_written(program, part):
-            return f"argument {place + 1} is no {wanted}"
+            return f"argument {place + 1} is not a {wanted}"
     return None
 
 

@@ -106,15 +106,15 @@ class _Tables:
         for type_ in types[len(BASIC_TYPES) :]:
             name = type_.name.upper() if isinstance(type_, Structure | Enumeration) else None
             if name in names or type_ in depths:
-                raise VerificationError(f"{type_} is there twice")
+                raise VerificationError(f"{type_} is defined twice")
             if name is not None:
                 names.add(name)
             parts = list(_parts(type_))
             if any(part not in depths for part in parts):
-                raise VerificationError(f"{type_} is made of types that do not come before it")
+                raise VerificationError(f"{type_} uses types that are not defined before it")
             depths[type_] = 1 + max((depths[part] for part in parts), default=0)
             if depths[type_] > _DEEPEST:
-                raise VerificationError(f"{type_} lies too deep")
+                raise VerificationError(f"{type_} is nested too deeply")
             try:
                 size(type_)
             except LinkError as error:
@@ -128,17 +128,17 @@ class _Tables:
             raise VerificationError(f"the data lists have more than {MAX_CELLS:,} cells")
         for one in program.imports:
             if not 0 <= one.number < len(program.data):
-                raise VerificationError(f"the import {one.module}.{one.name} leads nowhere")
+                raise VerificationError(f"the import {one.module}.{one.name} refers to no variable")
         last = -1
         for address, word in program.initial:
             number = program.data_at(address)
             if number is None or address <= last:
-                raise VerificationError("initial values are in the order of their cells")
+                raise VerificationError("initial values must be in the order of their cells")
             last = address
             variable = program.data[number]
             kind = kind_at(program.types[variable.type], address - program.addresses[number])
             if not is_word_of(word, kind):
-                raise VerificationError(f"an initial value of {variable.name} is no {kind}")
+                raise VerificationError(f"an initial value of {variable.name} is not a {kind}")
 
     def _type(self, number: int | None, where: str) -> Type:
         if number is None or not 0 <= number < len(self._program.types):
@@ -155,7 +155,7 @@ class _Tables:
                 case Input():
                     self._input(part, name)
                 case Changed() if part.given.mode is Mode.IN or not may_change:
-                    raise VerificationError(f"{name} cannot change that")
+                    raise VerificationError(f"{name} cannot change this argument")
                 case Choice():
                     self._choice(part, name)
                 case Constant():
@@ -170,7 +170,7 @@ class _Tables:
     def _input(self, part: Input, name: str) -> None:
         self._handed_over(part, name)
         if part.mode is Mode.IN and not isinstance(self._program.types[part.type], Plain):
-            raise VerificationError(f"{name}: a structure is passed by reference")
+            raise VerificationError(f"{name}: a structure must be passed by reference")
 
     def _choice(self, part: Choice, name: str) -> None:
         type_ = self._type(part.type, name)
@@ -181,13 +181,15 @@ class _Tables:
         value = part.value
         if isinstance(value, float):
             if not math.isfinite(value) or single(value) != value:
-                raise VerificationError(f"{name}: {value} is no REAL")
+                raise VerificationError(f"{name}: {value} is not a REAL")
         elif isinstance(value, int) and not INT_MIN <= value <= INT_MAX:
-            raise VerificationError(f"{name}: {value} is no INT")
+            raise VerificationError(f"{name}: {value} is not an INT")
 
     def _result(self, request: str, result: int | None) -> None:
         if (result is not None) != (request == "Read") and request != "Invoke":
-            raise VerificationError(f"{request}: a value is read, and only that")
+            raise VerificationError(
+                f"{request}: only Read and Invoke have results, and Read has one"
+            )
 
     # -------------------------------------------------------------------------------- code
 
@@ -206,7 +208,7 @@ class _Tables:
         for local in code.locals:
             self._type(local.type, f"{code.name}, {local.name}")
         if code.result is not None and not isinstance(self._type(code.result, code.name), Plain):
-            raise VerificationError(f"{code.name}: a result has one cell")
+            raise VerificationError(f"{code.name}: a result must have one cell")
         if program.addresses[-1] + program.frame_size(code) > MAX_CELLS:
             raise VerificationError(
                 f"{code.name}: data lists and a frame have more than {MAX_CELLS:,} cells"
@@ -220,22 +222,24 @@ class _Tables:
     def _ownership(self, code: Code) -> None:
         if code.kind is CodeKind.ROUTINE:
             if code.owner is not None or code.captures:
-                raise VerificationError(f"{code.name}: a routine belongs to nothing")
+                raise VerificationError(f"{code.name}: a routine cannot have an owner or captures")
             return
         codes = self._program.codes
         if code.owner is None or not 0 <= code.owner < len(codes):
             raise VerificationError(f"{code.name}: there is no owner")
         owner = codes[code.owner]
         if owner.kind is not CodeKind.ROUTINE:
-            raise VerificationError(f"{code.name}: the owner is no routine")
+            raise VerificationError(f"{code.name}: the owner must be a routine")
         if code.kind is CodeKind.CONDITION and (
             code.result is None or self._program.types[code.result] != BOOL
         ):
-            raise VerificationError(f"{code.name}: a condition gives a BOOL")
+            raise VerificationError(f"{code.name}: the result of a condition must be BOOL")
         if code.kind is CodeKind.ACTION and code.result is not None:
-            raise VerificationError(f"{code.name}: an action gives nothing")
+            raise VerificationError(f"{code.name}: an action cannot have a result")
         if len(code.captures) != len(code.parameters):
-            raise VerificationError(f"{code.name}: each parameter is a variable of the owner")
+            raise VerificationError(
+                f"{code.name}: each parameter must capture a variable of the owner"
+            )
         for parameter, place in zip(code.parameters, code.captures, strict=True):
             if not self._can_capture(owner, parameter, place):
                 raise VerificationError(f"{code.name}: the owner has no {parameter.name} there")
@@ -304,12 +308,12 @@ def _parts(type_: Type) -> Iterator[Type]:
             if not 1 <= len(type_.sizes) <= _MOST_DIMENSIONS:
                 raise VerificationError("an array has 1 to 3 dimensions")
         case _:
-            raise VerificationError(f"no variable can be of {type_}")
+            raise VerificationError(f"no variable can have the type {type_}")
 
 
 def _distinct(type_: Type, names: Sequence[str]) -> None:
     if not names or len({name.upper() for name in names}) != len(names):
-        raise VerificationError(f"{type_} has no parts, or two of the same name")
+        raise VerificationError(f"{type_} must have parts, with different names")
 
 
 def _all_parts(parts: Sequence[Argument], depth: int) -> Iterator[Argument]:
@@ -322,5 +326,5 @@ def _all_parts(parts: Sequence[Argument], depth: int) -> Iterator[Argument]:
             inner = (part.given, *([part.path] if part.path else []))
         if inner:
             if depth == _DEEPEST:
-                raise VerificationError("parts of a request lie too deep")
+                raise VerificationError("parts of a request are nested too deeply")
             yield from _all_parts(inner, depth + 1)

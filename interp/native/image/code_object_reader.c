@@ -76,7 +76,7 @@ static void read_body(struct reader *reader, struct krl_code *code)
         numbers[place] = count;
         place += 1 + (int32_t)shapes[instruction->op].operands;
         if (place > words) {
-            krl_refuse_image(reader, "the image is damaged: the last instruction is not complete");
+            krl_refuse_image(reader, "the image is damaged: the last instruction is incomplete");
             return;
         }
         for (uint32_t i = 0; i < shapes[instruction->op].operands; i++)
@@ -89,7 +89,7 @@ static void read_body(struct reader *reader, struct krl_code *code)
             if ((shapes[code->body[i].op].kinds >> 8 * j & 0xff) == KRL_OPERAND_TARGET) {
                 int32_t target = code->body[i].operands[j];
                 if (target < 0 || target >= words || numbers[target] < 0)
-                    krl_refuse_image(reader, "the image is damaged: a target is no instruction");
+                    krl_refuse_image(reader, "the image is damaged: a jump target is not an instruction");
                 else
                     code->body[i].operands[j] = numbers[target];
             }
@@ -111,7 +111,7 @@ static void read_code(struct reader *reader, struct krl_code *code)
     if (reader->is_wrong)
         return;
     if (code->result >= 0 && !krl_is_plain(program, code->result))
-        krl_refuse_image(reader, "a result has one cell");
+        krl_refuse_image(reader, "a result must have one cell");
     read_body(reader, code);
 }
 

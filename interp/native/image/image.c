@@ -29,14 +29,14 @@ static int open_sections(struct section *sections, const uint8_t *image, size_t 
     if (krl_word_at(image + 4) != KRL_IMAGE_FORMAT)
         return krl_refuse(why, "the image has another format: compile it again");
     if (krl_word_at(image + 8) != length || krl_word_at(image + 16) != SECTIONS)
-        return krl_refuse(why, "the image has another length than it says, or other sections");
+        return krl_refuse(why, "the image does not have the length or the sections that it states");
     if (krl_word_at(image + 12) != krl_checksum(image + 16, length - 16))
         return krl_refuse(why, "the image is damaged: its checksum is wrong");
     for (int i = 0; i < SECTIONS; i++) {
         const uint8_t *row = image + 20 + 8 * i;
         uint32_t size = krl_word_at(row + 4);
         if (memcmp(row, names + 4 * i, 4) != 0 || size % 4 != 0 || size > length - start)
-            return krl_refuse(why, "the image has other sections than it should");
+            return krl_refuse(why, "the sections of the image are not those of its format");
         sections[i] = (struct section){image + start, size};
         start += size;
     }

@@ -34,7 +34,7 @@ uint32_t krl_read_choice(struct reader *reader, uint32_t choices)
 {
     uint32_t number = krl_read_word(reader);
     if (number >= choices) {
-        krl_refuse_image(reader, "the image is damaged: a number stands for nothing");
+        krl_refuse_image(reader, "the image is damaged: a number is out of range");
         return 0;
     }
     return number;
@@ -64,7 +64,7 @@ void krl_begin_section(struct reader *reader, struct section section)
 void krl_end_section(struct reader *reader)
 {
     if (!reader->is_wrong && reader->left != 0)
-        krl_refuse_image(reader, "the image is damaged: a section is longer than what it holds");
+        krl_refuse_image(reader, "the image is damaged: a section is longer than its contents");
 }
 
 /* ---------------------------------------------------------------------------- strings */
@@ -135,8 +135,8 @@ struct krl_passed krl_read_passed(struct reader *reader)
         passed.dimensions = 0;
         passed.type = 0;
     } else if ((passed.mode == KRL_BY_VIEW) != (passed.dimensions > 0))
-        krl_refuse_image(reader, "a view has 1 to 3 dimensions, and nothing else has any");
+        krl_refuse_image(reader, "a view has 1 to 3 dimensions, anything else has none");
     else if (passed.mode == KRL_BY_VIEW && reader->program->types[passed.type].form == KRL_ARRAY)
-        krl_refuse_image(reader, "elements are no arrays");
+        krl_refuse_image(reader, "the elements of an array cannot be arrays");
     return passed;
 }

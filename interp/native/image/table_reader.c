@@ -54,7 +54,7 @@ static void read_type(struct reader *reader, struct krl_type *type)
         type->count = krl_read_count(reader);
         cells = (uint64_t)types[type->element].size;
         if (type->count < 1 || type->count > KRL_MOST_DIMENSIONS || types[type->element].form == KRL_ARRAY) {
-            krl_refuse_image(reader, "an array has 1 to 3 dimensions, and no arrays in it");
+            krl_refuse_image(reader, "an array has 1 to 3 dimensions, and its elements are not arrays");
             return;
         }
         for (int32_t i = 0; i < type->count && !reader->is_wrong; i++) {
@@ -89,7 +89,7 @@ static int32_t add_input(struct reader *reader, struct krl_passed passed)
     if (reader->is_wrong)
         return 0;
     if (passed.mode == KRL_BY_VALUE && !krl_is_plain(reader->program, passed.type)) {
-        krl_refuse_image(reader, "a structure is passed by reference");
+        krl_refuse_image(reader, "a structure must be passed by reference");
         return 0;
     }
     int32_t place = reader->input_cells;
@@ -102,7 +102,7 @@ static struct krl_part read_part(struct reader *reader, int depth)
 {
     struct krl_part part = {KRL_PART_OTHER, 0, {KRL_BY_VALUE, 0, 0}, {NULL, 0}, 0};
     if (depth > DEEPEST) {
-        krl_refuse_image(reader, "the image is damaged: parts lie too deep");
+        krl_refuse_image(reader, "the image is damaged: parts are nested too deeply");
         return part;
     }
     uint32_t tag = krl_read_choice(reader, RECORD + 1);
@@ -133,7 +133,7 @@ static struct krl_part read_part(struct reader *reader, int depth)
         for (int32_t i = 0; i < count && !reader->is_wrong; i++)
             read_part(reader, depth + 1);
         if (part.passed.mode == KRL_BY_VALUE)
-            krl_refuse_image(reader, "what changes is passed by reference");
+            krl_refuse_image(reader, "an argument that is changed must be passed by reference");
         part.kind = KRL_PART_CHANGED;
         part.has_path = count > 0;
         part.place = add_input(reader, part.passed);

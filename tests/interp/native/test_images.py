@@ -157,7 +157,7 @@ def test_damaged_images(core: type[Core], data: st.DataObject) -> None:
     ("change", "reason"),
     [
         (lambda _image: b"", "too short"),
-        (lambda image: image[:-4], "another length"),
+        (lambda image: image[:-4], "the length or the sections"),
         (lambda image: image[:4] + _WORD.pack(99) + image[8:], "compile it again"),
         (lambda image: image[:40] + bytes([image[40] ^ 1]) + image[41:], "checksum"),
         (lambda image: b"ELF\x7f" + image[4:], "not an image"),

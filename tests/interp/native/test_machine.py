@@ -85,7 +85,7 @@ def test_companions_need_the_same_image(core: type[Core]) -> None:
     one = core(image, False, 5, None)
     with pytest.raises(MemoryError):
         core(other, False, 5, one)
-    with pytest.raises(TypeError, match="machine or None"):
+    with pytest.raises(TypeError, match="a machine or None"):
         core(image, False, 5, "one")  # type: ignore[arg-type]  # what is tested
 
 
@@ -103,7 +103,7 @@ def test_core_checks_what_leads_into_memory(core: type[Core]) -> None:
             machine.begin(place if place < 0 else 9)
     with pytest.raises(OverflowError):
         machine[0] = 2**31
-    with pytest.raises(ValueError, match="as many cells"):
+    with pytest.raises(ValueError, match="the same number of cells"):
         machine[0:1] = [1, 2]
     with pytest.raises(IndexError):
         machine.close_frame()

@@ -49,7 +49,7 @@ def test_image_begins_with_its_name_and_version() -> None:
         (lambda image: image[:-1], "not .* as it says"),
         (lambda image: image + b"\0", "not .* as it says"),
         (lambda image: image[:-1] + b"\1", "checksum"),
-        (lambda image: sealed(image[:16] + b"\7" + image[17:]), "other sections"),
+        (lambda image: sealed(image[:16] + b"\7" + image[17:]), "the sections of the image"),
         (lambda image: sealed(image[:20] + b"X" + image[21:]), "no proper section STRS"),
         (lambda image: sealed(image[:24] + b"\xff\xff\xff\xff" + image[28:]), "no proper section"),
         (lambda image: sealed(image + b"\0\0\0\0"), "longer than its sections"),
@@ -88,7 +88,7 @@ def test_targets_lead_to_instructions() -> None:
     words = _words(write_image(assemble(text)))
     place = words.index(4, len(words) - 9)  # the word of RETURN
     words[place] = 3
-    with pytest.raises(ImageError, match="a target is no instruction"):
+    with pytest.raises(ImageError, match="a jump target is not an instruction"):
         read_image(sealed(struct.pack(f"<{len(words)}I", *words)))
 
 

@@ -261,38 +261,42 @@ def test_handed_over_are_actions_of_the_same_code_object() -> None:
     [
         ("from 0\nbegin", "from 1\nbegin", "the owner has no I there"),
         ("from 0\nbegin", "from 99\nbegin", "the owner has no I there"),
-        ("from 0\nbegin", "\nbegin", "each parameter is a variable of the owner"),
-        ("action of MAIN", "action of WHEN", "the owner is no routine"),
+        ("from 0\nbegin", "\nbegin", "each parameter must capture a variable"),
+        ("action of MAIN", "action of WHEN", "the owner must be a routine"),
         ("action of MAIN", "action", "there is no owner"),
-        ("action of MAIN", "routine of MAIN", "belongs to nothing"),
-        ("condition of MAIN", "action of MAIN", "an action gives nothing"),
-        ("result BOOL", "result INT", "a condition gives a BOOL"),
-        ("  result INT", "  result S", "a result has one cell"),
+        ("action of MAIN", "routine of MAIN", "cannot have an owner"),
+        ("condition of MAIN", "action of MAIN", "an action cannot have a result"),
+        ("result BOOL", "result INT", "the result of a condition must be BOOL"),
+        ("  result INT", "  result S", "a result must have one cell"),
         ("view L INT[]", "view L INT[,,,]", "1 to 3 dimensions"),
         ("-> BOOL", "-> #99", "no such type"),
-        ("-> BOOL", "", "a value is read"),
-        ('("$IN" in:INT)', '("$IN" in:REAL)', "field 1 is no path"),
-        ('("$IN" in:INT)', '(in:INT "$IN")', "field 1 is no path"),
-        ('("$IN" in:INT)', '"$IN"', "field 1 is no path"),
+        ("-> BOOL", "", "only Read and Invoke have results"),
+        ('("$IN" in:INT)', '("$IN" in:REAL)', "field 1 is not of the kind path"),
+        ('("$IN" in:INT)', '(in:INT "$IN")', "field 1 is not of the kind path"),
+        ('("$IN" in:INT)', '"$IN"', "field 1 is not of the kind path"),
         ('Read ("$IN"', 'Nothing ("$IN"', "is not a request"),
-        ('("$OUT" 1) in:BOOL', '("$OUT" 1)', "2 fields are needed"),
+        ('("$OUT" 1) in:BOOL', '("$OUT" 1)', "2 fields are required"),
         ('("$OUT" 1) in:BOOL', '("$OUT" 1) in:S', "by reference"),
-        ('("$OUT" 1) in:BOOL', '("$OUT" 1) ref:BOOL=', "cannot change"),
-        ('Write ("$OUT" 1) in:BOOL', 'Invoke "F" (in:BOOL=)', "cannot change"),
-        ('Write ("$OUT" 1) in:BOOL', 'Invoke "F" (ref:BOOL=(1))', "field 2 is no arguments"),
+        ('("$OUT" 1) in:BOOL', '("$OUT" 1) ref:BOOL=', "cannot change this argument"),
+        ('Write ("$OUT" 1) in:BOOL', 'Invoke "F" (in:BOOL=)', "cannot change this argument"),
+        (
+            'Write ("$OUT" 1) in:BOOL',
+            'Invoke "F" (ref:BOOL=(1))',
+            "field 2 is not of the kind arguments",
+        ),
         ('("$OUT" 1) in:BOOL', '("$OUT" 1) !E.#5', "no such constant"),
-        ('("$OUT" 1) in:BOOL', '("$OUT" 1) real:7f800000', "is no REAL"),
-        ("FALSE 0.0 &ACT", "FALSE 0.0 &WHEN", "field 5 is no action"),
-        ("SIN in:REAL -> REAL", "SIN in:INT -> INT", "it gives REAL"),
-        ("SIN in:REAL -> REAL", "SIN in:BOOL -> REAL", "argument 1 is no REAL"),
+        ('("$OUT" 1) in:BOOL', '("$OUT" 1) real:7f800000', "is not a REAL"),
+        ("FALSE 0.0 &ACT", "FALSE 0.0 &WHEN", "field 5 is not of the kind action"),
+        ("SIN in:REAL -> REAL", "SIN in:INT -> INT", "its result is REAL"),
+        ("SIN in:REAL -> REAL", "SIN in:BOOL -> REAL", "argument 1 is not a REAL"),
         ("SIN in:REAL -> REAL", "SIN -> REAL", "it has 1 arguments"),
         ("SIN in:REAL -> REAL", "SIN ref:REAL= -> REAL", "argument 1 cannot"),
         ("SIN in:REAL -> REAL", "PULSE in:REAL -> REAL", "no such function"),
-        ("SIN in:REAL -> REAL", "STRLEN view:INT[] -> INT", "argument 1 is no CHAR"),
+        ("SIN in:REAL -> REAL", "STRLEN view:INT[] -> INT", "argument 1 is not a CHAR"),
         ("data M.X INT", "data M.X INT[1048000]\ndata M.Y INT[1048000]", "more than 1,048,576"),
-        ("data M.R REAL", "data M.R REAL = real:7fc00000", "is no REAL"),
-        ("data M.X INT", "data M.X BOOL = 2", "is no BOOL"),
-        ("data M.X INT", "data M.X E = 2", "is no E"),
+        ("data M.R REAL", "data M.R REAL = real:7fc00000", "is not a REAL"),
+        ("data M.X INT", "data M.X BOOL = 2", "is not a BOOL"),
+        ("data M.X INT", "data M.X E = 2", "is not a E"),
         ('text T "abc"', 'text T "€"', "letters that no CHAR holds"),
     ],
 )
@@ -324,13 +328,13 @@ def test_types_are_made_of_types_before_them() -> None:
     """Types are numbered, distinct, and each is made of those before it."""
     good = program()
     refused(replace(good, types=good.types[1:]), "four scalar types")
-    refused(replace(good, types=(*good.types, good.types[6])), "there twice")
+    refused(replace(good, types=(*good.types, good.types[6])), "defined twice")
     strange = Structure("STRANGE", good.types[7].members)  # type: ignore[union-attr]
     verify(replace(good, types=(*good.types, strange)))
     far = Array(Structure("FAR", strange.members), (2,))
-    refused(replace(good, types=(*good.types, far)), "types that do not come before it")
-    refused(replace(good, types=(*good.types, Array(far.element, (None,)))), "do not come before")
-    refused(replace(good, types=(*good.types, Structure("NONE", ()))), "no parts")
+    refused(replace(good, types=(*good.types, far)), "types that are not defined before it")
+    refused(replace(good, types=(*good.types, Array(far.element, (None,)))), "not defined before")
+    refused(replace(good, types=(*good.types, Structure("NONE", ()))), "must have parts")
 
 
 def test_huge_arrays_are_refused() -> None:
