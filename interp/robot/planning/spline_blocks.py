@@ -157,11 +157,12 @@ def _knot(pose: Pose) -> Knot:
 
 def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
     """Return a spline of all axes through the targets, over the times of the leading axes."""
-    target, points, spans = before, [before.axes], []
+    target, points, spans, is_singular = before, [before.axes], [], False
     for part in motion.parts:
         own = part.settings or motion.settings
         own_motion = replace(motion, is_relative=part.is_relative, reference=part.reference)
         goal = target.goal(own_motion, part.target, motion.settings.placement)
+        is_singular = is_singular or goal.is_singular
         travel = np.abs(goal.axes - points[-1])
         is_still = bool(travel.max() < _STILL)
         spans.append(0.0 if is_still else float((travel / tracks.programmed(own).velocity).max()))
@@ -194,7 +195,7 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
             gear = spans[place - 1] / spans[place] if place > first else 0.0
             pieces.append(Piece(curve, ceiling, (), gear))
     last_settings = motion.parts[-1].settings or motion.settings
-    track = Track(motion, tuple(pieces), tracks.programmed(last_settings))
+    track = Track(motion, tuple(pieces), tracks.programmed(last_settings), is_singular)
     return track, target
 
 
