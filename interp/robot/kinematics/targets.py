@@ -151,6 +151,7 @@ def ptp_target(
         zero, turned = arm.forward(((0.0,) * 6, (-start[0], *(0.0,) * 5)))
         moved = turned @ np.linalg.inv(zero) @ matrix_of(flange)
         solutions = arm.inverse(arm.about_tips(moved, matrix_of(tool)))
+        solutions = solutions[np.abs(solutions[:, 0]) <= 90.0]  # the others turn axis 1 by 180
         solutions[:, 0] += start[0]
         found = _choose(arm, solutions, status, turn, start, preference)
     if Singularity.WRIST in found.singularities:
