@@ -20,13 +20,14 @@ NOTED = frozenset({"fault", "message"})
 def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -> Iterator[str]:
     """Yield notes: stand-ins, skipped lines, and what an endless program waited for."""
     from interp.robot.models import default_machine
+    from interp.robot.models.stand_in import NO_MACHINE
     from interp.standins.completion import summary
 
-    usual = f"{default_machine().name} is used instead"
+    usual = f"{NO_MACHINE}: {default_machine().name} is used instead"
     used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
     if used:
         yield f"stand-ins: {summary(used)}"
-    if done.machine_note and (used or not done.machine_note.endswith(usual)):
+    if done.machine_note and (used or done.machine_note != usual):
         yield f"arm: {done.machine_note}"
     skipped = done.controller.skipped
     for (file, number), error in islice(skipped.items(), _MOST_LISTED):

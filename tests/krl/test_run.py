@@ -213,6 +213,14 @@ def test_a_point_out_of_reach(run: Run) -> None:
     assert (1, "", True) == (status, err, "reach" in out)
 
 
+def test_machine_data_that_are_not_understood(run: Run, tmp_path: Path) -> None:
+    """One line names their file and line, also if nothing else is missing."""
+    text = "DEFDAT $MACHINE\nREAL $LENGTH_A=25.0\nDECL MAIN_AXIS $MAIN_AXIS=#SS\nENDDAT\n"
+    (tmp_path / "$machine.dat").write_text(text)
+    said = "$MAIN_AXIS is #SS; only an articulated arm (#NR) is supported: KR6R900 SIZED is used"
+    assert f"arm: $machine.dat:3: {said} instead\n" == run(INI)[2]
+
+
 def test_first_motion_is_a_line(run: Run) -> None:
     """A line that a program begins with is executed as PTP, but refused with --strict."""
     body = "LIN {X 500,Y 0,Z 700,A 0,B 180,C 0} C_DIS\nLIN {X 500,Y 99,Z 700,A 0,B 180,C 0}\n"
