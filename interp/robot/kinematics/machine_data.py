@@ -298,7 +298,7 @@ class _Reader:
             axis = self._axis(number)
         except MachineDataError:
             return other
-        if axis.kind is AxisKind.LINEAR or axis.dynamics is None or axis.lower > axis.upper:
+        if axis.kind is AxisKind.LINEAR or axis.dynamics is None:
             return other
         return replace(axis, direction=other.direction)
 
@@ -337,8 +337,10 @@ class _Reader:
         kind = self._kind(number)
         lower = self._number(f"$SOFTN_END[{number}]", default=-math.inf)
         upper = self._number(f"$SOFTP_END[{number}]", default=math.inf)
-        if kind is AxisKind.ENDLESS or lower >= upper:
+        if kind is AxisKind.ENDLESS or lower == upper:
             lower, upper = -math.inf, math.inf
+        if lower > upper:
+            raise self._error(f"$SOFTN_END[{number}] is above $SOFTP_END[{number}]")
         is_robot = number <= ROBOT_AXES
         is_held = number == 4 and self._palletising() is not None
         direction = self._integer(f"$AXIS_DIR[{number}]", default=None if is_robot else 1)

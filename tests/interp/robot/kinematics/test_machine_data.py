@@ -109,6 +109,7 @@ def test_the_stretched_elbow(machine_text: Callable[..., str], up: float, elbow:
     ("line", "said"),
     [
         ("$AXIS_DIR[3]=0", "$AXIS_DIR[3] is 0, not 1 or -1"),
+        ("$SOFTN_END[1]=171.0", "$SOFTN_END[1] is above $SOFTP_END[1]"),
         ("$AXIS_TYPE[2]=7", "$AXIS_TYPE[2] is 7, not 1, 3 or 5"),
         ("$AXIS_TYPE[2]=1", "$AXIS_TYPE[2] is 1"),
         ("$LENGTH_B=TRUE", "$LENGTH_B is not a number"),
