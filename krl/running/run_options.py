@@ -31,7 +31,7 @@ _AUTO_PATIENCE = 20.0
 #: Statements after which a program counts as endless; with these executors, whose texts are slow,
 #: earlier. A loop that only computes or works on texts then ends within 5 s.
 _STATEMENTS = 5_000_000
-_FEWER_STATEMENTS = {"vm": 700_000, "tree": 150_000}
+_FEWER_STATEMENTS = {"vm": 450_000, "tree": 150_000}
 
 
 class Executor(StrEnum):
@@ -135,7 +135,7 @@ class RunOptions:
             max=2**31 - 1,
             metavar="N",
             help="Statements each program may execute before it counts as endless; default: "
-            "5000000, with the executor vm 700000, with tree 150000.",
+            "5000000, with the executor vm 450000, with tree 150000.",
         ),
     ] = None
     strict: Annotated[
