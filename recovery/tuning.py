@@ -284,6 +284,9 @@ FORM_SYMBOLS = 4
 #: Edits that a merged cause may have: a person has to see at a glance that they are one. Measured:
 #: 54 clusters with 1.
 MOST_MERGED_EDITS = 3
+#: Proposals whose alternatives are gathered in one: a missing rule has as many. Measured: of 20
+#: mutants without a rule of several alternatives 4 are repaired, and 1 with nothing gathered.
+MOST_GATHERED = 16
 #: Tokens that could have come which a title names: more say nothing to a reader. Measured: other
 #: proposals with 1.
 MOST_EXPECTED = 2

@@ -17,7 +17,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from grammar.notation.edits import AddAlternative, Edit
+from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.edit_merging import (
@@ -40,6 +40,7 @@ from recovery.tuning import (
     FORM_SYMBOLS,
     HEAVY_GROUPS,
     MOST_COMPARED,
+    MOST_GATHERED,
     MOST_PROPOSALS,
 )
 from support.gc_pause import gc_paused
@@ -158,14 +159,66 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
     if len(causes) == 1:
         return causes[0]
     lines = frozenset(n for cause in causes for n in cause.lines)
-
-    def worth(proposal: Proposal) -> float:
-        mended = sum(search.weights[n] for n in proposal.mended & lines)
-        return mended * BREADTH_FACTOR**proposal.breadth
-
-    found = dict.fromkeys(p for cause in causes for p in cause.proposals)
+    worth = partial(_worth, search, lines)
+    found = list(dict.fromkeys(p for cause in causes for p in cause.proposals))
+    found += _gathered(search, found, lines)
     best = sorted(found, key=lambda p: (p.accepts_negatives, -worth(p)))
     return Cause(tuple(sorted(lines)), tuple(best[:MOST_PROPOSALS]))
+
+
+def _worth(search: CauseSearch, lines: frozenset[int], proposal: Proposal) -> float:
+    """Return the weight of the lines that a proposal repairs, reduced for its breadth."""
+    mended = sum(search.weights[n] for n in proposal.mended & lines)
+    return mended * BREADTH_FACTOR**proposal.breadth
+
+
+def _gathered(
+    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
+) -> list[Proposal]:
+    """Return one proposal with the alternatives that several of them add; none if one does as well.
+
+    Where a rule with several alternatives is missing, each of these is another proposal. They are
+    missing at one place, so first come the proposals for one rule: the rule in which they repair
+    most together. No words are reserved but those of the best proposal.
+    """
+    best = max(proposals, key=partial(_worth, search, lines), default=None)
+    of_rule: dict[str, list[Proposal]] = defaultdict(list)
+    for proposal in proposals:
+        edit = proposal.edits[-1]
+        if isinstance(edit, AddAlternative) and best and _words(proposal) <= _words(best):
+            of_rule[edit.rule].append(proposal)
+    covers = [_cover(search, some, lines) for some in of_rule.values()]
+    chosen = max(covers, key=lambda cover: sum(worth for _, worth in cover), default=[])
+    left = lines.difference(*(proposal.mended for proposal, _ in chosen))
+    chosen += _cover(search, [p for some in of_rule.values() for p in some], left)
+    whole = first = chosen[0][0] if chosen else None
+    for further, _ in chosen[1:MOST_GATHERED]:
+        assert whole is not None
+        edits = combined_edits(further.edits, whole.edits)  # the first one remains the last edit
+        both = search.proposal(edits, max(whole.breadth, further.breadth) + 1)
+        if both.mended & lines > whole.mended & lines:
+            whole = both
+    return [] if whole is None or whole is first else [whole]
+
+
+def _cover(
+    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
+) -> list[tuple[Proposal, float]]:
+    """Return the proposals that repair most of the lines, with their worth (greedy set cover)."""
+    cover: list[tuple[Proposal, float]] = []
+    while proposals:
+        worth = partial(_worth, search, lines)
+        further = max(proposals, key=worth)
+        if not further.mended & lines:
+            break
+        cover.append((further, worth(further)))
+        lines -= further.mended
+    return cover
+
+
+def _words(proposal: Proposal) -> frozenset[str]:
+    """Return the words that a proposal reserves."""
+    return frozenset(edit.name for edit in proposal.edits if isinstance(edit, AddToken))
 
 
 def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:

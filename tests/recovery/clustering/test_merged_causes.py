@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from grammar.notation.edits import Edit, Widen
+from grammar.notation.edits import AddAlternative, Edit, Widen
 from grammar.notation.g4 import read
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
@@ -91,3 +91,16 @@ def test_causes_of_one_reason_are_one() -> None:
     [one] = merged_by_reason(searched, causes, [("sign",)] * 4)
     assert ((0, 1, 2, 3), {LESS, MORE}) == (one.lines, {p.edits[0] for p in one.proposals})
     assert causes == merged_by_reason(searched, causes, [("<",), ("<",), (">",), (">",)])
+
+
+def test_the_alternatives_of_a_missing_rule_are_one_proposal() -> None:
+    """The first proposal of causes of one reason repairs all their lines."""
+    searched = search()
+    alternatives = [AddAlternative("line", f"IF NAME '{sign}' NAME NEWLINE") for sign in "<>"]
+    less, more = (searched.proposal((edit,), 0) for edit in alternatives)
+    [one] = merged_by_reason(
+        searched, [Cause((0, 1), (less,)), Cause((2, 3), (more,))], [("sign",)] * 4
+    )
+    assert set(alternatives) == set(one.proposals[0].edits)
+    assert mends_all(one.proposals[0])
+    assert {less, more} == {*one.proposals[1:]}
