@@ -96,7 +96,7 @@ def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: 
 
 def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
     """Return the share on which a part of the programmed speed is lost or gained [BLD-13]."""
-    stretches = _piece(track, at_end=at_end).ceiling.stretches
+    stretches = _piece(track, at_end=at_end).limits.stretches
     stretch = stretches[-1] if at_end else stretches[0]
     bounds = stretch.bounds(1.0)
     speed = max(share, 0.0) * stretch.programmed

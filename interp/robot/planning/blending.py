@@ -27,7 +27,13 @@ from interp.robot.path.pose_path import Blend, StraightLine
 from interp.robot.path.transition import Cubics, Overlap, Rounding, Transition
 from interp.robot.planning.blend_zones import Zone
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
-from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, ceiling_of, even_ceiling
+from interp.robot.planning.limits import (
+    AxisLimits,
+    CurveLimits,
+    PathLimits,
+    constant_speed_limits,
+    curve_limits_of,
+)
 from interp.robot.planning.schedule import schedule
 from interp.robot.planning.straight_run import StraightPart, StraightRun, extended, straight_through
 from interp.robot.planning.tracks import Piece, Track, reduced_paths
@@ -61,7 +67,7 @@ class PlannedBlend:
 
     zone: Zone
     curve: Curve
-    ceiling: Ceiling
+    limits: CurveLimits
     into: Junction
     out: Junction
     straight: StraightRun | None = None
@@ -108,11 +114,11 @@ def blend_of(
     settings = first.motion.settings, second.motion.settings
     in_t1 = reduced_paths(curve, machine, *settings)
     slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
-    ceiling = _ceiling(first, second, transition, curve, (x, y, z), machine, slowest)
-    return PlannedBlend(zone, curve, ceiling, *_junctions(transition))
+    curve_limits = _blend_limits(first, second, transition, curve, (x, y, z), machine, slowest)
+    return PlannedBlend(zone, curve, curve_limits, *_junctions(transition))
 
 
-def _ceiling(
+def _blend_limits(
     first: Track,
     second: Track,
     transition: Transition,
@@ -120,7 +126,7 @@ def _ceiling(
     rates: Rates,
     machine: MachineData,
     slowest: float = math.inf,
-) -> Ceiling:
+) -> CurveLimits:
     """Return the bounds of a blend along a curve with these derivatives of the axes.
 
     No torque exceeds its limit. The tool is not faster than on both sides of the blend, and its
@@ -143,11 +149,14 @@ def _ceiling(
     elif not first.is_cp and not second.is_cp:
         speeds = limits.velocity / np.maximum(np.abs(rates[0]), _TINY)
         programmed = min(programmed, float(speeds.min()))
-    before, after = one.ceiling.stretches[-1].bounds(1.0), other.ceiling.stretches[0].bounds(1.0)
+    before, after = (
+        one.limits.stretches[-1].bounds(1.0),
+        other.limits.stretches[0].bounds(1.0),
+    )
     beside = before.scaled(into.gear), after.scaled(1.0 / out.gear)
-    size = one.ceiling.stretches[-1].size / into.gear
-    ceiling = even_ceiling(rates, limits, beside, programmed, most, size)
-    return ceiling.within(first.axis_limits.torques, curve)
+    size = one.limits.stretches[-1].size / into.gear
+    curve_limits = constant_speed_limits(rates, limits, beside, programmed, most, size)
+    return curve_limits.within(first.axis_limits.torques, curve)
 
 
 def _straight_on(
@@ -171,7 +180,7 @@ def _straight_on(
     length = zone.before * ways[0] + zone.after * ways[1]
     straight = extended(run, first, second, (zone.before, zone.after), machine, limits)
     if straight is not None:
-        ceiling = straight.ceiling_of((first.motion.number, True, 0))
+        curve_limits = straight.curve_limits_of((first.motion.number, True, 0))
     else:
         allowed = first.axis_limits.merged(second.axis_limits, np.minimum)
         settings = first.motion.settings, second.motion.settings
@@ -184,9 +193,9 @@ def _straight_on(
             )
             for x, y in zip(one.paths, other.paths, strict=True)
         )
-        ceiling = ceiling_of(curve, limits, allowed, paths)
+        curve_limits = curve_limits_of(curve, limits, allowed, paths)
     into, out = Junction(ways[0] / length), Junction(length / ways[1])
-    return PlannedBlend(zone, curve, ceiling, into, out, straight)
+    return PlannedBlend(zone, curve, curve_limits, into, out, straight)
 
 
 def _soonest(
@@ -216,12 +225,14 @@ def _soonest(
 
     def duration(transition: Transition) -> float:
         blend = BlendedAxes(one.curve, other.curve, transition)
-        ceiling = _ceiling(first, second, transition, blend, blend.rates(blend.grid), machine)
-        return _duration(one, other, transition, ceiling)
+        curve_limits = _blend_limits(
+            first, second, transition, blend, blend.rates(blend.grid), machine
+        )
+        return _duration(one, other, transition, curve_limits)
 
     times = [duration(transition) for transition in choices]
     most = math.inf
-    ending, starting = _parameter(one.ceiling), _parameter(other.ceiling)
+    ending, starting = _parameter(one.limits), _parameter(other.limits)
     if ending is not None and starting is not None:
         exact = ending.duration + starting.duration
         if keeps_speed and min(times) < exact:
@@ -269,12 +280,12 @@ def _course(
     return weights, bool(off <= _STRAIGHT * np.abs(joining).max())
 
 
-def _duration(one: Piece, other: Piece, transition: Transition, ceiling: Ceiling) -> float:
+def _duration(one: Piece, other: Piece, transition: Transition, curve_limits: CurveLimits) -> float:
     """Return the duration of both pieces from rest to rest with a blend in these bounds."""
     into, out = _junctions(transition)
-    (zone,) = ceiling.stretches
-    before = one.ceiling.between(0.0, 1.0 - transition.before)
-    after = other.ceiling.between(transition.after, 1.0)
+    (zone,) = curve_limits.stretches
+    before = one.limits.between(0.0, 1.0 - transition.before)
+    after = other.limits.between(transition.after, 1.0)
     stretches = [
         *(JoinedStretch(stretch, SAME_CURVE) for stretch in before),
         JoinedStretch(zone, into),
@@ -285,14 +296,14 @@ def _duration(one: Piece, other: Piece, transition: Transition, ceiling: Ceiling
 
 
 @lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
-def _parameter(ceiling: Ceiling) -> Cubics | None:
+def _parameter(curve_limits: CurveLimits) -> Cubics | None:
     """Return the parameter of a curve over time, from rest to rest, or ``None`` if impossible."""
-    stretches = [JoinedStretch(stretch, SAME_CURVE) for stretch in ceiling.stretches]
+    stretches = [JoinedStretch(stretch, SAME_CURVE) for stretch in curve_limits.stretches]
     profiles = schedule(stretches, AT_REST, 1.0)
     if profiles is None:
         return None
     knots, time = [], 0.0
-    for stretch, profile in zip(ceiling.stretches, profiles, strict=True):
+    for stretch, profile in zip(curve_limits.stretches, profiles, strict=True):
         start, size = stretch.start, stretch.size
         for begin, place, *rates in profile.knots:
             knots.append((time + begin, start + place / size, *(rate / size for rate in rates)))

@@ -188,7 +188,7 @@ class PathExecution:
         queue = iter(profiles)
         for section, joined in entries:
             profile = standing(0.0) if joined is None else next(queue)
-            stretch = section.ceiling.stretches[0] if joined is None else joined.stretch
+            stretch = section.limits.stretches[0] if joined is None else joined.stretch
             ends = begins + profile.duration
             self._timeline.append(Leg(section, stretch, profile, begins, ends))
             begins = ends

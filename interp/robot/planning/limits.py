@@ -21,7 +21,7 @@ from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, Machi
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, Rates
 from interp.robot.planning.ramps import Bounds
-from interp.robot.planning.torque_limits import TorqueLimits, TorqueRoom
+from interp.robot.planning.torque_limits import TorqueLimits, TorqueMargin
 
 _MARGIN = 0.97
 """Share of a limit that is used, because limits are checked at samples only."""
@@ -137,11 +137,11 @@ class Stretch:
         """Return the bounds of a blend at constant speed."""
         return Bounds(min(self.even, self.programmed * override), self.hardest, self.sharpest)
 
-    def within(self, room: TorqueRoom) -> Stretch:
+    def within(self, margin: TorqueMargin) -> Stretch:
         """Return the stretch with bounds at which no torque exceeds what is free of it."""
-        velocity, even = min(self.velocity, room.fastest), min(self.even, room.fastest)
-        left = room.left(min(velocity, self.programmed))
-        left_even = room.left(min(even, self.programmed)) if even else left
+        velocity, even = min(self.velocity, margin.fastest), min(self.even, margin.fastest)
+        left = margin.left(min(velocity, self.programmed))
+        left_even = margin.left(min(even, self.programmed)) if even else left
         return replace(
             self,
             velocity=velocity,
@@ -165,18 +165,18 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ceiling:
+class CurveLimits:
     """The stretches of a curve, from u = 0 to 1."""
 
     stretches: tuple[Stretch, ...]
 
-    def within(self, torques: TorqueLimits | None, curve: Curve) -> Ceiling:
+    def within(self, torques: TorqueLimits | None, curve: Curve) -> CurveLimits:
         """Return the stretches with bounds at which no torque of the arm is exceeded."""
         if torques is None:
             return self
-        room = torques.along(curve)
-        return Ceiling(
-            tuple(each.within(room.between(each.start, each.end)) for each in self.stretches)
+        margin = torques.along(curve)
+        return CurveLimits(
+            tuple(each.within(margin.between(each.start, each.end)) for each in self.stretches)
         )
 
     def between(self, start: float, end: float) -> tuple[Stretch, ...]:
@@ -188,10 +188,10 @@ class Ceiling:
         )
         return tuple(part for part in parts if part.end > part.start)
 
-    def part(self, start: float, end: float) -> Ceiling:
+    def part(self, start: float, end: float) -> CurveLimits:
         """Return the stretches of a part of the curve; its own parameter goes from 0 to 1."""
         share = end - start
-        return Ceiling(tuple(each.part(start, share) for each in self.between(start, end)))
+        return CurveLimits(tuple(each.part(start, share) for each in self.between(start, end)))
 
 
 def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> AxisLimits:
@@ -205,9 +205,9 @@ def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> Ax
     )
 
 
-def ceiling_of(
+def curve_limits_of(
     curve: Curve, machine: AxisLimits, programmed: AxisLimits, paths: Sequence[PathLimits]
-) -> Ceiling:
+) -> CurveLimits:
     """Return the bounds along a curve.
 
     ``machine`` is never exceeded. ``programmed`` limits accelerations, and limits speeds like a
@@ -234,11 +234,11 @@ def ceiling_of(
         velocity = np.minimum(velocity, np.sqrt(_least(left / _positive(second)))) * _MARGIN
         velocity = np.minimum(velocity, np.cbrt(_least(_BENT * programmed.jerk / _positive(third))))
         used = np.minimum(velocity, slowest)[:, None]
-        room = _least(_BENT * programmed.jerk / _positive(3.0 * second * used))
-        acceleration = np.minimum(acceleration, room)
+        margin = _least(_BENT * programmed.jerk / _positive(3.0 * second * used))
+        acceleration = np.minimum(acceleration, margin)
         bent = second * used**2
         hardest = _least((machine.acceleration - bent) / straight) * _MARGIN
-        hardest = np.maximum(np.minimum(hardest, room), acceleration)
+        hardest = np.maximum(np.minimum(hardest, margin), acceleration)
         turned = third * used**3 + 3.0 * second * used * acceleration[:, None]
         smooth = np.minimum(smooth, _least((programmed.jerk - turned) / straight) * _MARGIN)
         sharpest = np.minimum(sharpest, _least((machine.jerk - turned) / straight) * _MARGIN)
@@ -252,17 +252,17 @@ def ceiling_of(
     columns *= _ROUNDING
     cuts = _cuts(used, 0, len(grid) - 1)
     stretches = (_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts))
-    return Ceiling(tuple(stretches)).within(programmed.torques, curve)
+    return CurveLimits(tuple(stretches)).within(programmed.torques, curve)
 
 
-def even_ceiling(
+def constant_speed_limits(
     rates: Rates,
     limits: AxisLimits,
     beside: Sequence[Bounds],
     programmed: float,
     most: float,
     size: float,
-) -> Ceiling:
+) -> CurveLimits:
     """Return the bounds of a blend with these derivatives, which may be passed at constant speed.
 
     ``beside`` are the bounds on both sides in the units of the blend; ``programmed`` is a speed
@@ -287,7 +287,7 @@ def even_ceiling(
         size=size,
         even=even,
     )
-    return Ceiling((stretch,))
+    return CurveLimits((stretch,))
 
 
 class _Sampled:
@@ -316,8 +316,8 @@ class _Sampled:
         acceleration = float(((limits.acceleration - self._second * speed**2) / straight).min())
         turned = limits.jerk - self._third * speed**3
         bent = 3.0 * self._second * speed
-        room = float((turned / 2.0 / _positive(bent)).min())
-        acceleration = min(acceleration, room, *(bounds.acceleration for bounds in beside))
+        margin = float((turned / 2.0 / _positive(bent)).min())
+        acceleration = min(acceleration, margin, *(bounds.acceleration for bounds in beside))
         jerk = float(((turned - bent * acceleration) / straight).min())
         return acceleration * _ROUNDING, min(jerk, *(bounds.jerk for bounds in beside)) * _ROUNDING
 

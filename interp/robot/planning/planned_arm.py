@@ -167,7 +167,7 @@ class PlannedArm:
             return False
         number = track.motion.number
         shorter = replace(body, end=1.0 - planned.zone.before)
-        blend = Section(body.number, number, planned.curve, planned.ceiling, junction=planned.into)
+        blend = Section(body.number, number, planned.curve, planned.limits, junction=planned.into)
         first, *others = _sections(track)
         rest = (replace(first, start=planned.zone.after, junction=planned.out), *others)
         route = (*before.route[:-1], shorter, blend, *rest)
@@ -435,7 +435,7 @@ def _sections(track: Track) -> tuple[Section, ...]:
             track.motion.number,
             None,
             piece.curve,
-            piece.ceiling,
+            piece.limits,
             junction=Junction(piece.gear),
             is_still=piece.is_still,
             part=part,

@@ -27,7 +27,7 @@ from interp.robot.path.circle import circle_through
 from interp.robot.path.pose_path import PosePath
 from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
 from interp.robot.path.targets_in_force import Programmed
-from interp.robot.planning.limits import ceiling_of
+from interp.robot.planning.limits import curve_limits_of
 from interp.robot.planning.spline_ranges import with_ranges
 from interp.robot.planning.tracks import Piece, Track, Tracks, reduced_paths
 from interp.values.faults import Fault
@@ -189,11 +189,11 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
                 curve = JointSpline(tracks.arm, own.placement, part_of)
                 check_path(tracks.every, part_of.at(_CLOSE))
             limits = tracks.programmed(own)
-            ceiling = ceiling_of(
+            curve_limits = curve_limits_of(
                 curve, tracks.limits, limits, reduced_paths(curve, tracks.machine, own)
             )
             gear = spans[place - 1] / spans[place] if place > first else 0.0
-            pieces.append(Piece(curve, ceiling, (), gear))
+            pieces.append(Piece(curve, curve_limits, (), gear))
     last_settings = motion.parts[-1].settings or motion.settings
     track = Track(motion, tuple(pieces), tracks.programmed(last_settings), is_singular)
     return track, target

@@ -15,7 +15,7 @@ from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
 from interp.robot.kinematics.solver import Array
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
-from interp.robot.planning.limits import Ceiling, Stretch
+from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import schedule
 from interp.robot.planning.tracks import Piece
@@ -95,20 +95,20 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
     speed = min(
         stretch.programmed * _length(pieces[number])
         for number in inside
-        for stretch in pieces[number].ceiling.stretches
+        for stretch in pieces[number].limits.stretches
     )
     changed = list(pieces)
     for number in inside:
         length = _length(pieces[number])
         low, high = (float(np.clip((x - ends[number]) / length, 0.0, 1.0)) for x in (start, end))
-        whole = pieces[number].ceiling
+        whole = pieces[number].limits
         within = []
         for stretch in whole.between(low, high):
             if stretch.velocity * length < speed * (1.0 - _SAME):
                 raise _broken(3214, "the programmed speed cannot be kept in its range")
             within.append(replace(stretch, programmed=min(speed / length, stretch.velocity)))
         stretches = (*whole.between(0.0, low), *within, *whole.between(high, 1.0))
-        changed[number] = replace(pieces[number], ceiling=Ceiling(stretches))
+        changed[number] = replace(pieces[number], limits=CurveLimits(stretches))
     _check_reached(changed, ends, start, end, speed)
     return tuple(changed)
 
@@ -183,7 +183,7 @@ def _slower(piece: Piece, share: float) -> Piece:
     """Return a piece with its speed scaled by a share; acceleration and jerk match."""
     return replace(
         piece,
-        ceiling=Ceiling(
+        limits=CurveLimits(
             tuple(
                 replace(
                     stretch,
@@ -192,7 +192,7 @@ def _slower(piece: Piece, share: float) -> Piece:
                     acceleration=stretch.acceleration * share**2,
                     jerk=stretch.jerk * share**3,
                 )
-                for stretch in piece.ceiling.stretches
+                for stretch in piece.limits.stretches
             )
         ),
     )
@@ -207,7 +207,7 @@ def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedPro
     for number, piece in enumerate(pieces):
         if piece.is_still:
             continue
-        for place, stretch in enumerate(piece.ceiling.stretches):
+        for place, stretch in enumerate(piece.limits.stretches):
             numbers.append(number)
             junction = SAME_CURVE if place else Junction(piece.gear)
             stretches.append(JoinedStretch(stretch, junction))

@@ -17,7 +17,7 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine
-from interp.robot.planning.limits import AxisLimits, Ceiling, ceiling_of
+from interp.robot.planning.limits import AxisLimits, CurveLimits, curve_limits_of
 from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, reduced_paths
 
@@ -62,18 +62,18 @@ class StraightRun:
     parts: tuple[StraightPart, ...]
     places: dict[Key, tuple[float, float]]
     length: float
-    ceiling: Ceiling
+    limits: CurveLimits
 
     def bounded(self, section: Section) -> Section:
         """Return a section with the limits of the run; unchanged if it is not part of the run."""
         if section.key not in self.places:
             return section
-        return replace(section, ceiling=self.ceiling_of(section.key))
+        return replace(section, limits=self.curve_limits_of(section.key))
 
-    def ceiling_of(self, key: Key) -> Ceiling:
+    def curve_limits_of(self, key: Key) -> CurveLimits:
         """Return the limits of a section."""
         start, end = (where / self.length for where in self.places[key])
-        return self.ceiling.part(start, end)
+        return self.limits.part(start, end)
 
 
 def extended(
@@ -119,7 +119,9 @@ def extended(
         paths = reduced_paths(whole, machine, first.motion.settings, second.motion.settings)
     else:
         paths = tuple(replace(x, length=x.length * length / behind) for x in other.paths)
-    return StraightRun(parts, places, length, ceiling_of(whole, limits, second.axis_limits, paths))
+    return StraightRun(
+        parts, places, length, curve_limits_of(whole, limits, second.axis_limits, paths)
+    )
 
 
 def straight_through(

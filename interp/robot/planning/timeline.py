@@ -16,7 +16,7 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.axis_path import Curve, tool_tangents
 from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Junction, PathState
-from interp.robot.planning.limits import Ceiling, Stretch
+from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile
 
 MICROSECOND = 1e-6
@@ -40,7 +40,7 @@ class Section:
     number: int
     following: int | None
     curve: Curve
-    ceiling: Ceiling
+    limits: CurveLimits
     start: float = 0.0
     end: float = 1.0
     junction: Junction = STOP
@@ -59,7 +59,7 @@ class Section:
 
     def stretches(self, start: float, junction: Junction) -> list[JoinedStretch]:
         """Return the stretches from a parameter on, the first one with a junction."""
-        parts = () if self.is_used_up else self.ceiling.between(start, self.end)
+        parts = () if self.is_used_up else self.limits.between(start, self.end)
         return [
             JoinedStretch(part, SAME_CURVE if place else junction)
             for place, part in enumerate(parts)

@@ -50,7 +50,7 @@ class TorqueLimits:
         """Return the limits of the arm with these loads."""
         return self if loads == self.loads else replace(self, loads=loads)
 
-    def along(self, curve: Curve) -> TorqueRoom:
+    def along(self, curve: Curve) -> TorqueMargin:
         """Return what the torques leave for moving along a curve."""
         u = curve.grid
         if not _FEWEST <= len(u) <= _MOST:
@@ -64,35 +64,35 @@ class TorqueLimits:
         )
         largest = np.full(axes.shape[1], np.inf)
         largest[: len(self.largest)] = self.largest
-        room = np.maximum(_MARGIN * largest - np.abs(held), _LEFT * largest)
-        return TorqueRoom(u, room, np.abs(steady - held), np.abs(pushed - held))
+        margin = np.maximum(_MARGIN * largest - np.abs(held), _LEFT * largest)
+        return TorqueMargin(u, margin, np.abs(steady - held), np.abs(pushed - held))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TorqueRoom:
+class TorqueMargin:
     """Samples along a curve: what gravity leaves, and what speed and acceleration along u take.
 
-    ``u`` is ``(n,)``, the others are ``(n, axes)``: ``room`` in Nm or N, ``steady`` by the square
+    ``u`` is ``(n,)``, the others are ``(n, axes)``: ``margin`` in Nm or N, ``steady`` by the square
     of du/dt, and ``pushed`` by d²u/dt².
     """
 
     u: Array
-    room: Array
+    margin: Array
     steady: Array
     pushed: Array
 
-    def between(self, start: float, end: float) -> TorqueRoom:
+    def between(self, start: float, end: float) -> TorqueMargin:
         """Return the samples of a part of the curve, and the next one on either side."""
         low = max(int(np.searchsorted(self.u, start, side="right")) - 1, 0)
         part = slice(low, int(np.searchsorted(self.u, end)) + 1)
-        return TorqueRoom(self.u[part], self.room[part], self.steady[part], self.pushed[part])
+        return TorqueMargin(self.u[part], self.margin[part], self.steady[part], self.pushed[part])
 
     @property
     def fastest(self) -> float:
         """The largest speed that leaves enough for changing it, in u per second."""
-        return float(np.sqrt((_FAST * self.room / np.maximum(self.steady, 1e-12)).min()))
+        return float(np.sqrt((_FAST * self.margin / np.maximum(self.steady, 1e-12)).min()))
 
     def left(self, speed: float) -> float:
         """Return the largest acceleration at speeds up to this one, in u per second squared."""
-        free = self.room - self.steady * speed**2
+        free = self.margin - self.steady * speed**2
         return float((free / np.maximum(self.pushed, 1e-12)).min())

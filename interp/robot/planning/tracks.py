@@ -27,7 +27,13 @@ from interp.robot.path.orientation import Carried, Orientation, Turning, about, 
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.path.wrist import WristCurve
-from interp.robot.planning.limits import AxisLimits, Ceiling, PathLimits, axis_limits, ceiling_of
+from interp.robot.planning.limits import (
+    AxisLimits,
+    CurveLimits,
+    PathLimits,
+    axis_limits,
+    curve_limits_of,
+)
 from interp.robot.planning.torque_limits import TorqueLimits
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -48,7 +54,7 @@ class Piece:
     """
 
     curve: Curve
-    ceiling: Ceiling
+    limits: CurveLimits
     paths: tuple[PathLimits, ...] = ()
     gear: float = 0.0
     is_still: bool = False
@@ -138,10 +144,10 @@ class Tracks:
         curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
         limits = self.programmed(settings)
         is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
-        ceiling = ceiling_of(
+        curve_limits = curve_limits_of(
             curve, self.limits, limits, reduced_paths(curve, self.machine, settings)
         )
-        piece = Piece(curve, ceiling, is_still=is_still)
+        piece = Piece(curve, curve_limits, is_still=is_still)
         track = Track(motion, (piece,), limits, goal.is_singular)
         return track, before.reached(goal.axes, goal.components, settings.placement)
 
@@ -194,17 +200,17 @@ class Tracks:
             curve = WristCurve(self.arm, settings.placement, pose_path, start, others)
             paths = self.paths(settings, pose_path.length, 0.0, 0.0, is_spline=kind[0] == "S")
             self.check_speed(settings, curve, paths)
-            return Piece(curve, ceiling_of(curve, limits, limits, paths), paths)
+            return Piece(curve, curve_limits_of(curve, limits, limits, paths), paths)
         curve = PosePathCurve(self.arm, settings.placement, pose_path, start, others)
         swivel, rotation = (math.degrees(angle) for angle in pose_path.angles)
         paths = self.paths(settings, pose_path.length, swivel, rotation, is_spline=kind[0] == "S")
         self.check_speed(settings, curve, paths)
-        return Piece(curve, ceiling_of(curve, limits, limits, paths), paths)
+        return Piece(curve, curve_limits_of(curve, limits, limits, paths), paths)
 
     def still(self, axes: Array, settings: Settings) -> Piece:
         """Return a piece of length zero."""
         curve = JointLine(self.arm, settings.placement, axes, axes)
-        return Piece(curve, ceiling_of(curve, self.limits, self.limits, ()), is_still=True)
+        return Piece(curve, curve_limits_of(curve, self.limits, self.limits, ()), is_still=True)
 
     def _point(self, motion: Motion, target: Target, before: Programmed) -> tuple[float, ...]:
         placement = motion.settings.placement

@@ -159,7 +159,7 @@ def longest(line: PlannedArm, program: Sequence[Motion], ahead: int) -> float:
     which it can, with the least acceleration and jerk along the line.
     """
     leg = line.path()[-1]
-    stretches, size = leg.section.ceiling.stretches, leg.section.ceiling.stretches[0].size
+    stretches, size = leg.section.limits.stretches, leg.section.limits.stretches[0].size
     speeds = [min(one.velocity, one.programmed) * size for one in stretches]
     acceleration = min(one.acceleration for one in stretches) * size
     jerk = min(one.jerk for one in stretches) * size

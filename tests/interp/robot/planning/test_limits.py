@@ -15,7 +15,7 @@ from interp.robot.kinematics.targets import follow
 from interp.robot.path.axis_path import JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine, poses_of
-from interp.robot.planning.limits import Ceiling, PathLimits, axis_limits, ceiling_of
+from interp.robot.planning.limits import CurveLimits, PathLimits, axis_limits, curve_limits_of
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.machine_data import MachineData
@@ -59,14 +59,14 @@ def test_a_straight_line_of_axes(machine: MachineData) -> None:
         kinematics_of(machine), Placement(), START, START + np.array([90, 10, 0, 0, 0, 0, 100])
     )
     limits = axis_limits(machine)
-    (stretch,) = ceiling_of(curve, limits, limits, ()).stretches
+    (stretch,) = curve_limits_of(curve, limits, limits, ()).stretches
     assert (4.0, 40.0 / 3.0) == pytest.approx((stretch.velocity, stretch.acceleration))
 
 
-def bounds_hold(curve: PosePathCurve, ceiling: Ceiling, machine: MachineData) -> None:
+def bounds_hold(curve: PosePathCurve, curve_limits: CurveLimits, machine: MachineData) -> None:
     """At the bounds of each stretch, no axis exceeds its own, wherever on the stretch."""
     limits = axis_limits(machine)
-    for stretch in ceiling.stretches:
+    for stretch in curve_limits.stretches:
         u = np.linspace(stretch.start, stretch.end, 301)
         step = 1e-3
         middle = np.clip(u, step, 1 - step)
@@ -89,7 +89,7 @@ def test_lines(machine: MachineData, shift: tuple[float, float, float]) -> None:
     limits = axis_limits(machine)
     length = math.hypot(*shift)
     paths = (PathLimits(length, 3000.0, 10000.0),)
-    bounds_hold(curve, ceiling_of(curve, limits, limits, paths), machine)
+    bounds_hold(curve, curve_limits_of(curve, limits, limits, paths), machine)
 
 
 def test_a_line_past_a_singularity(machine: MachineData) -> None:
@@ -97,21 +97,21 @@ def test_a_line_past_a_singularity(machine: MachineData) -> None:
     start = np.array([0.0, -90.0, 100.0, 40.0, 6.0, 0.0, 0.0])
     curve = line(machine, (-40.0, 150.0, 60.0), start)
     limits = axis_limits(machine)
-    ceiling = ceiling_of(curve, limits, limits, (PathLimits(166.0, 2000.0, 5000.0),))
-    speeds = [stretch.velocity for stretch in ceiling.stretches]
+    curve_limits = curve_limits_of(curve, limits, limits, (PathLimits(166.0, 2000.0, 5000.0),))
+    speeds = [stretch.velocity for stretch in curve_limits.stretches]
     assert max(speeds) > 3 * min(speeds)
-    assert all(one.end == other.start for one, other in pairwise(ceiling.stretches))
-    bounds_hold(curve, ceiling, machine)
+    assert all(one.end == other.start for one, other in pairwise(curve_limits.stretches))
+    bounds_hold(curve, curve_limits, machine)
 
 
-def test_cutting_a_ceiling(machine: MachineData) -> None:
+def test_cutting_a_limits(machine: MachineData) -> None:
     """A part of a curve has the stretches between its ends, cut there."""
     curve = line(machine, (0, 300, 0))
     limits = axis_limits(machine)
-    ceiling = ceiling_of(curve, limits, limits, (PathLimits(300.0, 500.0, 1000.0),))
-    parts = ceiling.between(0.2, 0.7)
+    curve_limits = curve_limits_of(curve, limits, limits, (PathLimits(300.0, 500.0, 1000.0),))
+    parts = curve_limits.between(0.2, 0.7)
     assert (0.2, 0.7) == (parts[0].start, parts[-1].end)
-    assert () == ceiling.between(0.5, 0.5)
+    assert () == curve_limits.between(0.5, 0.5)
 
 
 def test_axes_along_a_pose_path_are_exact(machine: MachineData) -> None:
