@@ -9,7 +9,7 @@ from functools import cached_property
 from grammar.notation.edits import AddAlternative
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import LineSymbols
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
 from recovery.induction.symbol_reader import Token
 from recovery.induction.symbols import Symbol
@@ -27,7 +27,7 @@ class BlockEdits:
         self.hosts = hosts
         self.blocks = blocks
 
-    def edits(self) -> Iterator[Inferred]:
+    def edits(self) -> Iterator[InferredStep]:
         """Blocks of several lines where their first line may stand."""
         for block in self.blocks:
             members = self._opening(block)
@@ -38,7 +38,7 @@ class BlockEdits:
                         added = AddAlternative(host, text + self.hosts.ending(host))
                         edits = (*self.forms.reserving(text), added)
                         title = f"{block.opener} to {block.closer} as {host}"
-                        yield Inferred(title, edits, members, is_block=True)
+                        yield InferredStep(title, edits, members, is_block=True)
 
     def _opening(self, block: BlockLines) -> tuple[int, ...]:
         """Return the lines that open a block."""

@@ -12,7 +12,7 @@ from recovery.induction.forms.samples import samples_of
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.operand_rules import bracket_pairs
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import BRACKETS, Symbol
 from recovery.tuning import BRACKET_ORIGINS, MISSING_RUN
@@ -26,7 +26,7 @@ class BracketEdits:
         self.forms = forms
         self._operands = operands
 
-    def edits(self) -> Iterator[Inferred]:
+    def edits(self) -> Iterator[InferredStep]:
         """Return edits of the contents of brackets, from all contents that a rule does not read."""
         found: dict[tuple[str, str], dict[tuple[Symbol, ...], list[int]]] = defaultdict(
             lambda: defaultdict(list)
@@ -54,7 +54,7 @@ class BracketEdits:
             members = tuple(dict.fromkeys(n for numbers in contents.values() for n in numbers))
             title = f"between {sign} and {BRACKETS[sign]} of {rule}"
             for edits, lost in self._between(rule, sign, contents):
-                yield Inferred(title, edits, members, breadth=lost)
+                yield InferredStep(title, edits, members, breadth=lost)
 
     def _between(
         self, rule: str, sign: str, contents: dict[tuple[Symbol, ...], list[int]]

@@ -37,10 +37,10 @@ from recovery.induction.folds_of_operands import (
     variables,
 )
 from recovery.induction.grammar_view import GrammarView
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 
 #: The kinds of fold, in the order in which they are tried.
-FOLDS: tuple[Callable[[GrammarView], Iterator[Inferred]], ...] = (
+FOLDS: tuple[Callable[[GrammarView], Iterator[InferredStep]], ...] = (
     unused_rules,
     named_types,
     words_as_types,
@@ -63,7 +63,7 @@ FOLDS: tuple[Callable[[GrammarView], Iterator[Inferred]], ...] = (
 )
 
 
-def folds_of(view: GrammarView) -> Iterator[Inferred]:
+def folds_of(view: GrammarView) -> Iterator[InferredStep]:
     """Yield what could be folded in a grammar; each fold stands for itself."""
     return (fold for kind in FOLDS for fold in kind(view) if fold.edits)
 

@@ -18,19 +18,19 @@ from grammar.notation.model import Literal, Reference, walk
 from recovery.induction.forms.lists import LONG_LIST
 from recovery.induction.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.symbols import Operand, Symbol
 from recovery.tuning import FOLDING_SYMBOLS, LEAST_STEM
 
 
-def unused_rules(view: GrammarView) -> Iterator[Inferred]:
+def unused_rules(view: GrammarView) -> Iterator[InferredStep]:
     """Rules that nothing calls."""
     for name in view.rules.reaches:
         if view.profile.is_free(name):
-            yield Inferred(f"nothing calls {name}", (RemoveRule(name),), ())
+            yield InferredStep(f"nothing calls {name}", (RemoveRule(name),), ())
 
 
-def alternatives_of_a_word(view: GrammarView) -> Iterator[Inferred]:
+def alternatives_of_a_word(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for alternatives that begin with the same word, or with words of one kind."""
     for rule, word, numbers in view.families:
         # alternatives of which only some have a form in common
@@ -38,10 +38,10 @@ def alternatives_of_a_word(view: GrammarView) -> Iterator[Inferred]:
         for group in groups if len(numbers) > 1 else ():
             edits = _folded(view, word, [(rule, n) for n in group])
             which = "" if group is numbers else f" {' and '.join(map(str, group))}"
-            yield Inferred(f"one form for {word} in {rule}{which}", edits, ())
+            yield InferredStep(f"one form for {word} in {rule}{which}", edits, ())
 
 
-def alternatives_of_two_rules(view: GrammarView) -> Iterator[Inferred]:
+def alternatives_of_two_rules(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for alternatives of two rules that begin with the same word."""
     for rule, word, numbers in view.families:
         for other, same, more in view.families:
@@ -50,10 +50,10 @@ def alternatives_of_two_rules(view: GrammarView) -> Iterator[Inferred]:
             if other != rule and same == word and is_left:
                 places = [(r, n) for r, ns in ((rule, numbers), (other, more)) for n in ns]
                 title = f"{rule} reads what {word} begins in {other}"
-                yield Inferred(title, _folded(view, word, places), ())
+                yield InferredStep(title, _folded(view, word, places), ())
 
 
-def lists(view: GrammarView) -> Iterator[Inferred]:
+def lists(view: GrammarView) -> Iterator[InferredStep]:
     """Lists where the same word begins one in another rule."""
     listing = {
         (rule, number): any(isinstance(e, Literal) and e.text == "," for e in walk(alternative))
@@ -73,10 +73,10 @@ def lists(view: GrammarView) -> Iterator[Inferred]:
                 form = view.form(dict.fromkeys([*shapes, *more]))
                 edits = (Replace(rule, (number, 1), form, len(elements)),) if form else ()
                 title = f"a list behind {word} in {rule}"
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
-def derived_words(view: GrammarView) -> Iterator[Inferred]:
+def derived_words(view: GrammarView) -> Iterator[InferredStep]:
     """Yield operand and ending of a word for a derived one: ``PTP_REL`` is derived from PTP."""
     single = [(r, w, ns[0]) for r, w, ns in view.families if len(ns) == 1 and w in view.reserved]
     pairs = [(s, o) for s in single for o in single if o[1] in s[1] and o[1] != s[1]]
@@ -95,7 +95,7 @@ def derived_words(view: GrammarView) -> Iterator[Inferred]:
             edits.append(Insert(rule, at, view.source(other, ending)))
         if edits:
             title = f"{word} goes on as {base} does"
-            yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
+            yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
 
 
 def _folded(view: GrammarView, word: str, places: Sequence[tuple[str, int]]) -> tuple[Edit, ...]:

@@ -12,12 +12,12 @@ from grammar.notation.model import Element, Group, Literal, Reference, Repeat, R
 from recovery.induction.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.operand_rules import bracket_pairs
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.symbols import BRACKETS
 from recovery.tuning import FOLDING_SYMBOLS
 
 
-def named_types(view: GrammarView) -> Iterator[Inferred]:
+def named_types(view: GrammarView) -> Iterator[InferredStep]:
     """Words that declare as types do are names: where a type may stand a name may."""
     heads = [view.words(e[0]) for _, _, e in view.lines() if view.is_name(e[1])]
     of_types = [words for words in heads if len(words & view.types) > 1]
@@ -25,10 +25,10 @@ def named_types(view: GrammarView) -> Iterator[Inferred]:
         if view.rules.names:
             edits = (AddAlternative(view.rules.names, word),)
             title = f"{word} is a name as types are"
-            yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+            yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
-def words_as_types(view: GrammarView) -> Iterator[Inferred]:
+def words_as_types(view: GrammarView) -> Iterator[InferredStep]:
     """Yield types for words that stand in place of a type and whose name is followed alike."""
     found: dict[str, set[tuple[str, ...]]] = defaultdict(set)
     longer: set[str] = set()  # words with an operand behind the name too
@@ -44,10 +44,10 @@ def words_as_types(view: GrammarView) -> Iterator[Inferred]:
             if found[word] <= found[choice]:
                 title = f"{word} is one of {choice}"
                 edits = (AddAlternative(choice, word),)
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
-def tails(view: GrammarView) -> Iterator[Inferred]:
+def tails(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for what follows a declared name, if alternatives of a rule differ in it."""
     for rule in view.grammar.rules:
         if rule.is_lexer or rule.name in view.rules.recursive:
@@ -74,10 +74,10 @@ def tails(view: GrammarView) -> Iterator[Inferred]:
             if form and view.source(rule.name, tail) != form
         ]
         title = f"one form for what follows a name in {rule.name}"
-        yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
+        yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def brackets(view: GrammarView) -> Iterator[Inferred]:
+def brackets(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for brackets after a declared name, if lines of a rule differ in it."""
     for rule in view.grammar.rules:
         found: dict[str, list[tuple[int, int, Sequence[Element]]]] = defaultdict(list)
@@ -96,10 +96,10 @@ def brackets(view: GrammarView) -> Iterator[Inferred]:
             )
             title = f"one form between {sign} and {BRACKETS[sign]} in {rule.name}"
             if form and len(contents) > 1:
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def initial_values(view: GrammarView) -> Iterator[Inferred]:
+def initial_values(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the same values after a sign for all lines of a rule, if none of them is a name."""
     for rule in view.grammar.rules:
         found: dict[str, list[tuple[Address, list[str]]]] = defaultdict(list)
@@ -118,10 +118,10 @@ def initial_values(view: GrammarView) -> Iterator[Inferred]:
                 if values != every
             )
             title = f"values behind {sign} in {rule.name}"
-            yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+            yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def modifiers(view: GrammarView) -> Iterator[Inferred]:
+def modifiers(view: GrammarView) -> Iterator[InferredStep]:
     """Yield a word that is optional in front of two kinds of line for further kinds like them."""
     for rule in view.grammar.rules:
         found: dict[str, list[int]] = defaultdict(list)
@@ -136,10 +136,10 @@ def modifiers(view: GrammarView) -> Iterator[Inferred]:
             edits = tuple(Insert(rule.name, (n, 1), f"{word}?") for n in plain)
             if len(having) > 1 and edits and word in view.grammar.by_name:
                 title = f"{word} ahead of other lines in {rule.name}"
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def undeclared(view: GrammarView) -> Iterator[Inferred]:
+def undeclared(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the prefix between a word and a type in front of types of a kind without that word."""
     for rule in view.grammar.rules:
         found = []
@@ -160,7 +160,7 @@ def undeclared(view: GrammarView) -> Iterator[Inferred]:
                     edits = (Replace(rule.name, (number, 1), text, 1 + len(before)),)
                     title = f"{', '.join(words)} without {min(view.words(first))}"
                     breadth = FOLDING_SYMBOLS + len(between)
-                    yield Inferred(f"{title} in {rule.name}", edits, (), breadth=breadth)
+                    yield InferredStep(f"{title} in {rule.name}", edits, (), breadth=breadth)
 
 
 def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:

@@ -18,11 +18,11 @@ from grammar.notation.edits import (
 )
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule, walk
 from recovery.induction.grammar_view import GrammarView, sign_of
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.tuning import FOLDING_SYMBOLS
 
 
-def trailing(view: GrammarView) -> Iterator[Inferred]:
+def trailing(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one choice for words at the end of lines, from choices that share a word.
 
     Choices are also joined if one rule has the same operand in front of two of them.
@@ -56,10 +56,10 @@ def trailing(view: GrammarView) -> Iterator[Inferred]:
         if len(every) > 1 and edits and every not in done:
             done.add(every)
             title = f"{', '.join(sorted(every))} at the end of lines"
-            yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
+            yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def headers(view: GrammarView) -> Iterator[Inferred]:
+def headers(view: GrammarView) -> Iterator[InferredStep]:
     """Any operand where a variable is all that opens a block, if most others open with any."""
     widest, end, variable = view.rules.widest, view.profile.line_end, view.writer.cover.variable
     alone: list[tuple[str, int]] = []
@@ -77,10 +77,10 @@ def headers(view: GrammarView) -> Iterator[Inferred]:
     for name, number in alone if others > len(alone) else ():
         edits = (Replace(name, (number, 2), widest or ""),)
         title = f"any operand opens a block in {name} {number}"
-        yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+        yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
-def leading(view: GrammarView) -> Iterator[Inferred]:
+def leading(view: GrammarView) -> Iterator[InferredStep]:
     """Lines without a word that may be missing at their head, where the next one is a word."""
     for rule, number, elements in view.lines():
         first = view.words(elements[0])
@@ -96,10 +96,10 @@ def leading(view: GrammarView) -> Iterator[Inferred]:
             text = f"{rule.source_of(word)} {view.source(rule.name, every)}"
             title = f"{min(words)} without {min(first)} in {rule.name}"
             edits = (AddAlternative(rule.name, text),)
-            yield Inferred(title, edits, (), breadth=len(every) + FOLDING_SYMBOLS)
+            yield InferredStep(title, edits, (), breadth=len(every) + FOLDING_SYMBOLS)
 
 
-def signs(view: GrammarView) -> Iterator[Inferred]:
+def signs(view: GrammarView) -> Iterator[InferredStep]:
     """Signs ahead of an operand, where another sign of the same level between operands is."""
     alike: dict[str, frozenset[str]] = {}
     levels = [a for r in view.rules.ladder for a in view.grammar.by_name[r].alternatives]
@@ -127,10 +127,10 @@ def signs(view: GrammarView) -> Iterator[Inferred]:
                 text = f"({' | '.join(sorted({sign, *more}))}){often}"
                 title = f"{', '.join(sorted(more))} ahead of operands in {name}"
                 edits = (Replace(name, (number, 1), text),)
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
-def variables(view: GrammarView) -> Iterator[Inferred]:
+def variables(view: GrammarView) -> Iterator[InferredStep]:
     """Variables where only values were seen, in lines or blocks that read variables too.
 
     What one form of a statement reads its other forms read.
@@ -161,10 +161,10 @@ def variables(view: GrammarView) -> Iterator[Inferred]:
             )
             if edits and called & reading:
                 title = f"variables beside values in {rule.name} {number}"
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def any_operands(view: GrammarView) -> Iterator[Inferred]:
+def any_operands(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any operand in place of a choice of variables and values."""
     widest = view.rules.widest or ""
     for rule in view.grammar.rules:
@@ -185,7 +185,7 @@ def any_operands(view: GrammarView) -> Iterator[Inferred]:
                     ):
                         edits.append(Replace(rule.name, (*address, place), f"{widest}{often}"))
         title = f"any operand in {rule.name} in place of variables and values"
-        yield Inferred(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
+        yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
 
 
 def _are_variables_and_values(view: GrammarView, alternatives: Sequence[Alternative]) -> bool:
@@ -203,7 +203,7 @@ def _are_variables_and_values(view: GrammarView, alternatives: Sequence[Alternat
     return len(found) == 2
 
 
-def named_arguments(view: GrammarView) -> Iterator[Inferred]:
+def named_arguments(view: GrammarView) -> Iterator[InferredStep]:
     """Yield lines in which two words name arguments, with one more argument of any name.
 
     ``TRIGGER WHEN DISTANCE=0 DELAY=0 DO A`` has two, so ``TRIGGER … DO A PRIO=1`` may follow.
@@ -220,7 +220,7 @@ def named_arguments(view: GrammarView) -> Iterator[Inferred]:
                 text = f"({name} {sign} {view.rules.widest})?"
                 edits = (Insert(rule.name, (number, len(elements) + 1), text),)
                 title = f"an argument of any name in {rule.name} {number}"
-                yield Inferred(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
 def _is_beside(rule: Rule, address: Address, some: frozenset[str]) -> bool:

@@ -15,7 +15,7 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit, apply
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.rebase import rebased
 from grammar.notation.wellformed import problem
-from recovery.induction.steps import Reading, Refused, Round, Taken, described
+from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, Round, described
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force
@@ -59,7 +59,7 @@ class Growth:
         )
         return added
 
-    def _construct(self, step: Taken) -> Construct:
+    def _construct(self, step: AcceptedStep) -> Construct:
         edits = []
         for edit in step.edits:
             if not (isinstance(edit, AddToken | AddAlternative) and _is_there(self.grammar, edit)):
@@ -152,7 +152,7 @@ def _short(grammar: Grammar, edits: Iterable[Edit]) -> list[str]:
     return [text[:_LONGEST_EDIT] for text in described(grammar, edits)]
 
 
-def _refused(grammar: Grammar, refused: Refused) -> dict[str, Any]:
+def _refused(grammar: Grammar, refused: RefusedStep) -> dict[str, Any]:
     return {
         "title": refused.title,
         "edits": _short(grammar, refused.edits),
@@ -161,5 +161,5 @@ def _refused(grammar: Grammar, refused: Refused) -> dict[str, Any]:
     }
 
 
-def _distinct(refused: Iterable[Refused]) -> list[Refused]:
+def _distinct(refused: Iterable[RefusedStep]) -> list[RefusedStep]:
     return list({(r.title, r.reason): r for r in refused}.values())

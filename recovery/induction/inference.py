@@ -17,7 +17,7 @@ from recovery.induction.line_edits import LineEdits
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
 from recovery.proposals.blocks import BlockLines
 from recovery.proposals.edit_site import LinePattern
@@ -49,13 +49,13 @@ class Inference:
         self._inner_words = inner_words
         self.profile = self._at.profile
 
-    def inner(self) -> Iterator[Inferred]:
+    def inner(self) -> Iterator[InferredStep]:
         """Return edits inside operands: operators and contents of brackets."""
         operands = OperandEdits(self._at, self._forms)
         yield from operands.edits()
         yield from BracketEdits(self._at, self._forms, operands).edits()
 
-    def outer(self) -> Iterator[Inferred]:
+    def outer(self) -> Iterator[InferredStep]:
         """Return edits of whole lines and blocks of lines."""
         hosts = LineHosts(self._at)
         blocks = BlockEdits(self._at, self._forms, hosts, self._blocks)

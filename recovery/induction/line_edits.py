@@ -12,7 +12,7 @@ from grammar.notation.model import Element, Repeat
 from recovery.induction.forms.samples import samples_of
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import WORD, LineSymbols
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.induction.symbols import Symbol
 from recovery.proposals.edit_site import places_of
@@ -44,13 +44,13 @@ class LineEdits:
         self._block_words = block_words
         self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
 
-    def edits(self) -> Iterator[Inferred]:
+    def edits(self) -> Iterator[InferredStep]:
         """Blank lines, kinds of line where another one is expected, then forms of lines."""
         yield from self._blank_lines()
         yield from self._line_rules()
         yield from self._statements()
 
-    def _blank_lines(self) -> Iterator[Inferred]:
+    def _blank_lines(self) -> Iterator[InferredStep]:
         """Blank lines among those of ``(x NEWLINE)*``; ahead of them where an end may be several.
 
         There a line of nothing would be read in several ways.
@@ -64,9 +64,9 @@ class LineEdits:
                 if isinstance(line, Repeat):
                     continue  # blank lines are read there
                 edit = MakeOptional(rule, (*at, 1, 1))
-            yield Inferred(f"blank lines in {rule}", (edit,), members)
+            yield InferredStep(f"blank lines in {rule}", (edit,), members)
 
-    def _line_rules(self) -> Iterator[Inferred]:
+    def _line_rules(self) -> Iterator[InferredStep]:
         """Return edits that allow a kind of line where another one is expected."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         written_out = self.hosts.written_out
@@ -88,9 +88,9 @@ class LineEdits:
             fresh = {other, *self.at.rules.reaches[other]} - {host, *self.at.rules.reaches[host]}
             known = self.at.grammar.by_name
             breadth = sum(len(known[name].alternatives) for name in fresh if name in known)
-            yield Inferred(f"{other} as {host}", edits, tuple(members), breadth=breadth)
+            yield InferredStep(f"{other} as {host}", edits, tuple(members), breadth=breadth)
 
-    def _statements(self) -> Iterator[Inferred]:
+    def _statements(self) -> Iterator[InferredStep]:
         """Forms of lines by their first word, or first sign where they begin with a name."""
         groups: dict[tuple[tuple[str, ...], str], list[int]] = defaultdict(list)
         for number, line in enumerate(self.at.lines):
@@ -133,7 +133,7 @@ class LineEdits:
 
     def _of_many_words(
         self, families: Sequence[tuple[tuple[tuple[str, ...], str], list[int]]]
-    ) -> Iterator[Inferred]:
+    ) -> Iterator[InferredStep]:
         """Return one form for lines that begin with different words and continue alike."""
         gathered: dict[tuple[str, ...], list[tuple[str, list[int], set[tuple[str, ...]]]]]
         gathered = defaultdict(list)
@@ -166,7 +166,7 @@ class LineEdits:
                 for host in hosts if tail else ():
                     text = f"({' | '.join(sorted(_of(alike)))}) {tail}{self.hosts.ending(host)}"
                     edits = (*self.forms.reserving(text), AddAlternative(host, text))
-                    yield Inferred(
+                    yield InferredStep(
                         f"{head} and {len(alike) - 1} words as {host}", edits, every, is_strict=True
                     )
 
@@ -197,7 +197,7 @@ class LineEdits:
 
     def _statement(
         self, hosts: Sequence[str], head: str, members: Sequence[int]
-    ) -> Iterator[Inferred]:
+    ) -> Iterator[InferredStep]:
         shapes: dict[tuple[Symbol, ...], list[int]] = defaultdict(list)
         for number in members:
             shapes[self.symbols[number]].append(number)
@@ -212,11 +212,11 @@ class LineEdits:
             for host in hosts:
                 added = AddAlternative(host, f"{text}{self.hosts.ending(host)}")
                 edits = (*self.forms.reserving(text), added)
-                yield Inferred(f"{title} … as {host}", edits, tuple(members))
+                yield InferredStep(f"{title} … as {host}", edits, tuple(members))
             is_new = WORD.fullmatch(head) and not grown
             for rule, at in self._left_open(members) if is_new else ():
                 edits = (*self.forms.reserving(text), Insert(rule, at, text))
-                yield Inferred(f"{title} … behind {rule}", edits, tuple(members))
+                yield InferredStep(f"{title} … behind {rule}", edits, tuple(members))
 
     def _left_open(self, members: Sequence[int]) -> list[tuple[str, Address]]:
         """Ends of alternatives behind the lines in a loop, where these may go on as lines fail.
@@ -238,7 +238,7 @@ class LineEdits:
 
     def _grown(
         self, head: str, shapes: dict[tuple[Symbol, ...], list[int]], members: Sequence[int]
-    ) -> Iterator[Inferred]:
+    ) -> Iterator[InferredStep]:
         """Return edits of an alternative with the same first words, to read these lines, too."""
         words = head.split()
         for rule, place, first in self.hosts.all_lines:
@@ -253,7 +253,7 @@ class LineEdits:
             led = {shape[0].text for shape in shapes} & self._prefixes
             for word in sorted(led - self.hosts.words_of(first[0])):
                 edits = (*self.forms.reserving(word), Insert(rule, place, f"{word}?"))
-                yield Inferred(title, edits, tuple(members))
+                yield InferredStep(title, edits, tuple(members))
             for at, tails in self._tails(rule, place, len(first), members).items():
                 # what a comma begins would be taken for a list; some only do so go on with one
                 begun = {tail[0].text for tail in tails}
@@ -264,11 +264,13 @@ class LineEdits:
                         *self.forms.reserving(text),
                         Insert(rule, at, optional(f"{comma} {text}".strip())),
                     )
-                    yield Inferred(title, edits, tuple(members))
+                    yield InferredStep(title, edits, tuple(members))
             alike, old = self._one_choice(rule, first, shapes)
             for text in self.forms.of(alike, old):
                 edits = (*self.forms.reserving(text), Replace(rule, place, text, len(first)))
-                yield Inferred(title, edits, tuple(members), breadth=self.forms.lost(first, text))
+                yield InferredStep(
+                    title, edits, tuple(members), breadth=self.forms.lost(first, text)
+                )
 
     def _one_choice(
         self, rule: str, first: Sequence[Element], shapes: dict[tuple[Symbol, ...], list[int]]

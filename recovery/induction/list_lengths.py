@@ -16,13 +16,13 @@ from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.tuning import ITEMS_BEHIND_THE_FIRST, SHORT_LIST_EXAMPLES
 
 
 def bounded_lists(
     recognizer: Recognizer, start: Grammar, texts: Iterable[str]
-) -> Iterator[Inferred]:
+) -> Iterator[InferredStep]:
     """Edits for the short lists of rules that ``start`` has not, or not so; texts that parse."""
     grammar = recognizer.grammar
     parser, coverage = Parser(recognizer), GrammarCoverage(grammar)
@@ -45,7 +45,7 @@ def bounded_lists(
                     for _ in range(ITEMS_BEHIND_THE_FIRST):
                         text = f"({source[1:-2]}{text and f' {text}'})?"
                     title = f"at most {1 + ITEMS_BEHIND_THE_FIRST} items in {rule.name}"
-                    yield Inferred(title, (Replace(rule.name, (*address, place), text),), ())
+                    yield InferredStep(title, (Replace(rule.name, (*address, place), text),), ())
 
 
 def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:

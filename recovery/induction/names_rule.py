@@ -8,7 +8,7 @@ from dataclasses import replace
 from grammar.notation.addresses import sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Replace
 from grammar.notation.model import Grammar, Reference, Repeat
-from recovery.induction.steps import Evidence, Taken
+from recovery.induction.steps import AcceptedStep, Evidence
 
 #: The rule of names that is made where the token of names has none of its own.
 NAMES = "name"
@@ -21,14 +21,14 @@ def softened(edits: Iterable[Edit], soft: Collection[str], names: str | None) ->
     return (*tokens, *more, *(e for e in edits if not isinstance(e, AddToken)))
 
 
-def names_kept(step: Taken, used: Collection[str], names: str | None) -> Taken:
+def names_kept(step: AcceptedStep, used: Collection[str], names: str | None) -> AcceptedStep:
     """Return the step with the words that it reserves, and that lines use, added to the names."""
     words = [e.name for e in step.edits if isinstance(e, AddToken) and e.name in used]
     more = tuple(AddAlternative(names, word) for word in words if names)
     return replace(step, edits=(*step.edits, *(e for e in more if e not in step.edits)))
 
 
-def with_names(grammar: Grammar, token: str) -> Taken:
+def with_names(grammar: Grammar, token: str) -> AcceptedStep:
     """Return a step that introduces a rule of names; ``token`` is the token of names."""
     edits: list[Edit] = []
     rules = [rule for rule in grammar.rules if not rule.is_lexer]
@@ -41,4 +41,4 @@ def with_names(grammar: Grammar, token: str) -> Taken:
                         text = f"{NAMES}{often}"
                         edits.append(Replace(rule.name, (*address, place), text))
     added = AddRule(rules[-1].name, f"{NAMES}\n    : {token}\n    ;")
-    return Taken("names are a rule of their own", (added, *edits), Evidence(0, 0, 0, ()))
+    return AcceptedStep("names are a rule of their own", (added, *edits), Evidence(0, 0, 0, ()))

@@ -9,7 +9,7 @@ from grammar.notation.addresses import Address, sequence_at
 from grammar.notation.edits import AddAlternative, AddRule, Edit, Replace, Widen
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat
 from recovery.induction.line_symbols import PREFIXES, LineSymbols
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
 from recovery.induction.symbols import BRACKETS
 from recovery.proposals.edit_site import configurations_of, places_of
@@ -25,14 +25,14 @@ class OperandEdits:
         self.operator_lines: set[int] = set()
         self.operators: set[str] = {f"'{sign}'" for sign in PREFIXES}
 
-    def edits(self) -> Iterator[Inferred]:
+    def edits(self) -> Iterator[InferredStep]:
         """Return all edits of operands; contents of brackets are examined after the others."""
         yield from self._between_operands()
         yield from self._words_as_names()
         yield from self._words_as_types()
         yield from self._operand_forms()
 
-    def _between_operands(self) -> Iterator[Inferred]:
+    def _between_operands(self) -> Iterator[InferredStep]:
         """Words and signs between two operands or ahead of one, at each level there is."""
         infix: dict[str, list[int]] = defaultdict(list)
         prefix: dict[str, list[int]] = defaultdict(list)
@@ -50,7 +50,7 @@ class OperandEdits:
             for edits, level in self._as_infix(text):
                 breadth = LEVEL_SYMBOLS * (len(self.at.rules.ladder) - level)
                 title = f"{text} between operands"
-                yield Inferred(title, edits, tuple(members), breadth=breadth)
+                yield InferredStep(title, edits, tuple(members), breadth=breadth)
         for text, members in prefix.items():
             for rule in self.at.rules.ladder:
                 for alternative in self.at.grammar.by_name[rule].alternatives:
@@ -59,7 +59,7 @@ class OperandEdits:
                             *self.forms.reserving(text),
                             AddAlternative(rule, f"{text} {rule}"),
                         )
-                        yield Inferred(f"{text} ahead of an operand", edits, tuple(members))
+                        yield InferredStep(f"{text} ahead of an operand", edits, tuple(members))
 
     def _note_operator(
         self, number: int, infix: dict[str, list[int]], prefix: dict[str, list[int]]
@@ -115,7 +115,7 @@ class OperandEdits:
             return not is_word and first.text != ","
         return isinstance(first, Reference) and is_word and first.is_token
 
-    def _words_as_names(self) -> Iterator[Inferred]:
+    def _words_as_names(self) -> Iterator[InferredStep]:
         """Reserved words where a name is expected: as any name, or beside the names of a place."""
         found: dict[str, list[int]] = defaultdict(list)
         placed: dict[tuple[str, Address], dict[str, list[int]]]
@@ -141,16 +141,16 @@ class OperandEdits:
         for word, members in found.items():
             if self.at.rules.names:
                 named = (AddAlternative(self.at.rules.names, word),)
-                yield Inferred(f"{word} as a name", named, tuple(members), is_strict=True)
+                yield InferredStep(f"{word} as a name", named, tuple(members), is_strict=True)
         for (rule, at), words in placed.items():
             every = tuple(number for numbers in words.values() for number in numbers)
             # what several origins have is a name everywhere
             if len(self.forms.origins_of(every)) == 1:
                 title = f"{', '.join(sorted(words))} beside names in {rule}"
                 edits = tuple(Widen(rule, at, word) for word in sorted(words))
-                yield Inferred(title, edits, every)
+                yield InferredStep(title, edits, every)
 
-    def _words_as_types(self) -> Iterator[Inferred]:
+    def _words_as_types(self) -> Iterator[InferredStep]:
         """Return reserved words in front of a name, if a rule has a choice of words and names."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         lexer, choices = self.at.lexer, self.at.rules.word_choices
@@ -165,7 +165,7 @@ class OperandEdits:
                     found[rule, lexer.names[kind]].append(number)
         for (rule, word), members in sorted(found.items()):
             edits = (AddAlternative(rule, word),)
-            yield Inferred(f"{word} as {rule}", edits, tuple(members), is_strict=True)
+            yield InferredStep(f"{word} as {rule}", edits, tuple(members), is_strict=True)
 
     def _name_places(self, number: int) -> Iterator[tuple[str, Address]]:
         """Return the indices of names outside operands at which a line fails."""
@@ -179,7 +179,7 @@ class OperandEdits:
                 if any(isinstance(e, Reference) and e.name in names for e in elements):
                     yield rule.name, place
 
-    def _operand_forms(self) -> Iterator[Inferred]:
+    def _operand_forms(self) -> Iterator[InferredStep]:
         """Return the contents of brackets that stand alone where an operand is possible."""
         found: dict[str, list[int]] = defaultdict(list)
         name = self.at.lexer.name_kind
@@ -198,7 +198,9 @@ class OperandEdits:
                 if level not in {rule, self.at.rules.names}:
                     edits = (AddAlternative(level, rule),)
                     breadth = 0 if level == gathering else LEVEL_SYMBOLS
-                    yield Inferred(f"{rule} as an operand", edits, tuple(members), breadth=breadth)
+                    yield InferredStep(
+                        f"{rule} as an operand", edits, tuple(members), breadth=breadth
+                    )
 
     def _fresh(self, wanted: str) -> str:
         name, count = wanted, 2

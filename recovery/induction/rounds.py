@@ -41,12 +41,12 @@ from recovery.induction.objections import EditReview
 from recovery.induction.operand_rules import OperandRules
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
+    AcceptedStep,
     Evidence,
-    Inferred,
+    InferredStep,
     Reading,
-    Refused,
+    RefusedStep,
     Round,
-    Taken,
     described,
     joined,
 )
@@ -75,7 +75,7 @@ _STEPS: tuple[_Step, ...] = get_args(_Step)
 #: Edits whose place another edit of the same rule may move.
 _Placed = Insert | Widen | MakeOptional | Replace
 #: What edits are worth, the edits, and the lines that they read further.
-_Scored = tuple[float, Inferred, frozenset[int]]
+_Scored = tuple[float, InferredStep, frozenset[int]]
 
 
 class Induction:
@@ -147,7 +147,7 @@ class Induction:
             taken, refused = self._inferred(review, finder, failures, least, inner=step == "inner")
         grammar = apply(self.grammar, joined(taken))
         if taken and grammar.sha256 in self._had:  # folds may undo each other
-            refused += [Refused(s.title, s.edits, 0.0, "has been so before") for s in taken]
+            refused += [RefusedStep(s.title, s.edits, 0.0, "has been so before") for s in taken]
             taken, grammar = [], self.grammar
         self.grammar = grammar
         self._had.add(grammar.sha256)
@@ -163,7 +163,7 @@ class Induction:
         least: tuple[int, int],
         *,
         inner: bool,
-    ) -> tuple[list[Taken], list[Refused]]:
+    ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         """Return accepted and refused edits among those inferred from the failing lines."""
         recognizer = review.recognizer
         keywords = self._words(recognizer, failures, least)
@@ -212,7 +212,9 @@ class Induction:
         taken, refused = self._chosen(scored, table, review, least, explained)
         taken, lost = self.shown.kept(self.grammar, taken, self._names)
         if taken and not self.shown.gains(self.grammar, taken):  # two forms may undo each other
-            lost += [Refused(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken]
+            lost += [
+                RefusedStep(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken
+            ]
             taken = []
         return taken, [*lost, *refused]
 
@@ -231,7 +233,7 @@ class Induction:
         return known
 
     def _block_gain(
-        self, found: Inferred, recognizer: Recognizer, failures: Failures, table: FailingLines
+        self, found: InferredStep, recognizer: Recognizer, failures: Failures, table: FailingLines
     ) -> float:
         """Failing lines fewer with a block, in some files that open one, as if in all of them."""
         files = self.shown.files
@@ -262,12 +264,12 @@ class Induction:
         review: EditReview,
         least: tuple[int, int],
         explained: Set[LinePattern],
-    ) -> tuple[list[Taken], list[Refused]]:
+    ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         """Return the edits that are compatible and each have enough evidence."""
         grammar = self.grammar
         operands = OperandRules(review.recognizer).recursive
-        taken: list[Taken] = []
-        refused: list[Refused] = []
+        taken: list[AcceptedStep] = []
+        refused: list[RefusedStep] = []
         done: set[int] = set()
         changed: set[str] = set()
         reserved: set[Edit] = set()
@@ -294,20 +296,20 @@ class Induction:
                 most = evidence.lines if evidence.files < LEAST_FILES_ALONE else math.inf
                 reason = review.objection(grammar, edits, found.edits, worth, most)
             if reason:
-                refused.append(Refused(found.title, found.edits, gain, reason))
+                refused.append(RefusedStep(found.title, found.edits, gain, reason))
                 continue
             grammar = apply(grammar, edits)
             done |= lines
             changed |= changed_rules(found.edits)
             reserved |= {e for e in edits if isinstance(e, AddToken | AddAlternative)}
-            taken.append(Taken(found.title, found.edits, evidence))
+            taken.append(AcceptedStep(found.title, found.edits, evidence))
         return taken, refused
 
     # ------------------------------------------------------------------------------------- folding
 
     def _folded(
         self, review: EditReview, failures: Failures, *, is_last: bool
-    ) -> tuple[list[Taken], list[Refused]]:
+    ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         """Folds after which the grammar is shorter, accepts no more negatives and reads no less.
 
         Where none is left at the end lists are bounded, for which all has to be read that will be.
@@ -317,8 +319,8 @@ class Induction:
         reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
         lines = CorpusLines(files, recognizer.lexer).lines
         operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
-        taken: list[Taken] = []
-        refused: dict[str, Refused] = {}
+        taken: list[AcceptedStep] = []
+        refused: dict[str, RefusedStep] = {}
         had = {recognizer.grammar.sha256}
         tried: set[tuple[str, ...]] = set()  # without numbers of alternatives, which a fold changes
         found = folds_of(GrammarView(recognizer, operands, self._prefixes))
@@ -331,9 +333,9 @@ class Induction:
             tried.add(words)
             narrower = _narrower(review, fold, had)
             if isinstance(narrower, str):
-                refused[fold.title] = Refused(fold.title, fold.edits, 0.0, narrower)
+                refused[fold.title] = RefusedStep(fold.title, fold.edits, 0.0, narrower)
                 continue
-            taken.append(Taken(fold.title, fold.edits, Evidence(0, 0, 0, ())))
+            taken.append(AcceptedStep(fold.title, fold.edits, Evidence(0, 0, 0, ())))
             had.add(narrower.grammar.sha256)
             review = replace(review, recognizer=narrower)
             found = folds_of(GrammarView(narrower, operands, self._prefixes))
@@ -348,7 +350,7 @@ class Induction:
             read = zip(files, failures, strict=True)
             texts = (file.text for file, wrong in read if not wrong)
             bounds = [
-                Taken(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
+                AcceptedStep(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
                 for bounded in bounded_lists(recognizer, self._start, texts)
                 if bounded.edits not in self.struck
             ]
@@ -359,7 +361,7 @@ class Induction:
 
     def _with_literals(
         self, failures: Failures, recognizer: Recognizer, least: int
-    ) -> Taken | None:
+    ) -> AcceptedStep | None:
         """Return a step for literals that the lexer splits; ``None`` without such literals."""
         lines: list[tuple[str, int]] = []
         for place, (file, of_file) in enumerate(zip(self.shown.files, failures, strict=True)):
@@ -374,7 +376,7 @@ class Induction:
         if len(origins) < least:
             return None
         evidence = Evidence(len(places), len(origins), len(seen), seen[:PLACES_SHOWN])
-        step = Taken(f"{seen[0]} is one literal", (edit,), evidence)
+        step = AcceptedStep(f"{seen[0]} is one literal", (edit,), evidence)
         kept = self.shown.kept(self.grammar, [step], self._names)[0]
         if kept and not self.shown.gains(self.grammar, kept):
             return None  # lines may still fail ahead of it: it is tried again
@@ -385,7 +387,7 @@ class Induction:
         return step
 
 
-def _narrower(review: EditReview, fold: Inferred, had: Set[str]) -> Recognizer | str:
+def _narrower(review: EditReview, fold: InferredStep, had: Set[str]) -> Recognizer | str:
     """Return the recogniser of the grammar after a fold, or why the fold must not be taken.
 
     ``had`` are the digests of earlier grammars. What takes least time is examined first, because
@@ -424,7 +426,7 @@ def _led_by(word: str, failures: Sequence[Failure]) -> int:
 
 
 def _line_gain(
-    trial: EditTrial, found: Inferred, table: FailingLines
+    trial: EditTrial, found: InferredStep, table: FailingLines
 ) -> tuple[float, frozenset[int]]:
     """Return the gain of edits on the lines from which they were inferred, and these lines."""
     result = trial.result(found.edits, found.lines)

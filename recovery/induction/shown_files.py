@@ -11,7 +11,7 @@ from grammar.notation.wellformed import problem
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.names_rule import names_kept
-from recovery.induction.steps import Reading, Refused, Taken, joined
+from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, joined
 from recovery.language import CorpusFile
 from recovery.tuning import GRAMMARS_KEPT
 
@@ -38,8 +38,8 @@ class ShownFiles:
         return known
 
     def kept(
-        self, grammar: Grammar, taken: Sequence[Taken], names: str | None
-    ) -> tuple[list[Taken], list[Refused]]:
+        self, grammar: Grammar, taken: Sequence[AcceptedStep], names: str | None
+    ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         """Return the steps without those under which a file fails earlier than before, and these.
 
         A word of a step that lines use as a name is added to the rule of ``names`` first, if more
@@ -54,8 +54,8 @@ class ShownFiles:
         }
         if not worse:
             return list(taken), []
-        kept: list[Taken] = []
-        lost: list[Refused] = []
+        kept: list[AcceptedStep] = []
+        lost: list[RefusedStep] = []
         for step in taken:
             version, reason = step, ""
             for _ in range(2):
@@ -80,17 +80,17 @@ class ShownFiles:
                 used = {w.upper() for p in lost_in for w in read[p][0].lexemes}
                 version = names_kept(step, used, names)
             if reason:
-                lost.append(Refused(step.title, step.edits, 0.0, reason))
+                lost.append(RefusedStep(step.title, step.edits, 0.0, reason))
             else:
                 kept.append(version)
         return kept, lost
 
-    def gains(self, grammar: Grammar, taken: Sequence[Taken]) -> bool:
+    def gains(self, grammar: Grammar, taken: Sequence[AcceptedStep]) -> bool:
         """Return whether the steps let more files parse, or as many with fewer failing lines."""
         before, after = self.failures(grammar)[1], self.failures(apply(grammar, joined(taken)))[1]
         return _standing(after) > _standing(before)
 
-    def _is_outvoted(self, places: Sequence[int], step: Taken) -> bool:
+    def _is_outvoted(self, places: Sequence[int], step: AcceptedStep) -> bool:
         """Return whether files have one origin, and more origins and files show a step.
 
         As many origins suffice for words that begin their own lines, and places for files.

@@ -10,7 +10,7 @@ from grammar.notation.model import Grammar, GrammarError
 
 
 @dataclass(frozen=True, slots=True)
-class Inferred:
+class InferredStep:
     """Edits, their reason, and the lines from which they were inferred.
 
     Edits that are ``is_strict`` read so much that they must not accept any program that must be
@@ -37,7 +37,7 @@ class Evidence:
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class AcceptedStep:
     """A step of the growth: edits, reason and evidence."""
 
     title: str
@@ -46,7 +46,7 @@ class Taken:
 
 
 @dataclass(frozen=True, slots=True)
-class Refused:
+class RefusedStep:
     """Edits that were tried and refused, with the reason."""
 
     title: str
@@ -70,11 +70,11 @@ class Round:
 
     shown: Reading
     held: Reading
-    taken: tuple[Taken, ...]
-    refused: tuple[Refused, ...]
+    taken: tuple[AcceptedStep, ...]
+    refused: tuple[RefusedStep, ...]
 
 
-def joined(steps: Sequence[Taken]) -> list[Edit]:
+def joined(steps: Sequence[AcceptedStep]) -> list[Edit]:
     """Return the edits of all steps, without duplicates."""
     found: list[Edit] = []
     for edit in (edit for step in steps for edit in step.edits):

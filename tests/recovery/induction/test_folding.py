@@ -14,7 +14,7 @@ from grammar.parser.sentences import Sentences, Speller
 from recovery.induction.folding import FOLDS, folds_of
 from recovery.induction.folds_of_operands import any_operands
 from recovery.induction.grammar_view import GrammarView
-from recovery.induction.steps import Inferred
+from recovery.induction.steps import InferredStep
 
 _GRAMMAR = """grammar Toy;
 
@@ -80,13 +80,13 @@ def grammar() -> Grammar:
 
 
 @pytest.fixture(scope="module")
-def folds(grammar: Grammar) -> dict[str, Inferred]:
+def folds(grammar: Grammar) -> dict[str, InferredStep]:
     """All folds of it, by their titles."""
     recognizer = Recognizer(grammar)
     return {fold.title: fold for fold in folds_of(GrammarView(recognizer, (), frozenset({"DIM"})))}
 
 
-def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
+def test_what_may_be_folded(folds: dict[str, InferredStep]) -> None:
     """Words of a kind have one form, as the alternatives of one word have; GO is of no kind."""
     assert {
         "nothing calls idle",
@@ -110,7 +110,7 @@ def test_what_may_be_folded(folds: dict[str, Inferred]) -> None:
     [("BOOL A[1], B\n", True), ("REAL A, B\n", True), ("GO A, B\n", False), ("INT 1\n", False)],
 )
 def test_what_one_word_shows_holds_for_its_kind(
-    grammar: Grammar, folds: dict[str, Inferred], text: str, accepted: bool
+    grammar: Grammar, folds: dict[str, InferredStep], text: str, accepted: bool
 ) -> None:
     """A list and an index, each seen with one word, are read with all words of the kind."""
     folded = apply(grammar, folds["one form for kindWord in line"].edits)
@@ -128,7 +128,7 @@ def test_what_one_word_shows_holds_for_its_kind(
     ],
 )
 def test_what_holds_in_one_place_holds_in_another(
-    grammar: Grammar, folds: dict[str, Inferred], title: str, text: str
+    grammar: Grammar, folds: dict[str, InferredStep], title: str, text: str
 ) -> None:
     """Words that end or begin lines, lists, what follows a name, and signs ahead of operands."""
     folded = apply(grammar, folds[title].edits)
@@ -232,7 +232,7 @@ def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
     assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
 
 
-def test_a_fold_is_offered_once(grammar: Grammar, folds: dict[str, Inferred]) -> None:
+def test_a_fold_is_offered_once(grammar: Grammar, folds: dict[str, InferredStep]) -> None:
     """What has been folded is not to be folded again, so that folding comes to an end."""
     again = [
         title
@@ -319,7 +319,9 @@ def test_what_holds_beside_alike_in_blocks(title: str, accepted: str, rejected: 
 
 
 @pytest.mark.parametrize("kind", FOLDS, ids=lambda kind: kind.__name__)
-def test_a_fold_reads_all_that_was_read(kind: Callable[[GrammarView], Iterator[Inferred]]) -> None:
+def test_a_fold_reads_all_that_was_read(
+    kind: Callable[[GrammarView], Iterator[InferredStep]],
+) -> None:
     """Each kind of fold is offered, well formed, and reads the sentences of the grammar."""
     offered = 0
     for text in (_GRAMMAR, _LIKE, _declared(), _blocks(), _values()):

@@ -30,7 +30,7 @@ from recovery.induction.growth_record import Growth, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import Evidence, Inferred, Refused, Taken, described
+from recovery.induction.steps import AcceptedStep, Evidence, InferredStep, RefusedStep, described
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -441,10 +441,12 @@ def test_damaged_lines_are_an_objection(toy: Grammar, most: int, is_taken: bool)
 def test_folds_that_undo_each_other_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
     """A round that would lead back to an earlier grammar takes nothing."""
 
-    def folded(self: Induction, *_: object, **_more: object) -> tuple[list[Taken], list[Refused]]:
+    def folded(
+        self: Induction, *_: object, **_more: object
+    ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         there = len(self.grammar.by_name["halt"].alternatives)
         edit = RemoveAlternative("halt", 2) if there > 1 else AddAlternative("halt", "NAME")
-        return [Taken("back and forth", (edit,), Evidence(0, 0, 0, ()))], []
+        return [AcceptedStep("back and forth", (edit,), Evidence(0, 0, 0, ()))], []
 
     monkeypatch.setattr(Induction, "_folded", folded)
     files = (CorpusFile("a.toy", "HALT\n", frozenset({"a"})),)
@@ -539,7 +541,6 @@ import json, sys
 from grammar.notation.g4 import read
 from recovery.language import CorpusFile
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import Evidence, Inferred, Refused, Taken, described
 from recovery.negatives.negatives import NegativeSet
 start, files = json.load(sys.stdin)
 shown = [CorpusFile(path, text, frozenset(origins)) for path, text, origins in files]
@@ -580,16 +581,16 @@ def test_a_line_with_an_open_bracket_shows_nothing(toy: Grammar) -> None:
     assert [] == [title for title in titles if "PUT" in title]
 
 
-def _two_folds(view: GrammarView) -> Iterator[Inferred]:
+def _two_folds(view: GrammarView) -> Iterator[InferredStep]:
     """Yield a fold that loses lines, and one written for what that leaves."""
     called = [a.elements for a in view.grammar.by_name["simpleStatement"].alternatives]
     names = [e.name for (e,) in called if isinstance(e, Reference)]
     if "assignment" in names:
         gone = RemoveAlternative("simpleStatement", 1), RemoveRule("assignment")
-        yield Inferred("no assignment", gone, ())
+        yield InferredStep("no assignment", gone, ())
     if "call" in names:
         edits = (RemoveAlternative("simpleStatement", names.index("call") + 1),)
-        yield Inferred("no call", edits, ())
+        yield InferredStep("no call", edits, ())
 
 
 def test_folds_behind_one_that_is_lost(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -602,12 +603,12 @@ def test_folds_behind_one_that_is_lost(toy: Grammar, monkeypatch: pytest.MonkeyP
     assert all(Recognizer(grown.grammar).accepts(file.text) for file in files)
 
 
-def _rotation(view: GrammarView) -> Iterator[Inferred]:
+def _rotation(view: GrammarView) -> Iterator[InferredStep]:
     """Yield a fold that moves the first alternative of a rule to its end."""
     rule = view.grammar.by_name["simpleStatement"]
     text = rule.source_of(rule.alternatives[0])
     edits = (RemoveAlternative(rule.name, 1), AddAlternative(rule.name, text))
-    yield Inferred("rotated", edits, (), breadth=1)
+    yield InferredStep("rotated", edits, (), breadth=1)
 
 
 def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -618,14 +619,14 @@ def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> 
     assert ["has been so before"] == [refused["reason"] for refused in last]
 
 
-def _refused_and_taken(view: GrammarView) -> Iterator[Inferred]:
+def _refused_and_taken(view: GrammarView) -> Iterator[InferredStep]:
     """Yield a fold that makes the grammar no shorter, named by its place, and one that moves it."""
     rule = view.grammar.by_name["simpleStatement"]
     texts = [rule.source_of(alternative) for alternative in rule.alternatives]
     at = texts.index("halt")
-    yield Inferred(f"call in {at}", (Replace(rule.name, (at + 1, 1), "call"),), (), breadth=1)
+    yield InferredStep(f"call in {at}", (Replace(rule.name, (at + 1, 1), "call"),), (), breadth=1)
     if "call" in texts[:at]:
-        yield Inferred("no call", (RemoveAlternative(rule.name, 2),), (), breadth=1)
+        yield InferredStep("no call", (RemoveAlternative(rule.name, 2),), (), breadth=1)
 
 
 def test_a_refused_fold_is_not_tried_again(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
