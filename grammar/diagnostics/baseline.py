@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic, Located
 
 _Key = tuple[str, str, str]
 _VERSION = 1
@@ -24,7 +24,7 @@ class Baseline:
         self._counts = dict(counts)
 
     @staticmethod
-    def of(found: Iterable[tuple[Diagnostic, str]], place: Callable[[str], str]) -> Baseline:
+    def of(found: Iterable[Located], place: Callable[[str], str]) -> Baseline:
         """Return a baseline of findings with their lines, which may be empty.
 
         ``place`` gives the path that it stores for a file.
@@ -54,8 +54,8 @@ class Baseline:
         return {"version": _VERSION, "findings": findings}
 
     def new(
-        self, found: Iterable[tuple[Diagnostic, str]], place: Callable[[str], str]
-    ) -> tuple[list[tuple[Diagnostic, str]], int]:
+        self, found: Iterable[Located], place: Callable[[str], str]
+    ) -> tuple[list[Located], int]:
         """Return the findings that are not known, and the number of known ones that are gone.
 
         Of equal ones the first are known, so they are given in order.

@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from heapq import merge
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol
 
 from grammar.diagnostics.codes import Severity, code
 from support.lazy_dataclass import dataclass
-
-_T = TypeVar("_T")
 
 
 class Places(Protocol):
@@ -96,6 +94,10 @@ class Diagnostic:
         return tuple((f"write {name}", self.region, name) for name in fix.names)
 
 
+#: A finding and its source line, empty where that is not known.
+Located = tuple[Diagnostic, str]
+
+
 def diagnose(
     slug: str,
     path: str,
@@ -126,8 +128,8 @@ def in_order(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     return sorted(dict.fromkeys(diagnostics), key=_key)
 
 
-def merged(parts: Iterable[Iterable[tuple[Diagnostic, _T]]]) -> Iterator[tuple[Diagnostic, _T]]:
-    """Yield findings, each with whatever belongs to it, in order; each part is in order.
+def merged(parts: Iterable[Iterable[Located]]) -> Iterator[Located]:
+    """Yield the findings of all parts in order; each part is in order.
 
     Nothing beyond the first finding of a part is asked for before that has been yielded.
     """

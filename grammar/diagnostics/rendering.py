@@ -15,14 +15,14 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
 
 from grammar.diagnostics.codes import Severity
-from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic, Located
 
 # Of a longer line only the part around the caret is shown, in characters.
 _LONGEST_LINE = 110
 _AHEAD_OF_CARET = 40
 
 
-def rendered(located: Iterable[tuple[Diagnostic, str]], is_verbose: bool = False) -> Iterator[str]:
+def rendered(located: Iterable[Located], is_verbose: bool = False) -> Iterator[str]:
     """Yield the lines of text for the findings in their order, each followed by an empty line.
 
     Each comes with its source line, empty if there is none. ``is_verbose`` adds the rule IDs.

@@ -238,7 +238,7 @@ def _list_programs(origin: Origin, bounds: RunBounds) -> tuple[list[str], list[t
 
 
 def _run_program(place: int, bounds: RunBounds) -> dict[str, Any]:
-    """Return the row of one program: the fields of `Ran`, and its wall-clock time."""
+    """Return the row of one program: the fields of `MainProgramResult`, and its wall-clock time."""
     profile = survey_profile()
     setup = RunSetup(
         executor=bounds.executor,

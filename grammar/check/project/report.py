@@ -12,13 +12,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from grammar.check.project.result_cache import ProjectResult
-from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order, merged
+from grammar.diagnostics.diagnostic import Diagnostic, Located, Region, diagnose, in_order, merged
 from support.files import archives
 from support.files.discovery import Found, Skipped
 from support.lazy_dataclass import dataclass
-
-#: A finding and its source line, empty where that is not known.
-Located = tuple[Diagnostic, str]
 
 
 @dataclass(frozen=True, slots=True)

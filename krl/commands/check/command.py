@@ -21,9 +21,9 @@ from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from grammar.check.project.batch import CheckOptions
-    from grammar.check.project.report import CheckReport, Located
+    from grammar.check.project.report import CheckReport
     from grammar.diagnostics.codes import Severity
-    from grammar.diagnostics.diagnostic import Diagnostic
+    from grammar.diagnostics.diagnostic import Diagnostic, Located
     from grammar.diagnostics.suppression import Selection
 
 #: Codes of notes about why the robot stops; they are not faults.

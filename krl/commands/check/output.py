@@ -18,9 +18,9 @@ from krl.terminal.output_files import json_list_pieces, json_pieces, write_piece
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from grammar.check.project.report import CheckReport, Located
+    from grammar.check.project.report import CheckReport
     from grammar.diagnostics.codes import Severity
-    from grammar.diagnostics.diagnostic import Diagnostic
+    from grammar.diagnostics.diagnostic import Diagnostic, Located
 
 _SKIPPED_SHOWN = 5
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan"}
