@@ -10,7 +10,8 @@ from typing import Any, Final, get_args
 from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.mutants import OF_CASES, Mutant
+from conformance.sensitivity.mutants import Mutant
+from conformance.sensitivity.mutated_code import OF_CASES
 from conformance.sensitivity.planted_faults import Fault
 from conformance.sensitivity.trial import OF_TRIAL, Fate, Trial
 from conformance.suite.case import Case

@@ -16,11 +16,12 @@ from conformance.differential.campaign import world_seed
 from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, Prepared, trace_of
 from conformance.differential.traces import Fact
-from conformance.sensitivity.mutants import InvalidMutant, Mutant, drawn, load
+from conformance.sensitivity.code_exchange import InvalidMutant, load
+from conformance.sensitivity.mutants import Mutant, drawn
 from grammar.generation.closed.programs import seeded
 from support.parallel.ordered_map import ordered_map
 
-#: What mutants are drawn from, in `conformance.sensitivity.mutants.PACKAGES`.
+#: What mutants are drawn from, in `conformance.sensitivity.mutated_code.PACKAGES`.
 MACHINE: Final = "machine"
 #: So many seconds of computing a program may take with a mutant; usually it takes a hundredth.
 _SECONDS: Final = 1.0

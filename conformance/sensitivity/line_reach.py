@@ -17,7 +17,8 @@ from conformance.evaluation.execution import Setup
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.mutants import InvalidMutant, load, modules, recoded, tree_of
+from conformance.sensitivity.code_exchange import InvalidMutant, load, recoded
+from conformance.sensitivity.mutated_code import modules, tree_of
 from conformance.sensitivity.mutation_operators import span
 from conformance.suite.case import Case
 from support.files.result_store import ResultStore

@@ -11,14 +11,12 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
-import tomllib
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.util import find_spec
-from itertools import islice, zip_longest
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, Final, Generic, Literal, NoReturn, TypeVar
@@ -27,16 +25,11 @@ from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import Result, observed_within, run_case
+from conformance.sensitivity.case_selection import Candidates, SeededFault, candidates, uses_of
+from conformance.sensitivity.code_exchange import InvalidMutant, load
+from conformance.sensitivity.equivalents import equivalent, search_reason
 from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, is_alike, reach_of, seen_digest
-from conformance.sensitivity.mutants import (
-    InvalidMutant,
-    Mutant,
-    SeededFault,
-    around,
-    cited,
-    load,
-    uses_of,
-)
+from conformance.sensitivity.mutants import Mutant
 from conformance.suite.case import Case
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
@@ -51,7 +44,6 @@ _ROBOT: Final = "kinematic"
 _IN_C: Final = Setup("native", _ROBOT)
 #: Modules of which the machine in C has its own: it is run beside the tree interpreter.
 _APART: Final = ("interp.values.", "interp.tree.")
-_EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 #: The fields of a trial but for its fault.
 OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed", "by_profile")
 #: The largest number of cases that may fail which are run with a fault.
@@ -147,7 +139,10 @@ def try_faults(
             found[one.name] = Trial(one, **row)
     on_done(len(found))
     new = [one for one in faults if one.name not in found]
-    tasks = ((one, _candidates(one, reaches, most), executor) for one in new)
+    tasks = (
+        (one, candidates(one, reaches, most, is_search=bool(search_reason(one))), executor)
+        for one in new
+    )
     for trial in ordered_map(_tried, tasks, jobs=jobs):
         found[trial.fault.name] = trial
         row = {each: getattr(trial, each) for each in OF_TRIAL}
@@ -163,123 +158,14 @@ def _if_equivalent(trial: Trial[_Fault]) -> Trial[_Fault]:
         return trial
     reason = equivalent().get(fault.change, "")
     if not reason and 0 < trial.runs == trial.reached and not trial.changed:
-        reason = _search(fault)
+        reason = search_reason(fault)
     return replace(trial, fate="equivalent", why=reason) if reason else trial
-
-
-@cache
-def equivalent() -> Mapping[tuple[str, ...], str]:
-    """Return the reasons why no case can notice some mutants, by `Mutant.change`."""
-    keys = ("module", "function", "source", "was", "now")
-    return {tuple(row[key] for key in keys): row["reason"] for row in _known()["mutant"]}
-
-
-def _search(fault: SeededFault) -> str:
-    """Return why a mutant changes a search but not its result, or "" if it may change that."""
-    if not isinstance(fault, Mutant):
-        return ""
-    row = searches().get((fault.module, fault.function))
-    return "" if row is None or fault.source in row.get("deciding", ()) else row["reason"]
-
-
-@cache
-def searches() -> Mapping[tuple[str, str], Mapping[str, Any]]:
-    """Return the tables of functions and constants of numerical searches, by module and name.
-
-    A change of one that changes no run changes only the number of steps.
-    """
-    return {(row["module"], name): row for row in _known()["search"] for name in row["names"]}
-
-
-@cache
-def _known() -> dict[str, list[dict[str, Any]]]:
-    return tomllib.loads(_EQUIVALENT.read_text(encoding="utf-8"))
-
-
-@dataclass(frozen=True, slots=True)
-class _Candidates:
-    """The cases to try on a mutant; ``reached`` and ``sure`` as in `Trial`."""
-
-    tried: tuple[Reach, ...]
-    reached: int
-    sure: int
-
-
-def _candidates(fault: SeededFault, reaches: Sequence[Reach], most: int) -> _Candidates:
-    """Return at most ``most`` cases that may fail and run its lines, and a tenth as many others.
-
-    If fewer may fail there are more of the others, as executors that differ fail any case. First
-    come cases of each line around it, those of the rarest lines first; then a case of each rule
-    that the code there cites; then one of each set of lines run in its module, because cases with
-    the same set mostly notice the same; then an even sample of the rest. A change of a search is
-    tried on all cases that run it, as it is equivalent only if it changes none of their runs.
-    """
-    uses = uses_of(fault)
-    reaching = [one for one in reaches if any(one.has(*lines) for lines in uses.items())]
-    hard = [one for one in reaching if one.case.may_fail]
-    tried = reaching
-    if not _search(fault):
-        soft = [one for one in reaching if not one.case.may_fail]
-        room = max(most - len(hard), most // 10, 1)
-        tried = [*_chosen(fault, hard, most), *_chosen(fault, soft, room)]
-    # the lines are large, and no longer needed
-    return _Candidates(tuple(replace(one, lines={}) for one in tried), len(reaching), len(hard))
-
-
-def _chosen(fault: SeededFault, cases: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """Return at most ``most`` of the cases."""
-    chosen: dict[str, Reach] = {}
-    for way in (_of_rarest(fault, cases), _of_rules(fault, cases), _of_ways(fault, cases)):
-        new = (one for one in way if one.case.name not in chosen)
-        chosen.update((one.case.name, one) for one in islice(new, most // 4))
-    yield from chosen.values()
-    left = [one for one in cases if one.case.name not in chosen]
-    room = most - len(chosen)
-    if room:
-        yield from left[:: -(-len(left) // room) or 1]
-
-
-def _of_rarest(fault: SeededFault, cases: Sequence[Reach]) -> Iterator[Reach]:
-    """Yield for each line around a fault the first case that runs it, the rarest lines first."""
-    near = around(fault)
-    running_it: dict[tuple[str, int], list[Reach]] = {}
-    for one in cases:
-        for module, lines in near.items():
-            for line in lines.intersection(one.lines.get(module, ())):
-                running_it.setdefault((module, line), []).append(one)
-    found: set[str] = set()
-    for _, those in sorted(running_it.items(), key=lambda item: (len(item[1]), item[0])):
-        if those[0].case.name not in found:
-            found.add(those[0].case.name)
-            yield those[0]
-
-
-def _of_rules(fault: SeededFault, cases: Sequence[Reach]) -> Iterator[Reach]:
-    """Yield a case of each rule that the code around a fault cites, the rarest first, then more."""
-    wanted = cited(fault)
-    stating: dict[str, list[Reach]] = {}
-    for one in cases:
-        for rule in wanted.intersection(one.case.rules):
-            stating.setdefault(rule, []).append(one)
-    rows = (those for _, those in sorted(stating.items(), key=lambda row: (len(row[1]), row[0])))
-    return (one for turn in zip_longest(*rows) for one in turn if one is not None)
-
-
-def _of_ways(fault: SeededFault, cases: Sequence[Reach]) -> list[Reach]:
-    """Return one case of each set of lines run in the module of a fault, then a second of each."""
-    turns: Counter[frozenset[int]] = Counter()
-    found = []
-    for one in cases:
-        way = one.lines.get(fault.module, frozenset())
-        turns[way] += 1
-        found.append((turns[way], one))
-    return [one for _, one in sorted(found, key=itemgetter(0))]
 
 
 # -------------------------------------------------------------------------- one fault, one process
 
 
-def _tried(fault: _Fault, cases: _Candidates, executor: str) -> Trial[_Fault]:
+def _tried(fault: _Fault, cases: Candidates, executor: str) -> Trial[_Fault]:
     """Try a fault in a fork of this process; the last outcome that it sends is the result."""
     trial = Trial(fault, "survived")
     if not any(uses_of(fault).values()):
@@ -315,7 +201,7 @@ def _load(case: Case) -> None:
         _loaded().append(run_case(case, [Setup("tree", _ROBOT)]).verdict)
 
 
-def _in_fork(fault: SeededFault, cases: _Candidates, executor: str, pipe: int) -> NoReturn:
+def _in_fork(fault: SeededFault, cases: Candidates, executor: str, pipe: int) -> NoReturn:
     warnings.simplefilter("ignore")  # NumPy warns of what a fault makes it compute
     try:
         with os.fdopen(pipe, "wb", buffering=0) as results:
@@ -326,7 +212,7 @@ def _in_fork(fault: SeededFault, cases: _Candidates, executor: str, pipe: int) -
         os._exit(1)
 
 
-def _outcomes(fault: SeededFault, cases: _Candidates, executor: str) -> Iterator[dict[str, Any]]:
+def _outcomes(fault: SeededFault, cases: Candidates, executor: str) -> Iterator[dict[str, Any]]:
     """Yield before each case the outcome if it ends the process, and at last the real outcome.
 
     An outcome has the fields of `Trial`.

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from conformance.sensitivity import fuzzed_mutants
+from conformance.sensitivity.code_exchange import load
 from conformance.sensitivity.fuzzed_mutants import MACHINE, ReferenceRuns, Verdict, record_of
-from conformance.sensitivity.mutants import Mutant, all_mutants, load, named
+from conformance.sensitivity.mutants import Mutant, all_mutants, named
 from krl.cli import main
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no POSIX signals")

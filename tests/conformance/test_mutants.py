@@ -12,26 +12,18 @@ import pytest
 
 from conformance.evaluation.execution import Setup, observe
 from conformance.sensitivity import bench, trial
+from conformance.sensitivity.case_selection import around, candidates, uses_of
+from conformance.sensitivity.equivalents import equivalent, search_reason, searches
 from conformance.sensitivity.line_reach import Reach, is_alike, reach_of
-from conformance.sensitivity.mutants import (
-    PACKAGES,
-    Mutant,
-    all_mutants,
-    around,
-    drawn,
-    modules,
-    named,
-    uses_of,
-)
+from conformance.sensitivity.mutants import Mutant, all_mutants, drawn, named
+from conformance.sensitivity.mutated_code import LEFT_OUT, modules, text_of
 from conformance.sensitivity.mutation_operators import changes
 from conformance.sensitivity.trial import (
     Fate,
     Trial,
-    equivalent,
     is_possible,
     kept_trials,
     reaches_of,
-    searches,
     try_faults,
 )
 from conformance.suite.case import CASES, Case, read_case
@@ -50,11 +42,7 @@ def _made(body: str) -> set[tuple[str, str]]:
 
 def _changes(module: str) -> list[tuple[str, str, str]]:
     """Function, was and now of all changes of a module."""
-    return [(one.function, one.was, one.now) for one in changes(ast.parse(_text(module)))]
-
-
-def _text(module: str) -> str:
-    return Path(str(import_module(module).__file__)).read_text(encoding="utf-8")
+    return [(one.function, one.was, one.now) for one in changes(ast.parse(text_of(module)))]
 
 
 def _mutant(module: str, function: str, was: str, now: str) -> Mutant:
@@ -213,8 +201,7 @@ def test_what_is_left_out_exists() -> None:
     root = Path(str(import_module("interp").__file__)).parents[1]
     files = (path.relative_to(root) for path in (root / "interp").rglob("*.py"))
     there = [name for path in files for name in _functions(root, path)]
-    left = [one for _, names in PACKAGES.values() for one in names if one != "*.__eq__"]
-    assert [] == [one for one in left if not fnmatch.filter(there, one)]
+    assert [] == [one for one in LEFT_OUT if not fnmatch.filter(there, one)]
 
 
 def test_lines_that_a_case_runs() -> None:
@@ -236,7 +223,7 @@ def test_cases_that_run_what_a_statement_names_come_first() -> None:
     reaches = [Reach(_case(f"motion/{name}"), lines, 1) for name in ("acc_cp", "lin_speed")]
     last = _case("motion/lin_end_pose")
     reaches.append(Reach(last, {**lines, called: frozenset({rare})}, 1))
-    assert last == trial._candidates(mutant, reaches, 60).tried[0].case
+    assert last == candidates(mutant, reaches, 60, is_search=False).tried[0].case
 
 
 def test_cases_that_state_what_the_code_cites_are_tried() -> None:
@@ -246,7 +233,7 @@ def test_cases_that_state_what_the_code_cites_are_tried() -> None:
     names = ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose", "motion/lin_smooth")
     cases = [_case(name) for name in (*names, "motion/lin_limits", "interrupt/positions_of_event")]
     reaches = [Reach(case, {unit: frozenset({mutant.line})}, 1) for case in cases]
-    tried = trial._candidates(mutant, reaches, 4).tried
+    tried = candidates(mutant, reaches, 4, is_search=False).tried
     assert cases[-1] in [one.case for one in tried]
 
 
@@ -377,7 +364,7 @@ def test_known_equivalent_changes_exist() -> None:
         (module, line)
         for (module, _), row in searches().items()
         for line in row.get("deciding", ())
-        if not re.search(rf"^ *{re.escape(line)}$", _text(module), re.MULTILINE)
+        if not re.search(rf"^ *{re.escape(line)}$", text_of(module), re.MULTILINE)
     ]
 
 
@@ -405,7 +392,8 @@ def test_a_search_is_tried_on_all_cases() -> None:
     for was, now in (("dt * jerk", "dt / jerk"), ("position <= 0.0", "position > 0.0")):
         mutant = _mutant(module, "SpeedProfile.time_at", was, now)
         reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
-        counts.append(len(trial._candidates(mutant, reaches, 1).tried))
+        is_search = bool(search_reason(mutant))
+        counts.append(len(candidates(mutant, reaches, 1, is_search=is_search).tried))
     assert [3, 1] == counts
 
 

@@ -79,7 +79,8 @@ def conform(
     with expected_extras(*ARM):
         from conformance.evaluation.execution import Setup, missing
         from conformance.sensitivity.bench import mutants_record, planted_record, speed_of
-        from conformance.sensitivity.mutants import OF_CASES, drawn
+        from conformance.sensitivity.mutants import drawn
+        from conformance.sensitivity.mutated_code import OF_CASES
         from conformance.sensitivity.planted_faults import FAULTS
         from conformance.sensitivity.trial import (
             is_possible,

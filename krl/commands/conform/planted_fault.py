@@ -30,7 +30,8 @@ def planted(words: str) -> Iterator[str]:
 
 @contextmanager
 def _mutant(words: str) -> Iterator[str]:
-    from conformance.sensitivity.mutants import InvalidMutant, named, of_line
+    from conformance.sensitivity.code_exchange import InvalidMutant
+    from conformance.sensitivity.mutants import named, of_line
 
     file, _, line = words.rpartition(":")
     on_line = of_line(file, int(line)) if file.endswith(".py") and line.isdigit() else []
