@@ -19,6 +19,7 @@ from grammar.check.flow import advance_stops
 from grammar.check.names.unresolved_names import of_project
 from grammar.check.project.framework import check_module
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
+from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Module
@@ -93,25 +94,22 @@ def observe_with(
 
 
 def _parsed(case: Case) -> Observation:
-    found = []
+    found: list[Finding] = []
     for source in case.sources:
         read = read_module(source.text, source.path)
         if isinstance(read, list):
-            found += [
-                Finding(source.path, one.line, "error", "syntax", one.reason or "")
-                for one in read
-                if not one.follows
-            ]
+            found += map(_finding, syntax_findings(read, source))
     return Observation(findings=tuple(found))
 
 
 def _checked(case: Case) -> Observation:
     """Return all findings, including those about the advance run; a case is a whole project."""
-    files, found = [], []
+    files: list[File] = []
+    found: list[Finding] = []
     for source in case.sources:
         read = read_module(source.text, source.path)
         if isinstance(read, list):
-            found += [Finding(source.path, one.line, "error", "syntax") for one in read]
+            found += map(_finding, syntax_findings(read, source))
         else:
             files.append(File(source.path, read))
     sources = {source.path: source for source in case.sources}

@@ -57,7 +57,7 @@ def _kinds() -> Mapping[str, Kind]:
         # what a front end says
         Kind("accepted", _FRONT),
         Kind("syntax", ("parse",)),
-        Kind("error", ("check",), r"(?:KSS|KRL)\d+"),
+        Kind("error", _FRONT, r"(?:KSS|KRL)\d+"),
         Kind("warning", ("check",), r"(?:KSS|KRL)\d+"),
         Kind("note", ("check",), r"(?:KSS|KRL)\d+"),
         Kind("silent", ("check",), r"(?:KSS|KRL)\d+"),
