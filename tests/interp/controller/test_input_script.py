@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
-from interp.controller import Script, ScriptError
+from interp.controller import Profile, Script, ScriptError
 from interp.controller.inputs.input_script import (
     Answer,
     Assign,
@@ -24,10 +24,14 @@ from interp.controller.inputs.input_script import (
     TextReceived,
     VariableChanged,
 )
+from interp.controller.requests import waits
 from interp.program.load import Limits, load
 from interp.session import EXECUTORS, RunSetup, run_program
 
 Go = Callable[..., Any]
+
+#: Loops have fewer rounds here, so that no test takes long.
+FEW = replace(Profile.load(), statements=50, requests=20)
 
 
 def test_language() -> None:
@@ -185,7 +189,9 @@ def test_loops_that_look_at_inputs_wait_too(body: str, seconds: float) -> None:
     text = f"DEF main ( )\n{body}$OUT[1]=TRUE\nEND\nDEFFCT BOOL look ( )\nRETURN $IN[5]\nENDFCT\n"
     program = load([Source(text, "main.src")], "main.src")
     script = Script.read("fulfil waits after 1")
-    setups = [RunSetup(executor=one, script=script, until=9_000_000) for one in EXECUTORS]
+    setups = [
+        RunSetup(executor=one, profile=FEW, script=script, until=9_000_000) for one in EXECUTORS
+    ]
     first, *others = [run_program(program, setup) for setup in setups]
     assert "end" == first.outcome.ending
     assert seconds == pytest.approx(first.outcome.time / 1e6, abs=0.05)
@@ -197,7 +203,7 @@ def test_loops_that_change_nothing_are_given_few_requests(body: str) -> None:
     """From the second second on five in each cycle, as those that only read variables."""
     text = f"DEF main ( )\nREPEAT\n{body}UNTIL $IN[5]\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
-    run = run_program(program, RunSetup(executor=EXECUTORS[-1], until=2_000_000))
+    run = run_program(program, RunSetup(executor=EXECUTORS[-1], profile=FEW, until=2_000_000))
     rounds = sum(one.kind == "branch" and one.time > 1_100_000 for one in run.events)
     assert 75 <= rounds <= 5 * 76
 
@@ -214,7 +220,9 @@ def test_loops_with_a_heartbeat_wait_too(body: str, seconds: float) -> None:
     """Where a program only switches outputs, its inputs change after five more seconds."""
     program = load([Source(f"DEF main ( )\n{body}END\n", "main.src")], "main.src")
     script = Script.read("fulfil waits after 1")
-    setups = [RunSetup(executor=one, script=script, until=9_000_000) for one in EXECUTORS]
+    setups = [
+        RunSetup(executor=one, profile=FEW, script=script, until=9_000_000) for one in EXECUTORS
+    ]
     first, *others = [run_program(program, setup) for setup in setups]
     assert ("end", 1) == (first.outcome.ending, first.controller.automatic_inputs.count)
     assert seconds == pytest.approx(first.outcome.time / 1e6, abs=0.1)
@@ -224,25 +232,28 @@ def test_loops_with_a_heartbeat_wait_too(body: str, seconds: float) -> None:
 @pytest.mark.parametrize(
     "body", ["$OUT[1]=NOT $OUT[1]\n", "IF $TIMER[1]>=0 THEN\n$TIMER[1]=-500\nENDIF\n"]
 )
-def test_endless_loops_end(body: str) -> None:
-    """After 120,000 requests without a wait, the last of them slower; a script lets them go on."""
+def test_endless_loops_end(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
+    """After many requests without a wait, the last of them slower; a script lets them go on."""
+    monkeypatch.setattr(waits, "_ENDLESS", 10_000)
+    monkeypatch.setattr(waits, "_MOST", 12_000)
     text = f"DEF main ( )\n$TIMER_STOP[1]=FALSE\nLOOP\n{body}ENDLOOP\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
     executors = (EXECUTORS[0], EXECUTORS[-1])
-    setups = [RunSetup(executor=one, until=60_000_000) for one in executors]
+    setups = [RunSetup(executor=one, until=8_000_000) for one in executors]
     first, *others = [run_program(program, setup) for setup in setups]
     assert "budget" == first.outcome.ending
     assert all(first.events == other.events for other in others)
-    script = Script.read("t=59 IN[1]=TRUE")
+    script = Script.read("t=7 IN[1]=TRUE")
     assert "time" == run_program(program, replace(setups[-1], script=script)).outcome.ending
 
 
-def test_inverse_counts_as_many_requests() -> None:
-    """A loop of INVERSE ends after some 4,000 of them: each takes as long as many requests."""
+def test_inverse_counts_as_many_requests(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A loop of INVERSE ends after a thirtieth as many: each takes as long as many requests."""
+    monkeypatch.setattr(waits, "_MOST", 12_000)
     body = "LOOP\nJ=INVERSE($POS_ACT,$AXIS_ACT,E)\nENDLOOP\n"
     text = f"DEF main ( )\nE6AXIS J\nINT E\n{body}END\n"
     program = load([Source(text, "main.src")], "main.src")
-    ran = run_program(program, RunSetup(until=60_000_000, limits=Limits(statements=9_000)))
+    ran = run_program(program, RunSetup(until=60_000_000, limits=Limits(statements=900)))
     assert "requests" in str(ran.outcome.error)
 
 
