@@ -190,7 +190,7 @@ def test_conditions_are_evaluated_wherever_a_slice_ends(make: Make) -> None:
 
 def test_chains_of_operators_have_any_length(go: Run) -> None:
     """Sums, conditions and compositions of many operands are no nesting."""
-    operands = (("+", "I", 3_000), (" AND ", "B", 3_000), (":", "F", 300))
+    operands = (("+", "I", 1_500), (" AND ", "B", 1_500), (":", "F", 300))
     sums, conditions, poses = (sign.join([name] * count) for sign, name, count in operands)
     seen = go(
         "DEF main()\nINT I\nBOOL B\nFRAME F\nI=2\nB=TRUE\n"
@@ -198,7 +198,7 @@ def test_chains_of_operators_have_any_length(go: Run) -> None:
         f"$OUT[1]={conditions}\nF={poses}\n$TIMER[1]=F.X\nEND\n"
     )
     assert isinstance(seen.last, End)
-    assert [60, True, 300] == [one.value for one in seen.steps if isinstance(one, Write)]
+    assert [30, True, 300] == [one.value for one in seen.steps if isinstance(one, Write)]
 
 
 def test_a_wrong_argument_of_a_predefined_function_is_one_fault(go: Run) -> None:

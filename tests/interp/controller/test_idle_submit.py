@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
@@ -150,6 +150,7 @@ def drawn(draw: st.DrawFn) -> tuple[CheckedProgram, RunSetup]:
 
 
 @given(drawn())
+@settings(max_examples=settings().max_examples // 2)
 def test_nothing_is_seen(one: tuple[CheckedProgram, RunSetup]) -> None:
     """Trace, outcome and statements are as if each slice of the submit program had run."""
     quick, slow = _both(*one)
