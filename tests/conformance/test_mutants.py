@@ -349,10 +349,9 @@ def test_a_mutant_whose_lines_no_case_runs_survives() -> None:
 def test_known_equivalent_changes_exist() -> None:
     """Each entry is a change that can be drawn from its line; one that is gone is removed."""
     there = {
-        named(f"{module}:{number}").change
-        for module, function in {one[:2] for one in equivalent()}
-        for number, (name, _, _) in enumerate(_changes(module))
-        if name == function
+        (module, one.function, text_of(module).splitlines()[one.line - 1].strip(), one.was, one.now)
+        for module in {one[0] for one in equivalent()}
+        for one in changes(ast.parse(text_of(module)))
     }
     assert set() == set(equivalent()) - there
     assert [] == [
