@@ -217,7 +217,7 @@ def lines_of_tokens(source: Source) -> Iterator[list[Token]]:
     """Return the tokens of each line that has some."""
     lexer: Lexer = builder().failures.recognizer.lexer
     line: list[Token] = []
-    for lexeme, start in zip(lexer.lexemes(source.text), lexer.offsets(source.text), strict=True):
+    for lexeme, start in zip(*lexer.located(source.text), strict=True):
         kind = lexer.kinds[lexeme]
         if kind < 0:
             continue

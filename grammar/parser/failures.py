@@ -300,7 +300,7 @@ class _Places:
         # if tokens contain line ends, or line ends are no tokens, offsets are computed for all
         self._offsets: list[int] | None = None
         if ends != len(self._lines) - 1 or not lexer.leaves_out_skipped:
-            self._offsets = lexer.offsets_of_tokens(text)
+            self._offsets = lexer.located(text)[1]
 
     def __call__(self, number: int, index: int) -> tuple[int, int, int]:
         offset = self._offset(number, index)

@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
+from itertools import accumulate, chain, compress
 
 from grammar.notation.model import (
     CharSet,
@@ -160,6 +161,7 @@ class Lexer:
             r for r in rules if r.is_skipped or r.name not in names_of_literals or not is_other(r)
         ]
         self._leaves_out_skipped = not any(r.is_skipped for r in rules)
+        self._located: re.Pattern[str] | None = None
         self._pattern = self._pattern_for(grammar, cutting)
 
     def _ranked(self, rule: Rule) -> _Ranked:
@@ -181,10 +183,10 @@ class Lexer:
                     self._leaves_out_skipped = True
                     # The rest matches anywhere, so there is no backtracking. The group is not
                     # possessive, because Python 3.11.2 loses the position of one that fails.
-                    return re.compile(
-                        f"(?:{skip_pattern}){{0,{_LONGEST_ROW}}}"
-                        f"({token_pattern}|(?={skip_pattern})|[\\s\\S]|\\Z)"
-                    )
+                    gap = f"(?:{skip_pattern}){{0,{_LONGEST_ROW}}}"
+                    lexeme = f"({token_pattern}|(?={skip_pattern})|[\\s\\S]|\\Z)"
+                    self._located = re.compile(f"({gap}){lexeme}")
+                    return re.compile(f"{gap}{lexeme}")
         automaton = automaton_of(grammar, rules)
         everything = pattern_of(automaton)
         return re.compile(f"({everything}|[\\s\\S])") if everything else automaton
@@ -262,12 +264,22 @@ class Lexer:
         matches = self._pattern.finditer(text, start)
         return (found.start(1) for found in matches if found[1])
 
-    def offsets_of_tokens(self, text: str) -> list[int]:
-        """Return the offset of each token in ``text``."""
-        if self._leaves_out_skipped:
-            return list(self.offsets(text))
-        pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
-        return [offset for lexeme, offset in pairs if self.kinds[lexeme] != SKIPPED]
+    def located(self, text: str) -> tuple[list[str], list[int]]:
+        """Return the text of each token and its offset, in less time than one after the other."""
+        if self._located is None:
+            pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
+            tokens = [pair for pair in pairs if self.kinds[pair[0]] != SKIPPED]
+            return [lexeme for lexeme, _ in tokens], [offset for _, offset in tokens]
+        found = self._located.findall(text)
+        ends = list(accumulate(map(len, chain.from_iterable(found))))
+        offsets, lexemes = ends[::2], [lexeme for _, lexeme in found]
+        while lexemes and not lexemes[-1]:  # skipped text at the end of the file
+            offsets.pop()
+            lexemes.pop()
+        if len(text) > _LONGEST_ROW and "" in lexemes:  # a row that was cut
+            offsets = list(compress(offsets, lexemes))
+            lexemes = list(filter(None, lexemes))
+        return lexemes, offsets
 
 
 def _spans(automaton: CharAutomaton, text: str, start: int = 0) -> Iterator[tuple[int, int]]:

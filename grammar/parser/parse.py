@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from grammar.parser.derivation import Action, Begin, Deriver
-from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.tree import Outline, Tree
 from support.lazy_dataclass import dataclass
@@ -60,27 +59,23 @@ class Parser:
     def parse(self, text: str) -> Tree | Stop:
         """Return the tree of a text, or the first token at which it is no program."""
         lexer = self.recognizer.lexer
-        lexemes = lexer.lexemes(text)
+        lexemes, offsets = lexer.located(text)
         kinds = self.recognizer.kinds_of(lexemes)
-        if not lexer.leaves_out_skipped:
-            lexemes = [lexeme for lexeme in lexemes if lexer.kinds[lexeme] != SKIPPED]
         lexemes.append("")
+        offsets.append(len(text))
         if self._deriver.size > _MOST_STATES:
             self._deriver.release()
             self._deriver = Deriver(self.recognizer.grammar, lexer)
             self._changes.clear()  # the numbers of its actions begin anew
         derivation = self._deriver.derive(kinds)
         if derivation is None:
-            return self._stop(text, kinds, lexemes)
+            state, index = self.recognizer.run(self.recognizer.start, kinds)
+            assert index is not None, "the recogniser accepts what cannot be derived"
+            nothing = Tree(text, lexer, kinds, lexemes, offsets, Outline("", ()), True)
+            offset = offsets[index]
+            return Stop(*nothing.place(offset), offset, lexemes[index], state)
         outline = self._outline(kinds, derivation.actions)
-        return Tree(text, lexer, kinds, lexemes, outline, derivation.is_unique)
-
-    def _stop(self, text: str, kinds: Sequence[int], lexemes: Sequence[str]) -> Stop:
-        state, index = self.recognizer.run(self.recognizer.start, kinds)
-        assert index is not None, "the recogniser accepts what cannot be derived"
-        nothing = Tree(text, self.recognizer.lexer, kinds, lexemes, Outline("", ()), True)
-        offset = nothing.offsets[index]
-        return Stop(*nothing.place(offset), offset, lexemes[index], state)
+        return Tree(text, lexer, kinds, lexemes, offsets, outline, derivation.is_unique)
 
     # --------------------------------------------------------------------------- outlines
 

@@ -159,15 +159,16 @@ class ParseNode:
 class Tree:
     """The parse tree of a text.
 
-    ``kinds`` and ``lexemes`` are the kind and text of each token; the last one is the end of the
-    file, with an empty text. ``is_unique`` means that no second reading was met: see
-    `grammar.parser.derivation`.
+    ``kinds``, ``lexemes`` and ``offsets`` are the kind and text of each token and where it begins,
+    in characters; the last one is the end of the file, with an empty text. ``is_unique`` means that
+    no second reading was met: see `grammar.parser.derivation`.
     """
 
     text: str
     lexer: Lexer
     kinds: Sequence[int]
     lexemes: Sequence[str]
+    offsets: Sequence[int]
     outline: Outline
     is_unique: bool
 
@@ -180,11 +181,6 @@ class Tree:
     def tokens(self) -> list[Token]:
         """Every token, end of file included."""
         return [Token(self, index) for index in range(len(self.kinds))]
-
-    @cached_property
-    def offsets(self) -> Sequence[int]:
-        """The offset of each token in the text, in characters."""
-        return [*self.lexer.offsets_of_tokens(self.text), len(self.text)]
 
     def gap(self, index: int) -> str:
         """Return the skipped text before the token ``index``: blanks and comments."""

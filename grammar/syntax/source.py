@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import PurePosixPath
 
@@ -25,7 +25,7 @@ _LINE_END = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r'"[^"\r\n]*"|&[^\r\n]*|(;[^\r\n]*)')
 # FOLD with the title of the fold, or ENDFOLD.
 _MARK = re.compile(
-    r";[ \t]*(?:FOLD(?:[ \t]+|(?=;)|$)(.*)|ENDFOLD\b)", re.IGNORECASE | re.ASCII | re.DOTALL
+    r";[ \t]*(?:FOLD(?:[ \t]+|(?=[;\r\n])|\Z)([^\r\n]*)|ENDFOLD\b)", re.IGNORECASE | re.ASCII
 )
 _PARAMETERS = re.compile(r";[ \t]*%\{")
 _PARAMETER_LINE = re.compile(r";[ \t]*PARAMS[ \t]", re.IGNORECASE | re.ASCII)
@@ -33,7 +33,7 @@ _PARAMETER_LINE = re.compile(r";[ \t]*PARAMS[ \t]", re.IGNORECASE | re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment with its semicolon; ``is_alone`` if nothing precedes it on its line.
+    """A comment with its semicolon.
 
     ``line`` and ``column`` count from 1, ``offset`` from 0.
     """
@@ -42,7 +42,6 @@ class Comment:
     column: int
     offset: int
     text: str
-    is_alone: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +119,7 @@ class Source:
             if found.group(1) is not None:
                 offset = found.start()
                 line, column = self.place(offset)
-                before = self.text[offset - column + 1 : offset]
-                yield Comment(line, column, offset, found.group(1), not before.strip(" \t"))
+                yield Comment(line, column, offset, found.group(1))
 
     @cached_property
     def _by_line(self) -> Mapping[int, Comment]:
@@ -142,39 +140,40 @@ class Source:
     def unbalanced_folds(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """The lines of ``;FOLD`` without an end, and of ``;ENDFOLD`` without a begin."""
         opened, stray = [], []
-        for comment, title in self._fold_marks:
+        for line, title in self._fold_marks():
             if title is not None:
-                opened.append(comment.line)
+                opened.append(line)
             elif opened:
                 opened.pop()
             else:
-                stray.append(comment.line)
+                stray.append(line)
         return tuple(opened), tuple(stray)
 
-    @cached_property
-    def _fold_marks(self) -> Sequence[tuple[Comment, str | None]]:
-        """The comments that begin or end a fold, with the title or ``None``."""
-        alone = [comment for comment in self.comments if comment.is_alone]
-        found = [(comment, _MARK.match(comment.text)) for comment in alone]
-        return [(comment, mark[1]) for comment, mark in found if mark]
+    def _fold_marks(self) -> Iterator[tuple[int, str | None]]:
+        """Yield the lines that begin or end a fold, with the title or ``None``."""
+        for found in _MARK.finditer(self.text):
+            line, column = self.place(found.start())
+            before = self.text[found.start() - column + 1 : found.start()]
+            if not before.strip(" \t"):
+                yield line, found[1]
 
     def _folds(self) -> Iterator[Fold]:
-        opened: list[tuple[Comment, str]] = []
+        opened: list[tuple[int, str]] = []
 
         def fold(last: int | None) -> Fold:
-            comment, title = opened.pop()
+            first, title = opened.pop()
             level = len(opened) + 1
             shown, mark, hidden = _split(title)
-            below = self.comment(comment.line + 1)
+            below = self.comment(first + 1)
             more = below.text if below and _PARAMETER_LINE.match(below.text) else ""
             parameters = f"{hidden}{more}" if mark or more else None
-            return Fold(shown.strip(), comment.line, last, level, parameters)
+            return Fold(shown.strip(), first, last, level, parameters)
 
-        for comment, title in self._fold_marks:
+        for line, title in self._fold_marks():
             if title is not None:
-                opened.append((comment, title))
+                opened.append((line, title))
             elif opened:
-                yield fold(comment.line)
+                yield fold(line)
         while opened:
             yield fold(None)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
@@ -140,6 +141,14 @@ class Context:
         found: dict[tuple[Space | None, str], list[Use]] = {}
         for use in self.resolution.open_uses:
             found.setdefault((use.space, use.name.key), []).append(use)
+        return found
+
+    @cached_property
+    def typed_nodes(self) -> Mapping[type[Node], Sequence[Any]]:
+        """The nodes that have a type, by their class, in the order in which they got it."""
+        found: defaultdict[type[Node], list[Node]] = defaultdict(list)
+        for node in self.types:
+            found[type(node)].append(node)
         return found
 
     @cached_property

@@ -445,8 +445,8 @@ def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
 
 def _real_equality(context: Context) -> Iterator[Diagnostic]:
     """``==`` and ``<>`` of numbers that are rounded [ARI-10]."""
-    for node in context.types:
-        if isinstance(node, ast.Binary) and node.operator in ("==", "<>"):
+    for node in context.typed_nodes[ast.Binary]:
+        if node.operator in ("==", "<>"):
             types = context.types.get(node.left), context.types.get(node.right)
             if REAL in types:
                 message = f"{node.operator} compares REAL values, which are rounded"

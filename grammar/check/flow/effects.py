@@ -106,9 +106,8 @@ class _Collector:
                 if rule is not None:
                     rule(self, placed.statement)
             self._summaries.routine(routine)
-        for node in context.types if context.routines else ():
-            if type(node) is ast.Call:
-                self._call(node)
+        for node in context.typed_nodes[ast.Call] if context.routines else ():
+            self._call(node)
         valueless = tuple(self._valueless())
         return Effects(
             tuple(self._interrupts),

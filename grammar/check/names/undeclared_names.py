@@ -107,14 +107,10 @@ def uses(context: Context) -> frozenset[str]:
     Enumeration constants are included with a #, components of structures with a dot.
     """
     declared = {found.symbol.key for found in context.used if found.module}
-    parts = set()
-    for node in context.types:
-        if type(node) is ast.EnumConstant:
-            parts.add(f"#{node.name.key}")
-        elif type(node) is ast.Member:
-            parts.add(f".{node.name.key}")
-        elif type(node) is ast.Aggregate:
-            parts.update(f".{one.name.key}" for one in node.components)
+    nodes = context.typed_nodes
+    parts = {f"#{node.name.key}" for node in nodes[ast.EnumConstant]}
+    parts |= {f".{node.name.key}" for node in nodes[ast.Member]}
+    parts |= {f".{part.name.key}" for node in nodes[ast.Aggregate] for part in node.components}
     return frozenset(declared | parts | uses_of_unread(context.module.words or ()))
 
 
@@ -253,8 +249,8 @@ def references(context: Context) -> tuple[UnresolvedName, ...]:
 def loose_constants(context: Context) -> Iterator[LooseConstant]:
     """Return the constants whose enumeration is unknown, so that any constant is possible."""
     loose: dict[str, list[ast.EnumConstant]] = {}
-    for node in context.types:
-        if type(node) is ast.EnumConstant and node.name.key not in _system_constants():
+    for node in context.typed_nodes[ast.EnumConstant]:
+        if node.name.key not in _system_constants():
             to = context.enumerations.get(node)
             if to is None or to.is_open:
                 loose.setdefault(node.name.key, []).append(node)

@@ -54,8 +54,8 @@ def _pairs(context: Context) -> Iterator[_Pair]:
         for placed in routine.statements:
             for assignment in _assignments(placed.statement):
                 yield assignment.target, assignment.value
-    for node in context.types if context.routines else ():
-        if type(node) is ast.Binary and node.operator in ("==", "<>"):
+    for node in context.typed_nodes[ast.Binary] if context.routines else ():
+        if node.operator in ("==", "<>"):
             yield node.left, node.right
 
 

@@ -137,7 +137,8 @@ def test_tokens_of_random_rules(chance: Random, lexer_ends: LexerEnds) -> None:
     text = "".join(chance.choice(fragments) for _ in range(25))
     lexer = Lexer(made)
     assert slow_tokens(made, text, lexer_ends) == tokens_of(lexer, text)
-    assert [at for _, _, at in tokens_of(lexer, text)] == lexer.offsets_of_tokens(text)
+    tokens = [(lexeme, at) for _, lexeme, at in tokens_of(lexer, text)]
+    assert tokens == list(zip(*lexer.located(text), strict=True))
     if lexer.leaves_out_skipped:
         assert SKIPPED not in map(lexer.kinds.__getitem__, lexer.lexemes(text))
 
@@ -411,4 +412,6 @@ def test_a_row_of_skipped_texts_of_any_length(monkeypatch: pytest.MonkeyPatch) -
     for count in range(9):
         text = f"x{'//' * count}x/{' //' * count}"
         assert ["x", "x", "/"] == lexer.lexemes(text)
-        assert [0, 1 + 2 * count, 2 + 2 * count] == list(lexer.offsets(text))
+        offsets = [0, 1 + 2 * count, 2 + 2 * count]
+        assert offsets == list(lexer.offsets(text))
+        assert (["x", "x", "/"], offsets) == lexer.located(text)

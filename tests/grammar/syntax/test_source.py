@@ -55,9 +55,9 @@ def test_place_and_offset_are_inverse(text: str) -> None:
 
 
 def test_a_comment_has_a_place() -> None:
-    """Comments alone on a line and behind code are told apart, and found by line."""
+    """A comment is found by its line, alone or behind code."""
     source = Source("X=1 ; one\n\t;two \nY=2")
-    one, two = Comment(1, 5, 4, "; one", False), Comment(2, 2, 11, ";two ", True)
+    one, two = Comment(1, 5, 4, "; one"), Comment(2, 2, 11, ";two ")
     assert (one, two) == source.comments
     assert [one, two, None] == [source.comment(line) for line in (1, 2, 3)]
 
@@ -89,8 +89,6 @@ def test_comments_are_where_they_say(text: str) -> None:
     for comment in source.comments:
         assert comment.text == source.line(comment.line)[comment.column - 1 :]
         assert text.startswith(comment.text, comment.offset)
-        before = source.line(comment.line)[: comment.column - 1]
-        assert comment.is_alone == (before.strip(" \t") == "")
 
 
 # ------------------------------------------------------------------------------------ folds
