@@ -16,7 +16,7 @@ from conformance.evaluation.observation import Event, Finding, Observation
 from conformance.suite.case import Case
 from grammar.check.analysis.context import Context
 from grammar.check.flow import advance_stops
-from grammar.check.names.unresolved_names import of_project
+from grammar.check.names.project_names import of_project
 from grammar.check.project.framework import check_module
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.diagnostics.syntax_errors.findings import syntax_findings

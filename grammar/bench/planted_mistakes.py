@@ -21,6 +21,7 @@ from typing import Any
 
 from grammar.bench.slips import Token, cut, damaged, lines_of_tokens
 from grammar.check.analysis.spelling import Spelling
+from grammar.check.names.unresolved_name import Files
 from grammar.check.project.dependencies import Contribution, contribution
 from grammar.check.project.framework import Findings, check_module, check_project
 from grammar.check.project.project_check import Reading, read_source
@@ -30,7 +31,6 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution
 from grammar.semantics.scopes import Module
 from grammar.semantics.symbol_table import table_of
-from grammar.semantics.symbols import ModuleTable
 from grammar.syntax.source import Source
 from support.files.discovery import IngestError, source_files
 
@@ -73,7 +73,7 @@ class _Checked:
         self.findings: dict[str, Findings] = {}
         self.names: dict[str, dict[int, str]] = {}
         self._check(programs)
-        self.found = frozenset(check_project(self.findings.values(), self._file, self._spelling()))
+        self.found = frozenset(self._of_project())
 
     def _check(self, paths: Iterable[str]) -> None:
         wanted = set(paths)
@@ -83,13 +83,11 @@ class _Checked:
                 if module.path in wanted:
                     self.findings[module.path] = self._findings(project, module)
 
-    def _file(self, path: str) -> tuple[ModuleTable | None, Callable[[], Source]]:
-        program = self.programs[path]
-        return program.file.table, lambda: program.source
-
-    def _spelling(self) -> Spelling:
+    def _of_project(self) -> list[Diagnostic]:
         programs = self.programs
-        return Spelling(lambda: [(path, one.given.words) for path, one in programs.items()])
+        files = Files(lambda path: programs[path].file.table, lambda path: programs[path].source)
+        spelling = Spelling(lambda: [(path, one.given.words) for path, one in programs.items()])
+        return check_project(self.findings.values(), files, spelling)
 
     def _findings(self, project: Project, module: Module) -> Findings:
         program = self.programs[module.path]
@@ -134,7 +132,7 @@ class _Checked:
                 for other, one in self.programs.items()
                 if other.rpartition(".")[0].casefold() == stem or names & one.given.words
             )
-            found = check_project(self.findings.values(), self._file, self._spelling())
+            found = self._of_project()
         finally:
             self.programs[path], self.findings = before, findings
         return [one for one in found if one not in self.found and one.severity != "note"]

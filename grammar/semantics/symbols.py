@@ -175,6 +175,12 @@ class Table:
             for symbol in names.values():
                 yield space, symbol
 
+    def names(self, space: Space, access: Access | None = None) -> Iterator[str]:
+        """Yield the names in a space as written, all or those with one kind of access."""
+        for symbol in self.spaces[space].values():
+            if access is None or symbol.access is access:
+                yield symbol.name
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoutineTable:

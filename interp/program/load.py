@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import chain
 
 from grammar.check.analysis.context import placed
 from grammar.check.analysis.spelling import spelling_of
+from grammar.check.names.unresolved_name import Files
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.semantics.link import File, Project, extended, link
@@ -358,13 +359,11 @@ def _checked(
         sources = {**sources, **{source.path: source for source in whole.sources}}
     units = _units(project, sources, check_module if strict else typed_module)
     texts = {unit.module.path: unit.source for unit in units.values()}
-    files = {
-        unit.module.path: (unit.module.table, partial(texts.__getitem__, unit.module.path))
-        for unit in units.values()
-    }
+    tables = {unit.module.path: unit.module.table for unit in units.values()}
     findings = [unit.checked.findings for unit in units.values()]
+    files = Files(tables.get, texts.__getitem__)
     spelling = spelling_of(unit.source for unit in units.values())
-    for one in check_project(findings, files.__getitem__, spelling) if strict else ():
+    for one in check_project(findings, files, spelling) if strict else ():
         if one.severity == "error":
             raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
     first = next(unit for module, unit in units.items() if module.path == main)

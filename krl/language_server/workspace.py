@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 from grammar.check.analysis.spelling import spelling_of
+from grammar.check.names.unresolved_name import Files
 from grammar.check.project.dependencies import Contribution, Needs, contribution, needs_of
 from grammar.check.project.framework import Checked, Findings, check_module, check_project
 from grammar.check.project.project_check import Reading, read_source
@@ -232,12 +232,9 @@ class OpenProject:
         paths = [module.path for module in project.modules]
         if all(one in self._judged for one in paths):
             sources = {path: self._files[path].source for path in paths}
-            files = {
-                one.path: (one.table, partial(sources.__getitem__, one.path))
-                for one in project.modules
-            }
-            spelling = spelling_of(sources.values())
-            return check_project((self._judged[one].findings for one in paths), files.get, spelling)
+            tables = {one.path: one.table for one in project.modules}
+            files, spelling = Files(tables.get, sources.__getitem__), spelling_of(sources.values())
+            return check_project((self._judged[one].findings for one in paths), files, spelling)
         return self._judged[path].findings.diagnostics
 
     def catch_up(self) -> Iterator[str]:

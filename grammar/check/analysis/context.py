@@ -19,7 +19,7 @@ from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.rules import is_confirmed
 from grammar.semantics.scopes import Found, Module, Scope
-from grammar.semantics.symbols import Kind, ModuleTable, RoutineTable
+from grammar.semantics.symbols import Kind, ModuleTable, RoutineTable, Table
 from grammar.semantics.types import Enumeration, Structure, Type, Verdict
 from grammar.syntax import ast
 from grammar.syntax.ast import Node, Span
@@ -125,10 +125,21 @@ class Context:
         return self.module.table
 
     @property
+    def tables(self) -> tuple[Table, ...]:
+        """The declarations of the file, then those of each routine."""
+        return self.table.table, *(routine.table.table for routine in self.routines)
+
+    @property
     def data(self) -> ast.DataList | None:
         """The data list, if the file is one."""
         content = self.syntax.content
         return content if isinstance(content, ast.DataList) else None
+
+    @property
+    def own_data(self) -> Table | None:
+        """The declarations of the data list that belongs to the program, if it can be read."""
+        data = self.project.data_of(self.module)
+        return data.table.table if data is not None and data.table is not None else None
 
     @property
     def scope(self) -> Scope:
@@ -147,8 +158,8 @@ class Context:
     def typed_nodes(self) -> Mapping[type[Node], Sequence[Any]]:
         """The nodes that have a type, by their class, in the order in which they got it."""
         found: defaultdict[type[Node], list[Node]] = defaultdict(list)
-        for node in self.types:
-            found[type(node)].append(node)
+        for typed in self.types:
+            found[type(typed)].append(typed)
         return found
 
     @cached_property

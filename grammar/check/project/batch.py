@@ -16,7 +16,6 @@ from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
-from grammar.check.project.dependencies import NO_NEEDS
 from grammar.check.project.project_check import (
     MANY_OBJECTS,
     CheckOptions,
@@ -93,7 +92,7 @@ def check_paths(
     ):
 
         def results() -> Iterator[ProjectResult]:
-            for result in _run(work.taken(), pool, store, options):
+            for result in _run(work.taken(), pool, store, replace(options, kept=store.is_open)):
                 on_done(result.files + len(result.skipped))
                 yield _reported(result, work.names)
 
@@ -206,25 +205,22 @@ class _Project:
 
     def start(self, number: int, pool: StickyPool, store: ResultStore) -> None:
         """Have the project checked; with several processes this waits until it has been read."""
-        is_kept = store.is_open
         known = self._known = known_files(store, self.places, self.contents, self.options)
         new = {index: one for index, one in enumerate(self.contents) if index not in known}
         size = sum(len(content.data) for content in new.values())
         if pool.count == 1 or size < _LARGE:
             process = pool.least_loaded(size)
-            self._whole = pool.submit(
-                process, recheck, self.contents, self.options, known, is_kept=is_kept
-            )
+            self._whole = pool.submit(process, recheck, self.contents, self.options, known)
             return
         reading = [
-            pool.submit(process, read_part, number, share, self.options, is_kept=is_kept)
+            pool.submit(process, read_part, number, share, self.options)
             for process, share in enumerate(_shares(new, pool.count))
         ]
         looked = {index: one.read for index, one in known.items()}
         for part in reading:
             looked |= part.result()
         self._read = looked
-        self._needs = needs(self.contents, looked) if is_kept else [NO_NEEDS] * len(self.contents)
+        self._needs = needs(self.contents, looked, self.options)
         stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
         places = [(content.path, content.origin) for content in self.contents]
         self._parts = [

@@ -8,7 +8,6 @@ are made from them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
 
 from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
@@ -18,15 +17,11 @@ from grammar.check.flow.effects import NO_EFFECTS, Effects, effects
 from grammar.check.flow.effects import of_project as of_effects
 from grammar.check.limits import name_limits, value_limits
 from grammar.check.names import duplicate_names, undeclared_names
-from grammar.check.names.unresolved_names import (
-    FileOf,
-    LooseConstant,
-    UnresolvedName,
-    misspelt_declarations,
-    of_constants,
-    slipped_declarations,
-)
-from grammar.check.names.unresolved_names import of_project as of_names
+from grammar.check.names.misspelt_declarations import slips_in_project, unlike_others, used_names
+from grammar.check.names.open_constants import OpenConstant, misspelt_constants, open_constants
+from grammar.check.names.open_names import open_names
+from grammar.check.names.project_names import of_project as of_names
+from grammar.check.names.unresolved_name import Files, UnresolvedName
 from grammar.check.structure import folds, misplaced_statements, splines
 from grammar.check.types import declarations, initial_values, statements, undeclared_kinds
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
@@ -34,11 +29,9 @@ from grammar.semantics.link import Project, Workspace
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, resolve
 from grammar.semantics.scopes import Module
-from grammar.semantics.symbols import Kind, TypeSymbol
 from grammar.semantics.types import Enumeration, Type
 from grammar.syntax import ast
 from grammar.syntax.ast import Node
-from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
@@ -77,7 +70,7 @@ class Findings:
     references: tuple[UnresolvedName, ...]
     effects: Effects = NO_EFFECTS
     uses: frozenset[str] = frozenset()
-    constants: tuple[LooseConstant, ...] = ()
+    constants: tuple[OpenConstant, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,10 +116,10 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
     findings = Findings(
         tuple(found),
-        undeclared_names.references(context),
+        open_names(context),
         effects(context),
-        undeclared_names.uses(context),
-        tuple(undeclared_names.loose_constants(context)),
+        used_names(context),
+        tuple(open_constants(context)),
     )
     context.flows.clear()  # they refer to the context: a cycle would keep the tree
     return Checked(
@@ -140,40 +133,28 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
 
 
 def check_project(
-    findings: Iterable[Findings], file_of: FileOf, spelling: Spelling
+    findings: Iterable[Findings], files: Files, spelling: Spelling
 ) -> list[Diagnostic]:
     """Return all findings of a project in order, from those of its files.
 
-    ``file_of`` returns the table and the text of a file, for findings at its declarations;
     ``spelling`` knows the names of all files.
     """
     kept = list(findings)
     references = [reference for one in kept for reference in one.references]
+    constants = [constant for one in kept for constant in one.constants]
     used = frozenset[str]().union(*(one.uses for one in kept))
-    slips = slipped_declarations(references, used, file_of, spelling)
+    slips = slips_in_project(references, used, files, spelling)
     explained = {one.finding for one in references if one.slip in slips}
     found = [one for file in kept for one in file.diagnostics if one not in explained]
     at_slips = {(one.path, one.region): one for one in slips.values()}
     found += at_slips.values()
-    unused = misspelt_declarations(spelling, used, file_of)
-    found += (one for one in unused if (one.path, one.region) not in at_slips)
+    unlike = unlike_others(spelling, used, files)
+    found += (one for one in unlike if (one.path, one.region) not in at_slips)
     rest = (one for one in references if not one.finding and one.slip not in slips)
     found += of_names(rest, spelling)
-    found += of_constants(
-        (constant for one in kept for constant in one.constants),
-        partial(_constants_of, file_of, spelling.files),
-    )
+    found += misspelt_constants(constants, files, spelling.files)
     found += of_effects((one.effects for one in kept), lambda: spelling.files)
     return in_order(found)
-
-
-def _constants_of(file_of: FileOf, paths: Iterable[str]) -> Iterator[str]:
-    """Return the constants of the enumerations that some files declare at top level."""
-    for path in paths:
-        table = (file_of(path) or (None, None))[0]
-        for symbol in table.table.spaces[Space.TYPE].values() if table else ():
-            if isinstance(symbol, TypeSymbol) and symbol.kind is Kind.ENUMERATION:
-                yield from (member.name for member in symbol.members.values())
 
 
 def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[Diagnostic]:
@@ -182,7 +163,8 @@ def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[D
     for project in workspace.projects:
         read = [module for module in project.modules if module.syntax is not None]
         sources = {module.path: source_of(module) for module in read}
-        files = {one.path: (one.table, partial(sources.__getitem__, one.path)) for one in read}
+        tables = {module.path: module.table for module in read}
         findings = (check_module(project, one, sources[one.path]).findings for one in read)
-        found += check_project(findings, files.get, spelling_of(sources.values()))
+        files, spelling = Files(tables.get, sources.__getitem__), spelling_of(sources.values())
+        found += check_project(findings, files, spelling)
     return in_order(found)

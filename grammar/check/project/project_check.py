@@ -9,15 +9,16 @@ read again, and is checked again only if something changed on which its findings
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 
 from grammar.check.analysis.context import Context
 from grammar.check.analysis.spelling import Spelling
 from grammar.check.flow import advance_stops
 from grammar.check.flow.effects import effects_of_unread
-from grammar.check.names.undeclared_names import uses_of_unread
+from grammar.check.names.misspelt_declarations import used_in_unread
+from grammar.check.names.unresolved_name import Files
 from grammar.check.project.dependencies import (
     NO_NEEDS,
     Contribution,
@@ -59,13 +60,15 @@ class CheckOptions:
     """What to check: syntax only, or also what stops the advance run.
 
     With ``is_complete`` no files of a project are missing; otherwise its calls decide. ``packages``
-    are installed option packages in addition to those that are called.
+    are installed option packages in addition to those that are called. If the results are not
+    ``kept`` for a later check, nothing is worked out that only that would need.
     """
 
     syntax_only: bool = False
     stops: bool = False
     is_complete: bool = False
     packages: tuple[str, ...] = ()
+    kept: bool = True
 
     @property
     def wanted_codes(self) -> tuple[str, ...]:
@@ -149,7 +152,7 @@ class Reading:
     def alone(self) -> Findings:
         """Return the findings from reading, and the possible effects of the unreadable text."""
         unread = effects_of_unread(self.words or frozenset())
-        return Findings(self.diagnostics, (), unread, uses_of_unread(self.words or ()))
+        return Findings(self.diagnostics, (), unread, used_in_unread(self.words or ()))
 
     def completed(self, found: Findings) -> Findings:
         """Return the findings in the tree together with those from reading."""
@@ -183,12 +186,13 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
     def source(path: str) -> Source:
         return contents[indices[path]].source()
 
-    def file(path: str) -> tuple[ModuleTable | None, Callable[[], Source]]:
-        return files[indices[path]].read.table, partial(source, path)
+    def table(path: str) -> ModuleTable | None:
+        return files[indices[path]].read.table
 
     given = {path: files[index].read.contribution for path, index in indices.items()}
     spelling = Spelling(lambda: [(path, one.words) for path, one in given.items() if one])
-    return check_project((one.checked.findings for one in files), file, spelling)
+    findings = (one.checked.findings for one in files)
+    return check_project(findings, Files(table, source), spelling)
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,28 +213,27 @@ def recheck(
     contents: Sequence[Content],
     options: CheckOptions,
     known: Mapping[int, KnownFile],
-    *,
-    is_kept: bool = True,
 ) -> list[KnownFile]:
-    """Check a project in this process, except for ``known`` files that are still valid.
-
-    If the results are not ``is_kept`` for a later check, nothing is worked out for that.
-    """
+    """Check a project in this process, except for ``known`` files that are still valid."""
     project = -1
     new = {index: one for index, one in enumerate(contents) if index not in known}
     looked = {index: one.read for index, one in known.items()}
-    looked |= read_part(project, new, options, is_kept=is_kept)
-    needed = needs(contents, looked) if is_kept else [NO_NEEDS] * len(contents)
+    looked |= read_part(project, new, options)
+    needed = needs(contents, looked, options)
     stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
     places = [(content.path, content.origin) for content in contents]
     checked = check_part(project, places, looked, stale, options)
     return completed(contents, looked, known, checked, needed)
 
 
-def needs(contents: Sequence[Content], looked: Mapping[int, FileResult]) -> list[Needs]:
+def needs(
+    contents: Sequence[Content], looked: Mapping[int, FileResult], options: CheckOptions
+) -> list[Needs]:
     """Return the needs of each file of a project, from the results of reading all of them."""
-    places = [(content.path, content.origin) for content in contents]
     found = [NO_NEEDS] * len(contents)
+    if not options.kept:
+        return found
+    places = [(content.path, content.origin) for content in contents]
     by_path = {path: index for index, (path, _) in enumerate(places)}
     for project in _linked(_files(places, looked, {}), CheckOptions()):
         members = [by_path[module.path] for module in project.modules]
@@ -262,25 +265,22 @@ def completed(
 
 
 def read_part(
-    project: int, part: Mapping[int, Content], options: CheckOptions, *, is_kept: bool = True
+    project: int, part: Mapping[int, Content], options: CheckOptions
 ) -> dict[int, FileResult]:
-    """Read a share of the files of a project, and keep their trees for `check_part`.
-
-    ``is_kept`` as in `recheck`.
-    """
-    looked, _KEPT[project] = _read_all(part, options, is_kept=is_kept)
+    """Read a share of the files of a project, and keep their trees for `check_part`."""
+    looked, _KEPT[project] = _read_all(part, options)
     return looked
 
 
 def _read_all(
-    part: Mapping[int, Content], options: CheckOptions, *, is_kept: bool = True
+    part: Mapping[int, Content], options: CheckOptions
 ) -> tuple[dict[int, FileResult], dict[int, _Tree]]:
     """Read some files; return their results and what is kept of them."""
     looked, kept = {}, {}
     size = 0
     for index, content in part.items():
         with gc_paused(MANY_OBJECTS):
-            looked[index], tree = _read(content, options, is_kept=is_kept)
+            looked[index], tree = _read(content, options)
         if tree is not None:
             size += len(content.data)
             if size > _MOST_KEPT:
@@ -289,9 +289,7 @@ def _read_all(
     return looked, kept
 
 
-def _read(
-    content: Content, options: CheckOptions, *, is_kept: bool
-) -> tuple[FileResult, _Tree | None]:
+def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | None]:
     path = content.path
     if content.is_unread:
         return FileResult(Reading(None, (), frozenset({REST})).alone()), None
@@ -314,7 +312,7 @@ def _read(
         looked = FileResult(reading.alone(), None, None, lines, comments, reading.words, given)
         return looked, None
     table = table_of(tree)
-    given = contribution(path, source.text, table if is_kept else None, reading.words)
+    given = contribution(path, source.text, table if options.kept else None, reading.words)
     looked = FileResult(Findings(found, ()), None, table, None, comments, reading.words, given)
     return looked, _Tree(table, source, comments, reading)
 

@@ -1,0 +1,98 @@
+"""Which visible names a name that nothing declares may be a misspelling of."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from functools import cache, cached_property
+
+from grammar.check.analysis.context import Context
+from grammar.diagnostics.typos import Series, Typos, small_prefix
+from grammar.semantics.predefined import System
+from grammar.semantics.resolve import Use
+from grammar.semantics.scopes import Found
+from grammar.semantics.types import CHAR, SCALARS, Array
+from grammar.syntax import ast
+from grammar.syntax.references import Space
+
+#: What is written in every program, so that one slip away from it there is nothing else.
+_WORDS_OF_KRL = {
+    Space.TYPE: Typos((*SCALARS, *"AXIS E6AXIS FRAME POS E6POS".split()), 2, series=Series.NONE),
+    Space.VALUE: Typos(("TRUE", "FALSE"), 3, series=Series.NONE),
+}
+#: What inline forms call, and with which arguments: the name alone is too short to tell.
+_BAS = Typos(("BAS",), 2, series=Series.NONE)
+_FOR_BAS = re.compile(
+    r"[ \t]*\([ \t]*#(?:INITMOV|[A-Z]+_PARAMS|(?:VEL|ACC)_[A-Z]+|BASE|TOOL)\b", re.IGNORECASE
+)
+
+
+class LikelyNames:
+    """The names that those in a file may be misspellings of."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._own: dict[Space, Typos] = {}
+
+    def of(self, use: Use) -> tuple[str, ...]:
+        """Return the visible names of which a name may be a slip; of all, the most certain ones."""
+        space, name = use.space, use.name.text
+        if space is None or isinstance(use.answer, Found):
+            return ()
+        if use.name in self._context.constants:
+            return (self._context.constants[use.name],)
+        if meant := self._of_the_system(space, name):
+            return meant
+        if space is Space.ROUTINE and self._is_bas(use.name):
+            return ("BAS",)
+        if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
+            return meant
+        return self._declared(space, name)
+
+    def _is_bas(self, name: ast.Name) -> bool:
+        arguments = _FOR_BAS.match(self._context.source.text, name.span[1])
+        return bool(arguments and _BAS.meant(name.text))
+
+    def _of_the_system(self, space: Space, name: str) -> tuple[str, ...]:
+        """Return the system variables whose names lack the dollar sign or have another slip."""
+        known = self._context.system.variables
+        if name[0] == "$":
+            bare = name.rstrip("0123456789")
+            return (bare,) if bare != name and bare.upper() in known else system_typos().meant(name)
+        entry = known.get(f"${name.upper()}") if space is Space.VALUE else None
+        if entry is None or (isinstance(entry.type, Array) and entry.type.element == CHAR):
+            return ()  # no program uses texts, and HOME is a position in a missing data list
+        return (f"${name}",)
+
+    def _declared(self, space: Space, name: str) -> tuple[str, ...]:
+        """Return the declared names, those of the file rather than those visible everywhere."""
+        own, everywhere = self._own_typos(space), self._context.project.typos[space]
+        prefix = small_prefix(name)
+        has_slipped = prefix not in self._prefixes and prefix not in everywhere.prefixes
+        has_plurals = space is Space.VALUE
+        for known in (own, everywhere):
+            if meant := known.meant(name, has_slipped=has_slipped, has_plurals=has_plurals):
+                return meant
+        return ()
+
+    def _own_typos(self, space: Space) -> Typos:
+        """Return the names of the file, of its routines and of its data list."""
+        if space not in self._own:
+            tables = (*self._context.tables, *filter(None, [self._context.own_data]))
+            names = (name for table in tables for name in table.names(space))
+            self._own[space] = Typos(names, series=Series.DIGITS)
+        return self._own[space]
+
+    @cached_property
+    def _prefixes(self) -> frozenset[str]:
+        """The short prefixes that several names in the file share."""
+        names = {name.key: name.text for name in self._context.resolution.answers}
+        counts = Counter(map(small_prefix, names.values()))
+        return frozenset(prefix for prefix, count in counts.items() if count > 1)
+
+
+@cache
+def system_typos() -> Typos:
+    """Return the system variables as an index for misspellings."""
+    names = (name for name in System.load().variables if name.startswith("$"))
+    return Typos(names, 3, series=Series.DIGITS)
