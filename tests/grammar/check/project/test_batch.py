@@ -113,9 +113,8 @@ def test_without_a_cache_nothing_is_computed_for_one(
     """What later checks would need to know of each file is left out, and nothing is missing."""
     root = lay(tmp_path / "root", CALLER__src=CALLER.replace("5", "5, 6"), SHIFT__src=CALLED)
     expected = codes(check(root, cache=tmp_path / "cache"))
-    monkeypatch.setattr(project_check, "needs", None)
+    monkeypatch.setattr(project_check, "needs_of", None)
     assert expected == codes(check(root))
-    monkeypatch.setattr(module, "needs", None)
     monkeypatch.setattr(module, "_LARGE", 0)
     assert expected == codes(check(root, jobs=2))
 
