@@ -17,19 +17,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Final
 
 from interp.robot.kinematics.chain import Point
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.links import DARK, Capsule, Link, hand_of, links_of, reach_of
+from interp.robot.simulation.model_names import FLANGE, GROUND, UPRIGHT
 from interp.values.poses import IDENTITY, Pose
-
-#: The name of the site at the flange.
-FLANGE: Final = "flange"
-#: The names of the geoms of the floor and of the pedestal.
-GROUND: Final = ("floor", "pedestal")
-#: If the vertical component of the foot's Z axis is smaller, the arm hangs or is on a wall.
-UPRIGHT: Final = 0.7
 
 _FRICTION = 4.0  # 1/s: torque per speed, as a fraction of the rotor's inertia
 

@@ -2,8 +2,7 @@
 
 MuJoCo renders the frames off-screen, in a separate process: the renderer must be chosen before
 MuJoCo is loaded, and a failing driver must not affect anything else. On Linux, EGL is tried first,
-then OSMesa; the environment variable `MUJOCO_GL` selects another renderer. Pillow writes GIF and
-animated WebP; ffmpeg, a program that the package imageio-ffmpeg contains, writes MP4.
+then OSMesa; the environment variable `MUJOCO_GL` selects another renderer.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from itertools import chain, zip_longest
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
@@ -23,16 +21,13 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from PIL.Image import Image
-
     from interp.robot.simulation.cell import Cell
+    from interp.robot.simulation.video_files import Frame
 
 SUFFIXES: Final = (".mp4", ".gif", ".webp")
 _FRAMES_PER_SECOND: Final = 25
 _RENDERERS = ("egl", "osmesa")
 _DRAWING = "interp.robot.simulation.video_frames"
-
-Frame = npt.NDArray[np.uint8]
 
 
 class VideoError(Exception):
@@ -64,8 +59,12 @@ def write_video(
     `VideoError` if there is no renderer, no MuJoCo, no encoder, or the suffix is unknown.
     """
     check(path)
-    write = _write_mp4 if path.suffix.lower() == ".mp4" else _write_images
-    write(path, _captioned(_drawn(cell, times, axes, size), captions, on_frame), size)
+    from interp.robot.simulation import video_captions, video_files
+
+    is_mp4 = path.suffix.lower() == ".mp4"
+    write = video_files.write_mp4 if is_mp4 else video_files.write_images
+    frames = _drawn(cell, times, axes, size, on_frame=on_frame)
+    write(path, video_captions.with_captions(frames, captions), _FRAMES_PER_SECOND)
 
 
 def write_picture(
@@ -76,7 +75,7 @@ def write_picture(
 
     size = (1600, 1200)
     frame = next(_drawn(cell, times, axes, size, is_last_only=True))
-    Image.fromarray(frame).resize((size[0] // 2, size[1] // 2)).save(path, format="png")
+    Image.fromarray(frame.pixels).resize((size[0] // 2, size[1] // 2)).save(path, format="png")
 
 
 def check(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
@@ -100,6 +99,7 @@ def _drawn(
     size: tuple[int, int],
     *,
     is_last_only: bool = False,
+    on_frame: Callable[[], None] = lambda: None,
 ) -> Iterator[Frame]:
     """Yield the frames from the first renderer that works."""
     wanted = frame_times(times)
@@ -115,6 +115,7 @@ def _drawn(
             if frame is not None:
                 while frame is not None:
                     yield frame
+                    on_frame()
                     frame = frames.next()
                 if frames.reason:
                     raise VideoError(f"the video is cut short: {frames.reason}")
@@ -141,7 +142,7 @@ class _Frames:
         first: int,
     ) -> None:
         self.reason = ""
-        self._size = size
+        self._pixels = np.empty((size[1], size[0], 3), dtype=np.uint8)
         self._folder = tempfile.TemporaryDirectory(prefix="krl-video-")
         folder = Path(self._folder.name)
         folder.joinpath("model.xml").write_text(model, encoding="utf-8")
@@ -176,55 +177,23 @@ class _Frames:
         return self._process.stdout
 
     def next(self) -> Frame | None:
-        """Return the next frame, (height, width, 3); ``None`` at the end or on an error.
+        """Return the next frame; ``None`` at the end or on an error.
 
         After an error, ``reason`` says what failed.
         """
-        width, height = self._size
-        data = self._output.read(width * height * 3)
-        if len(data) == width * height * 3:
-            return np.frombuffer(data, dtype=np.uint8).reshape(height, width, 3)
+        from interp.robot.simulation.video_files import Frame
+
+        box = np.frombuffer(self._output.read(16), dtype="<i4")
+        if len(box) == 4:
+            left, top, width, height = box.tolist()
+            region = np.s_[top : top + height, left : left + width]
+            data = self._output.read(width * height * 3)
+            if len(data) == width * height * 3:
+                changed = np.frombuffer(data, dtype=np.uint8).reshape(height, width, 3)
+                self._pixels[region] = changed
+                return Frame(self._pixels, (region,) if width else ())
         if self._process.wait() != 0:
             self._errors.seek(0)
             said = [line for line in self._errors.read().splitlines() if line.strip()]
             self.reason = said[-1].strip() if said else f"status {self._process.returncode}"
         return None
-
-
-def _captioned(
-    frames: Iterator[Frame], captions: Sequence[str], on_frame: Callable[[], None]
-) -> Iterator[Image]:
-    from PIL import Image, ImageDraw, ImageFont
-
-    font = ImageFont.load_default(16)
-    for frame, caption in zip_longest(frames, captions, fillvalue=""):
-        if isinstance(frame, str):  # more captions than frames
-            return
-        image = Image.fromarray(frame)
-        ImageDraw.Draw(image).multiline_text(
-            (12, 8), caption, fill="white", font=font, stroke_width=1, stroke_fill="black"
-        )
-        on_frame()
-        yield image
-
-
-def _write_images(path: Path, images: Iterator[Image], _size: tuple[int, int]) -> None:
-    if path.suffix.lower() == ".gif":
-        images = (image.quantize(128) for image in images)
-    next(images).save(
-        path, save_all=True, append_images=images, duration=1000 / _FRAMES_PER_SECOND, loop=0
-    )
-
-
-def _write_mp4(path: Path, images: Iterator[Image], size: tuple[int, int]) -> None:
-    import imageio_ffmpeg
-
-    first = next(images)  # without a renderer no file is begun
-    fast = ["-preset", "veryfast"]  # of this little detail the files are no larger
-    video = imageio_ffmpeg.write_frames(
-        str(path), size, fps=_FRAMES_PER_SECOND, codec="libx264", output_params=fast
-    )
-    video.send(None)
-    for image in chain((first,), images):
-        video.send(image.tobytes())
-    video.close()

@@ -1,17 +1,15 @@
 """The process that renders frames for `interp.robot.simulation.video`.
 
 ``python -m interp.robot.simulation.video_frames FOLDER WIDTH HEIGHT FIRST`` reads ``model.xml`` and
-``places.npy`` from the folder, and writes the frames from number FIRST on to its standard output,
-three bytes per pixel. The path of the flange is drawn, and the camera shows all positions of the
-arm.
+``places.npy`` from the folder, and writes to its standard output what each frame changes, from
+number FIRST on: left, top, width and height of a box, four bytes each, and the pixels in it, three
+bytes each. The path of the flange is drawn, and the camera shows all positions of the arm.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,108 +17,169 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.simulation.mujoco_model import FLANGE, GROUND, UPRIGHT
+from interp.robot.simulation.model_names import FLANGE, GROUND, UPRIGHT
+from interp.robot.simulation.video_camera import (
+    AZIMUTH,
+    ELEVATION,
+    Camera,
+    Numbers,
+    Points,
+    camera_of,
+    path_seen,
+)
 
-_TRAIL = 3.0  # pixels
-_PIECES = 200  # of the trail: each takes as long to draw as a part of the arm
-_AZIMUTH, _ELEVATION, _MARGIN = 135.0, -20.0, 1.1
-
-_BACKGROUND = 5  # a group of geoms that is not drawn unless asked for
+_BLUE = (26, 76, 204)
+_FLATTENING = 1 / 3  # pixels between a circle and the polygon that is drawn for it
+_STILL, _MOVING, _ALL = (
+    int(mujoco.mjtCatBit.mjCAT_STATIC),
+    int(mujoco.mjtCatBit.mjCAT_DYNAMIC),
+    int(mujoco.mjtCatBit.mjCAT_ALL),
+)
 _PIXEL = np.dtype((np.void, 3))
-_ALL = int(mujoco.mjtCatBit.mjCAT_ALL)
 
-Points = npt.NDArray[np.float64]
 Frame = npt.NDArray[np.uint8]
 
 
 def _draw(folder: Path, width: int, height: int, first: int) -> None:
     model = mujoco.MjModel.from_xml_path(str(folder / "model.xml"))
-    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
-    model.vis.quality.offsamples = 0  # with the flags of `_View`, four times as fast
     data = mujoco.MjData(model)
     places = np.load(folder / "places.npy")
-    flange, parts = _passed(model, data, places)
+    flange, parts, radii = _passed(model, data, places)
     mujoco.mj_forward(model, data)
-    camera = _camera(model, np.concatenate([parts, _foot(model, data, parts)]), width / height)
-    lengths = np.cumsum(np.linalg.norm(np.diff(flange, axis=0, prepend=flange[:1]), axis=1))
-    piece = max(lengths[-1] / _PIECES, 1e-3)
-    view = _View(model, data, camera, width, height)
-    drawn, shown = b"", None
+    foot = _foot(model, data, (parts[..., 2] - radii).min(initial=math.inf))
+    camera = camera_of(
+        np.concatenate([parts.reshape(-1, 3), flange, foot]),
+        np.concatenate([np.tile(radii, len(places)), np.zeros(len(flange) + len(foot))]),
+        (width, height),
+        math.radians(model.vis.global_.fovy),
+        model.stat.extent * np.array((model.vis.map.znear, model.vis.map.zfar)),
+    )
+    mujoco.mj_forward(model, data)
+    thickest = radii.max(initial=0.0) * camera.focal / camera.distance
+    view = View(model, data, camera, _sides(thickest))
+    path = path_seen(camera, flange)
+    shown, begun = None, 0
     for number in range(first, len(places)):
+        box, pixels = (0, 0, 0, 0), b""
         if shown is None or np.abs(places[number] - shown).max() > 1e-6:
             shown = data.qpos[:] = places[number]
             mujoco.mj_forward(model, data)
-            steps = lengths[: number + 1] // piece
-            corners = [*flange[: number + 1][np.diff(steps, prepend=-1.0) > 0], flange[number]]
-            drawn = view.frame(corners).tobytes()
-        sys.stdout.buffer.write(drawn)
+            box, pixels = view.changes(*path.between(begun, number + 1))
+            begun = number + 1
+        sys.stdout.buffer.write(np.array(box, dtype="<i4").tobytes() + pixels)
 
 
-class _View:
-    """Renders a model offscreen; the sky and the floor, most of the work, only once."""
+def _sides(radius: float) -> int:
+    """Return the sides of a polygon that looks like a circle of ``radius`` pixels."""
+    return max(8, math.ceil(math.pi / math.acos(1 - _FLATTENING / max(radius, 1.0))))
 
-    def __init__(self, model: Any, data: Any, camera: Any, width: int, height: int) -> None:
-        self._model, self._data, self._camera = model, data, camera
+
+class View:
+    """Renders a model offscreen: what never moves once, and the rest for each frame."""
+
+    def __init__(self, model: Any, data: Any, camera: Camera, sides: int) -> None:
+        self._model, self._data = model, data
+        self._camera = mujoco.MjvCamera()
+        self._camera.azimuth, self._camera.elevation = AZIMUTH, ELEVATION
+        self._camera.lookat, self._camera.distance = camera.lookat, camera.distance
+        width, height = camera.size
+        model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+        model.vis.quality.offsamples = 0
+        model.vis.quality.numslices, model.vis.quality.numstacks = sides, sides // 4
         self._window = mujoco.GLContext(width, height)
         self._window.make_current()
         self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
-        self._scene = mujoco.MjvScene(model, model.ngeom + _PIECES + 1_000)
-        self._rectangle = mujoco.MjrRect(0, 0, width, height)
+        self._whole = mujoco.MjrRect(0, 0, width, height)
         self._option = mujoco.MjvOption()
+        self._scene = mujoco.MjvScene(model, model.ngeom + 1_000)
         for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
             self._scene.flags[flag] = 0
-        model.geom_group[model.geom_group == _BACKGROUND] -= 1  # hidden there, too
-        floor = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, GROUND[0])
-        if floor >= 0:
-            model.geom_group[floor] = _BACKGROUND
-        self._option.geomgroup[:] = np.arange(mujoco.mjNGROUP) == _BACKGROUND
-        self._background = self._rendered()[0].view(_PIXEL)[..., 0]
-        self._option = mujoco.MjvOption()
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
+        self._still_depth = self._rendered(_STILL)
+        self._still = self._pixels(self._whole)
+        self._parts = _ALL  # what is transparent needs all that is behind it
+        if not self._is_transparent():
+            self._parts = _MOVING
+            self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
+            self._still_depth[self._still_depth == 1.0] = np.nextafter(np.float32(1.0), 0.0)
+        self._was_covered = np.ones((height, width), dtype=np.bool_)
 
-    def frame(self, trail: Sequence[Points]) -> Frame:
-        """Return the picture of the arm as it stands, with the path of the flange."""
-        picture, is_empty = self._rendered(trail)
+    def changes(
+        self, rows: Numbers, columns: Numbers, depths: Points
+    ) -> tuple[tuple[int, int, int, int], bytes]:
+        """Return the box that differs from the frame before, and its pixels.
+
+        The path goes on with the pixels in these rows and columns, which are as deep as ``depths``.
+        """
+        is_seen = depths <= self._still_depth[rows, columns]
+        rows, columns = rows[is_seen], columns[is_seen]
+        self._still[rows, columns] = _BLUE
+        self._still_depth[rows, columns] = depths[is_seen]
+        depth = self._rendered(self._parts)
+        is_covered = depth <= self._still_depth
+        is_changed = is_covered | self._was_covered
+        is_changed[rows, columns] = True
+        self._was_covered = is_covered
+        down, across = (np.flatnonzero(is_changed.any(axis=axis)) for axis in (1, 0))
+        if not len(down):
+            return (0, 0, 0, 0), b""
+        left, top = int(across[0]), int(down[0])
+        width, height = int(across[-1]) + 1 - left, int(down[-1]) + 1 - top
+        box = np.s_[top : top + height, left : left + width]
+        bottom = self._whole.height - top - height
+        pixels = self._pixels(mujoco.MjrRect(left, bottom, width, height))
         # copying values instead of pixels would take 25 times as long
-        np.copyto(picture.view(_PIXEL)[..., 0], self._background, where=is_empty)
-        return picture
+        still = self._still[box].view(_PIXEL)[..., 0]
+        np.copyto(pixels.view(_PIXEL)[..., 0], still, where=~is_covered[box])
+        return (left, top, width, height), pixels.tobytes()
 
-    def _rendered(self, trail: Sequence[Points] = ()) -> tuple[Frame, npt.NDArray[np.bool_]]:
-        """Return the pixels of the scene, and those that show nothing of it."""
+    def _rendered(self, parts: int) -> npt.NDArray[np.float32]:
+        """Render parts of the model, and return the depths of the pixels, 1 where nothing is."""
+        mujoco.mjv_updateScene(
+            self._model, self._data, self._option, None, self._camera, parts, self._scene
+        )
+        mujoco.mjr_render(self._whole, self._scene, self._context)
+        depth = np.empty((self._whole.height, self._whole.width), dtype=np.float32)
+        mujoco.mjr_readPixels(None, depth, self._whole, self._context)
+        return depth[::-1]
+
+    def _pixels(self, rectangle: Any) -> Frame:
+        """Return the pixels that were rendered, (height, width, 3)."""
+        picture = np.empty((rectangle.height, rectangle.width, 3), dtype=np.uint8)
+        mujoco.mjr_readPixels(picture, None, rectangle, self._context)
+        return picture[::-1]
+
+    def _is_transparent(self) -> bool:
         mujoco.mjv_updateScene(
             self._model, self._data, self._option, None, self._camera, _ALL, self._scene
         )
-        for start, end in pairwise(trail):
-            _connect(self._scene, start, end)
-        mujoco.mjr_render(self._rectangle, self._scene, self._context)
-        height, width = self._rectangle.height, self._rectangle.width
-        picture = np.empty((height, width, 3), dtype=np.uint8)
-        depth = np.empty((height, width), dtype=np.float32)
-        mujoco.mjr_readPixels(picture, depth, self._rectangle, self._context)
-        return picture[::-1], depth[::-1] >= 1.0
+        return any(geom.rgba[3] < 1 for geom in self._scene.geoms[: self._scene.ngeom])
 
 
-def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points]:
-    """Return the flange positions, (positions, 3), and all points that moving parts reach."""
+def _passed(model: Any, data: Any, places: Points) -> tuple[Points, Points, Points]:
+    """Return positions of the flange, (places, 3), and spheres that hold what moves.
+
+    Their middles are (places, spheres, 3), their radii (spheres,). A capsule is held by two.
+    """
     moving = model.geom_bodyid > 0
     is_capsule = (model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE)[moving]
     size = model.geom_size[moving]
-    radii = np.where(is_capsule, size[:, 0], model.geom_rbound[moving])[:, None, None]
+    radii = np.where(is_capsule, size[:, 0], model.geom_rbound[moving])
     halves = np.where(is_capsule, size[:, 1], 0.0)[:, None]
-    around = radii * np.concatenate([np.eye(3), -np.eye(3)])
     flange, parts = np.empty((len(places), 3)), []
     for number, place in enumerate(places):
         data.qpos[:] = place
         mujoco.mj_kinematics(model, data)
         flange[number] = data.site(FLANGE).xpos
         middles, along = data.geom_xpos[moving], data.geom_xmat[moving][:, 2::3] * halves
-        parts += [middles[:, None] + end[:, None] + around for end in (along, -along)]
-    return flange, np.concatenate([flange, np.concatenate(parts).reshape(-1, 3)])
+        parts.append(np.concatenate([middles + along, middles - along]))
+    return flange, np.stack(parts), np.tile(radii, 2)
 
 
-def _foot(model: Any, data: Any, points: Points) -> Points:
+def _foot(model: Any, data: Any, lowest: float) -> Points:
     """Return the corners of the pedestal, after raising the floor to the lowest visible part.
+
+    No moving part is below ``lowest``.
 
     The simulated floor is out of the arm's reach, and would make the arm small in the frame. The
     pedestal of an upright arm ends at the raised floor.
@@ -134,7 +193,7 @@ def _foot(model: Any, data: Any, points: Points) -> Points:
     bottom, top = middle - half * along, middle + half * along
     others = (model.geom_bodyid == 0) & ~np.isin(np.arange(model.ngeom), (floor, pedestal))
     bottoms = data.geom_xpos[others, 2] - model.geom_rbound[others]
-    low = min((top[2] - 2 * radius, points[:, 2].min(), *bottoms))
+    low = min((top[2] - 2 * radius, lowest, *bottoms))
     low = max(model.geom_pos[floor, 2], low)
     model.geom_pos[floor, 2] = low
     if along[2] > UPRIGHT:
@@ -142,40 +201,6 @@ def _foot(model: Any, data: Any, points: Points) -> Points:
         middle[2], model.geom_size[pedestal, 1] = (top[2] + low) / 2, (top[2] - low) / 2
     x, y, z = bottom.tolist()
     return np.array([(x + dx, y + dy, z) for dx in (-radius, radius) for dy in (-radius, radius)])
-
-
-def _camera(model: Any, points: Points, aspect: float) -> Any:
-    """Return a camera whose frame all points fit into as closely as possible."""
-    azimuth, elevation = math.radians(_AZIMUTH), math.radians(_ELEVATION)
-    ahead = np.array(
-        (
-            math.cos(elevation) * math.cos(azimuth),
-            math.cos(elevation) * math.sin(azimuth),
-            math.sin(elevation),
-        )
-    )
-    right = np.array((math.sin(azimuth), -math.cos(azimuth), 0.0))
-    across, up, deep = ((points @ axis) for axis in (right, np.cross(right, ahead), ahead))
-    middle, tall = deep.mean(), math.tan(math.radians(model.vis.global_.fovy) / 2) / _MARGIN
-    centre, distances = [], []
-    for values, slope in ((across, tall * aspect), (up, tall)):  # planes that touch both sides
-        high, low = (values - slope * deep).max(), (values + slope * deep).min()
-        centre.append((high + low) / 2)
-        distances.append(middle + (high - low) / (2 * slope))
-    camera = mujoco.MjvCamera()
-    camera.azimuth, camera.elevation = _AZIMUTH, _ELEVATION
-    camera.lookat = np.array((*centre, middle)) @ np.array((right, np.cross(right, ahead), ahead))
-    camera.distance = max(distances)
-    return camera
-
-
-def _connect(scene: Any, start: Any, end: Any) -> None:
-    geom = scene.geoms[scene.ngeom]
-    kind = mujoco.mjtGeom.mjGEOM_LINE
-    blue = np.array([0.1, 0.3, 0.8, 1.0], dtype=np.float32)
-    mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.zeros(9), blue)
-    mujoco.mjv_connector(geom, kind, _TRAIL, start, end)
-    scene.ngeom += 1
 
 
 if __name__ == "__main__":

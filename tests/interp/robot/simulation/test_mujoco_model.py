@@ -12,7 +12,8 @@ from interp.robot.kinematics.machine_data import MachineData, read_machine
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
 from interp.robot.simulation.links import reach_of
-from interp.robot.simulation.mujoco_model import FLANGE, mjcf_of
+from interp.robot.simulation.model_names import FLANGE
+from interp.robot.simulation.mujoco_model import mjcf_of
 from interp.values.poses import Pose
 
 pytest.importorskip("mujoco")
