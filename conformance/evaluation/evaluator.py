@@ -75,7 +75,9 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
     if not seen.is_exact:  # a recording has neither all events nor the machine data of its arm
         return
     texts = (*case.io, *(source.text for source in case.sources))
-    slow = any("OV_PRO" in text.upper() for text in texts)
+    slow, stopped = (
+        any(word in text.upper() for text in texts) for word in ("OV_PRO", "PRESS STOP")
+    )
     motions = tuple(ended(seen))
     free = [one for one in motions if not one.is_held]
     broken = [
@@ -87,7 +89,9 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
         spline_violations(free),
     ]
     if not slow:
-        broken += [duration_violations(free), trigger_violations(seen, free)]
+        broken.append(trigger_violations(seen, free))
+    if not slow and not stopped:
+        broken.append(duration_violations(free))
     for one in chain(*broken):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -15,7 +16,8 @@ from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.place_laws import blend_violations, trigger_violations
 from conformance.evaluation.spline_laws import spline_violations
-from conformance.suite.case import Case
+from conformance.runner import run_case
+from conformance.suite.case import Case, read_case
 from grammar.syntax.source import Source
 from interp.robot.arm import Approximation, Place, SplinePart
 from interp.robot.models import default_machine
@@ -435,3 +437,35 @@ def test_a_blend_is_no_faster_than_what_is_beside_it(line: int, law: str) -> Non
     }
     assert [] == list(right)
     assert law in wrong[line]
+
+
+_THERE_AND_BACK: Final = """;@ rule: MOT-06
+;@ title: There and back again
+;@ phase: run
+;@ io: {io}
+DEF a()
+  $TOOL = $NULLFRAME
+  $BASE = $NULLFRAME
+  $STOPNOAPROX = {waits}
+  PTP {{A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}}
+  LIN {{Y 100}} C_DIS ;> message 1123
+  LIN {{Y 100}}
+  LIN {{Y 0}}
+  LIN {{Y 100}}
+END
+"""
+
+
+@pytest.mark.parametrize(
+    ("waits", "io"),
+    [
+        ("TRUE", "on message 1123 after 0.5 press CONFIRM"),
+        ("FALSE", "on message 1123 after 0.2 press STOP\n;@ io: t=2.5 press START"),
+    ],
+)
+def test_a_pause_by_the_operator_is_no_slow_motion(tmp_path: Path, waits: str, io: str) -> None:
+    """The motion that a message or a button holds takes longer than that which leads back."""
+    file = tmp_path / "a.src"
+    file.write_text(_THERE_AND_BACK.format(waits=waits, io=io), encoding="ascii", newline="\n")
+    found = run_case(read_case(file, tmp_path), [Setup("tree", "kinematic")])
+    assert ["pass"] == [one.verdict for one in found.results]
