@@ -33,13 +33,20 @@ from interp.values.json_form import to_json
 
 #: A program that has changed nothing for this time, in µs, may make only so many requests in a
 #: slice. So may that of the robot after `_ENDLESS` requests without a wait: it is in an endless
-#: loop. After `_MOST` it ends, if there is no script that may change something for it.
+#: loop. After `_MOST` it ends, if there is no script that may change something for it. What
+#: `QuietTime` skips is not requested.
 IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
 _ENDLESS: Final = 100_000
 _MOST: Final = 120_000
-#: Requests that count as so many others, because they take as long.
-_LONG: Final = {"FORWARD": 5, "INVERSE": 30}
+#: Requests that count as so many others, because they take as long: calls of routines, and reads or
+#: writes of a system variable or a part of it. `_POSITIONS` are how names of positions begin.
+_LONG: Final = {
+    **{"FORWARD": 5, "INVERSE": 30, "PULSE": 3, "SET_KRLMSG": 5, "SET_KRLDLG": 5},
+    **{"$LOAD": 5, "$TOOL": 3, "$BASE": 3, "$DISTANCE": 3, "$DIST_NEXT": 3},
+}
+_POSITIONS: Final = ("$POS_", "$AXIS_")
+_LONG_POSITION: Final = 10
 #: Requests that change nothing, those that always do something, and those that an executor makes
 #: for several at once.
 _LOOKS: Final = (Read, Slice, Continue)
@@ -139,8 +146,8 @@ class Waits:
         if has_changed or isinstance(request, _ACTS):
             known, self._points = self._points, len(self._queue.points)
             self._automatic.begin(has_moved=known != self._points)
-        if not isinstance(request, _UNCOUNTED) and not self._is_idle(task):
-            task.unbroken += _LONG.get(request.name, 1) if isinstance(request, Invoke) else 1
+        if not isinstance(request, _UNCOUNTED):
+            task.unbroken += _weight(request)
             if task.unbroken >= _MOST and not self._player.has_steps:
                 raise BudgetExhausted(f"it has not ended or waited after {_MOST:,} requests")
 
@@ -180,3 +187,13 @@ class Waits:
         """CONFIRM: acknowledge a message; the number 0 acknowledges all of them (unconfirmed)."""
         self._panel.press("CONFIRM", request.number or None)
         return None
+
+
+def _weight(request: Request) -> int:
+    """Return as how many requests a request counts."""
+    match request:
+        case Invoke(name=name):
+            return _LONG.get(name, 1)
+        case Read(path=(str() as name, *_)) | Write(path=(str() as name, *_)):
+            return _LONG_POSITION if name.startswith(_POSITIONS) else _LONG.get(name, 1)
+    return 1

@@ -192,17 +192,17 @@ class Variables:
             self.writes += 1
             self._untyped_parts[path] = copied(value)
             return
-        before = self._text(path)
+        before = self._texts(path)
         if name in self._with_twins:  # existing snapshots keep the old value
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
-        self.writes += before is None or before != self._text(path)
+        self.writes += before is None or before != self._texts(path)
 
-    def _text(self, path: Path) -> str | None:
-        """Return a value as text, so that 0.0 and -0.0 differ, and 1 and TRUE; else ``None``."""
+    def _texts(self, path: Path) -> Any:
+        """Return the parts of a value as texts, so that 0.0 and -0.0 differ; ``None`` if unset."""
         try:
-            return repr(part(self._root(str(path[0])), path[1:]))
+            return _texts(part(self._root(str(path[0])), path[1:]))
         except Fault:
             return None
 
@@ -265,6 +265,15 @@ class Variables:
 def _with_twins() -> list[str]:
     variables = System.load().variables
     return [name for name in variables if variables[name].twin is not None]
+
+
+def _texts(value: Value | None) -> Any:
+    match value:
+        case StructureValue():
+            return [_texts(member) for member in value.members]
+        case ArrayValue():
+            return [_texts(element) for element in value]
+    return repr(value)
 
 
 @dataclass(slots=True)

@@ -247,13 +247,27 @@ def test_endless_loops_end(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
     assert "time" == run_program(program, replace(setups[-1], script=script)).outcome.ending
 
 
-def test_inverse_counts_as_many_requests(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A loop of INVERSE ends after a thirtieth as many: each takes as long as many requests."""
+@pytest.mark.parametrize(
+    ("long", "most"),
+    [("J=INVERSE($POS_ACT,$AXIS_ACT,E)", 900), ("P=$POS_ACT", 4_000)],
+)
+def test_long_requests_count_as_many(
+    long: str, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A loop of requests that take long ends after fewer of them."""
     monkeypatch.setattr(waits, "_MOST", 12_000)
-    body = "LOOP\nJ=INVERSE($POS_ACT,$AXIS_ACT,E)\nENDLOOP\n"
-    text = f"DEF main ( )\nE6AXIS J\nINT E\n{body}END\n"
+    text = f"DEF main ( )\nE6AXIS J\nE6POS P\nINT E\nLOOP\n{long}\nENDLOOP\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
-    ran = run_program(program, RunSetup(until=60_000_000, limits=Limits(statements=900)))
+    ran = run_program(program, RunSetup(limits=Limits(statements=most)))
+    assert "requests" in str(ran.outcome.error)
+
+
+def test_polling_with_a_counter_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It never repeats itself, and nothing can come that it waits for."""
+    monkeypatch.setattr(waits, "_MOST", 34_000)
+    text = "DEF main ( )\nINT N\nN=0\nWHILE NOT $IN[1]\nN=N+1\nENDWHILE\nEND\n"
+    program = load([Source(text, "main.src")], "main.src")
+    ran = run_program(program, RunSetup("vm"))
     assert "requests" in str(ran.outcome.error)
 
 
