@@ -11,7 +11,7 @@ from interp.port.requests import SplineStop
 
 
 class SplineStops:
-    """Stops the arm when it passes a STOP WHEN PATH place; it comes to rest after that place."""
+    """Stops the arm at a STOP WHEN PATH place, or after it if that can no longer be reached."""
 
     def __init__(
         self, state: ControllerState, arm: ArmControl, queue: MotionQueue, panel: OperatorPanel
@@ -31,10 +31,11 @@ class SplineStops:
         """Evaluate the condition of the next place passed, or of the one where the arm stopped."""
         read = self._state.variables.read
         if self._stopped_at is None and self._queue.passed_stops:
-            task, stop = self._queue.passed_stops.pop(0)
+            task, stop, is_late = self._queue.passed_stops.pop(0)
             if task.holds(stop.condition, read):
                 self._stopped_at = task, stop
-                self._state.messages.post_number(task.at, 3230)
+                if is_late:
+                    self._state.messages.post_number(task.at, 3230)
                 self._arm.halt()
         elif self._stopped_at is not None and self._state.clock.is_tick:
             task, stop = self._stopped_at

@@ -221,6 +221,16 @@ def test_machine_data_that_are_not_understood(run: Run, tmp_path: Path) -> None:
     assert f"arm: $machine.dat:3: {said} instead\n" == run(INI)[2]
 
 
+def test_machine_data_without_an_arm(run: Run, tmp_path: Path) -> None:
+    """One line names the file, unless it is that of STEU, which has no arm."""
+    text = "DEFDAT $MACHINE\nINT $NUM_AX=6\nENDDAT\n"
+    (tmp_path / "STEU").mkdir()
+    (tmp_path / "STEU" / "$machine.dat").write_text(text)
+    assert "" == run(INI)[2]
+    (tmp_path / "$machine.dat").write_text(text)
+    assert run(INI)[2].startswith("arm: $machine.dat: no machine data of an arm, which has $LENGTH_A")
+
+
 def test_first_motion_is_a_line(run: Run) -> None:
     """A line that a program begins with is executed as PTP, but refused with --strict."""
     body = "LIN {X 500,Y 0,Z 700,A 0,B 180,C 0} C_DIS\nLIN {X 500,Y 99,Z 700,A 0,B 180,C 0}\n"

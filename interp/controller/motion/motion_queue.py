@@ -134,8 +134,9 @@ class MotionQueue:
         self._at_end: dict[int, list[tuple[Task, At, Path, Value]]] = defaultdict(list)
         #: Actions of triggers that have fired and have not been entered.
         self.fired: list[CallCommand] = []
-        #: STOP WHEN PATH places that the arm has passed and whose conditions were not evaluated.
-        self.passed_stops: list[tuple[Task, SplineStop]] = []
+        #: STOP WHEN PATH places that the arm has passed and whose conditions were not evaluated, with
+        #: whether a stop there is late.
+        self.passed_stops: list[tuple[Task, SplineStop, bool]] = []
         #: All planned motions, in order, except those that end where they start.
         self.points: list[PlannedPoint] = []
         #: The line of the motion that started last.
@@ -333,7 +334,8 @@ class MotionQueue:
             case "started":
                 self._started(queued)
             case "reached" if event.key in queued.planned.stops:
-                self.passed_stops.append((task, queued.planned.stops[event.key]))
+                is_late = event.arm is not None and event.arm.is_late
+                self.passed_stops.append((task, queued.planned.stops[event.key], is_late))
             case "ended":
                 self._ended(event, queued)
             case "cancelled" | "failed":

@@ -22,6 +22,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import product
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Final
 
 from grammar.syntax.source import Source
@@ -79,13 +80,14 @@ _DECIMALS: Final = 3
 def machine_data_of(sources: Iterable[Source]) -> Source | None:
     """Return the machine data of an arm among the files of a project, ``None`` if there is none.
 
-    The dollar sign in its name may be missing, because some tools that copy files drop it.
+    The dollar sign in its name may be missing, because some tools that copy files drop it. A file
+    without $LENGTH_A is taken only where no other has it, and not from STEU, whose file is not
+    about the arm.
     """
-    for source in sources:
-        is_named = source.kind == "dat" and source.name.upper().lstrip("$") == "MACHINE"
-        if is_named and "$LENGTH_A" in source.text.upper():
-            return source
-    return None
+    named = [one for one in sources if one.kind == "dat" and one.name.upper().lstrip("$") == "MACHINE"]
+    whole = [one for one in named if "$LENGTH_A" in one.text.upper()]
+    others = [one for one in named if "STEU" not in PurePosixPath(one.path.upper()).parts]
+    return next(iter(whole + others), None)
 
 
 def understood(source: Source) -> MachineData:

@@ -25,6 +25,8 @@ _ORDER: Sequence[EventKind | None] = (
 """What comes first of events of a motion at one time."""
 _HALVINGS = 30
 _ROUNDING = 1e-9  # of u
+_NEAR = 1e-4
+"""How far in u a stop may end after its place and still be in time: a plan is exact to 1 µs."""
 
 #: Kind and key of an event of one motion.
 Taken = tuple[str, int | None]
@@ -93,14 +95,19 @@ def events_of(
     found: list[tuple[int, int, ArmEvent]] = []
 
     def add(
-        kind: EventKind, seconds: float | None, key: int | None = None, is_of_end: bool = False
+        kind: EventKind,
+        seconds: float | None,
+        key: int | None = None,
+        *,
+        is_of_end: bool = False,
+        is_late: bool = False,
     ) -> None:
         if seconds is not None and (kind, key) not in passage.taken:
             time = max(micros(seconds), now)
             is_unwanted = (
                 kind == "motion_end" and passage.out is None and wants_blend(passage.motion)
             )
-            event = ArmEvent(time, kind, passage.number, key, is_unwanted)
+            event = ArmEvent(time, kind, passage.number, key, is_unwanted, is_late)
             found.append((time, _ORDER.index(None if is_of_end else kind), event))
 
     add("motion_start", clock.start)
@@ -112,9 +119,10 @@ def events_of(
     add("motion_end", clock.end)
     for place, part in _places(passage.motion):
         at_start = place.kind == "DISTANCE" and place.position == 0.0
-        add("place", clock.place(place, part), place.key, not at_start)
+        add("place", clock.place(place, part), place.key, is_of_end=not at_start)
     for place, part in _stop_places(passage.motion):
-        add("place", clock.last_chance(place, part, now, stop_from), place.key)
+        chance, is_late = clock.last_chance(place, part, now, stop_from)
+        add("place", chance, place.key, is_late=is_late)
     return found
 
 
@@ -199,18 +207,19 @@ class _Clock:
 
     def last_chance(
         self, place: Place, part: int | None, now: int, stop_from: StopFrom
-    ) -> float | None:
-        """Return the latest time to brake for a stop at a place; now if it is too late.
+    ) -> tuple[float | None, bool]:
+        """Return the latest time to brake for a stop at a place; now if it is too late, with True.
 
-        Return ``None`` if the path is not planned up to there.
+        The time is ``None`` if the path is not planned up to there.
         """
         section, u = self._on_path(place, part)
         passed, start = self.time(section, u), self.start
         if passed is None or start is None:
-            return None
+            return None, False
         low, high = max(start, now * MICROSECOND), passed
-        if high <= low:
-            return low
+        first = stop_from(low)
+        if high <= low or (first is not None and first > (section.key, u + _NEAR)):
+            return low, True
         for _ in range(_HALVINGS):
             middle = (low + high) / 2.0
             stop = stop_from(middle)
@@ -218,7 +227,7 @@ class _Clock:
                 low = middle
             else:
                 high = middle
-        return high
+        return high, False
 
     def _path_place(self, place: Place, part: int | None) -> float | None:
         """Return the time at which the tool passes a place."""
