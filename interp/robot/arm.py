@@ -158,7 +158,7 @@ class ArmEvent:
     first motion and ``blend_end`` that of the second. At the apex, the first has its
     ``motion_end`` and the second its ``motion_start``. ``key`` is that of a `Place`.
     ``is_exact_unwanted`` marks the ``motion_end`` of a motion that should have been blended and
-    could not be [ADV-12]. ``is_late`` marks a place at which a brake that begins now no longer ends.
+    could not be [ADV-12]. ``is_late`` marks a place before which a brake no longer ends.
     ``stopped`` occurs when the arm is at rest after `Arm.brake`.
     """
 

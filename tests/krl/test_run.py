@@ -228,7 +228,9 @@ def test_machine_data_without_an_arm(run: Run, tmp_path: Path) -> None:
     (tmp_path / "STEU" / "$machine.dat").write_text(text)
     assert "" == run(INI)[2]
     (tmp_path / "$machine.dat").write_text(text)
-    assert run(INI)[2].startswith("arm: $machine.dat: no machine data of an arm, which has $LENGTH_A")
+    assert run(INI)[2].startswith(
+        "arm: $machine.dat: no machine data of an arm, which has $LENGTH_A"
+    )
 
 
 def test_first_motion_is_a_line(run: Run) -> None:

@@ -134,8 +134,8 @@ class MotionQueue:
         self._at_end: dict[int, list[tuple[Task, At, Path, Value]]] = defaultdict(list)
         #: Actions of triggers that have fired and have not been entered.
         self.fired: list[CallCommand] = []
-        #: STOP WHEN PATH places that the arm has passed and whose conditions were not evaluated, with
-        #: whether a stop there is late.
+        #: STOP WHEN PATH places that the arm has passed and whose conditions were not evaluated,
+        #: with whether a stop there is late.
         self.passed_stops: list[tuple[Task, SplineStop, bool]] = []
         #: All planned motions, in order, except those that end where they start.
         self.points: list[PlannedPoint] = []

@@ -42,8 +42,16 @@ _MOST: Final = 120_000
 #: Requests that count as so many others, because they take as long: calls of routines, and reads or
 #: writes of a system variable or a part of it. `_POSITIONS` are how names of positions begin.
 _LONG: Final = {
-    **{"FORWARD": 5, "INVERSE": 30, "PULSE": 3, "SET_KRLMSG": 5, "SET_KRLDLG": 5},
-    **{"$LOAD": 5, "$TOOL": 3, "$BASE": 3, "$DISTANCE": 3, "$DIST_NEXT": 3},
+    "FORWARD": 5,
+    "INVERSE": 30,
+    "PULSE": 3,
+    "SET_KRLMSG": 5,
+    "SET_KRLDLG": 5,
+    "$LOAD": 5,
+    "$TOOL": 3,
+    "$BASE": 3,
+    "$DISTANCE": 3,
+    "$DIST_NEXT": 3,
 }
 _POSITIONS: Final = ("$POS_", "$AXIS_")
 _LONG_POSITION: Final = 10

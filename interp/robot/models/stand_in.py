@@ -84,7 +84,9 @@ def machine_data_of(sources: Iterable[Source]) -> Source | None:
     without $LENGTH_A is taken only where no other has it, and not from STEU, whose file is not
     about the arm.
     """
-    named = [one for one in sources if one.kind == "dat" and one.name.upper().lstrip("$") == "MACHINE"]
+    named = [
+        one for one in sources if one.kind == "dat" and one.name.upper().lstrip("$") == "MACHINE"
+    ]
     whole = [one for one in named if "$LENGTH_A" in one.text.upper()]
     others = [one for one in named if "STEU" not in PurePosixPath(one.path.upper()).parts]
     return next(iter(whole + others), None)

@@ -208,7 +208,7 @@ class _Clock:
     def last_chance(
         self, place: Place, part: int | None, now: int, stop_from: StopFrom
     ) -> tuple[float | None, bool]:
-        """Return the latest time to brake for a stop at a place; now if it is too late, with True.
+        """Return the latest time to brake for a stop at a place; now, and True, if it is too late.
 
         The time is ``None`` if the path is not planned up to there.
         """

@@ -251,9 +251,7 @@ def test_endless_loops_end(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
     ("long", "most"),
     [("J=INVERSE($POS_ACT,$AXIS_ACT,E)", 900), ("P=$POS_ACT", 4_000)],
 )
-def test_long_requests_count_as_many(
-    long: str, most: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_long_requests_count_as_many(long: str, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A loop of requests that take long ends after fewer of them."""
     monkeypatch.setattr(waits, "_MOST", 12_000)
     text = f"DEF main ( )\nE6AXIS J\nE6POS P\nINT E\nLOOP\n{long}\nENDLOOP\nEND\n"
