@@ -15,6 +15,7 @@ from typing import cast
 from recovery.clustering.cause import no_negatives
 from recovery.clustering.cluster import cluster
 from recovery.clustering.negative_score import negative_counter
+from recovery.failure_records import FailureIndex, FailureRecords
 from recovery.growth.answers import answered
 from recovery.growth.growth import LedgerSteps
 from recovery.negatives.negatives import Negative
@@ -43,9 +44,15 @@ def analyse(
     digest = _digest(found, negatives, grammar_name)
     with ResultStore(cache, key_of(found.grammar)) as store:
         record = cast("SurveyRecord | None", store.get_record(digest))
-        if record is None:
+        index = cast("FailureIndex | None", store.get_record(f"{digest} failures"))
+        if record is not None and index is not None:
+            record["failures"] = FailureRecords(found, index)
+        else:
             record = _worked_out(found, negatives, grammar_name, on_found, on_done)
-            store.put([(digest, record)])
+            failures = record["failures"]
+            assert isinstance(failures, FailureRecords)
+            kept = {**record, "failures": ()}
+            store.put([(digest, kept), (f"{digest} failures", failures.index)])
     return {**record, "seconds": round(found.seconds, 3)}
 
 

@@ -6,6 +6,7 @@ changed. Lines and columns count from 1; counts of files include copies, but for
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import NotRequired, TypedDict
 
 
@@ -192,7 +193,7 @@ class SurveyRecord(_Counts):
     origins: list[OriginRecord]
     copies: list[CopyRecord]
     swallowed: list[WordRecord]
-    failures: list[FailureRecord]
+    failures: Collection[FailureRecord]
     version: NotRequired[str]
     generated: NotRequired[str]
     start: NotRequired[StartRecord]

@@ -6,17 +6,15 @@ Its fields are a contract (docs/architecture.md): others read it from outside.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
 
-from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, Member
+from recovery.failure_records import failure_records
 from recovery.proposal_review import Reviewer
 from recovery.records import (
     ClusterRecord,
     CopyRecord,
     ExampleRecord,
-    FailureRecord,
     FilesRecord,
     LineRecord,
     OriginRecord,
@@ -25,9 +23,7 @@ from recovery.records import (
 )
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.survey import Survey
-from recovery.survey.surveyed_files import SurveyedFile
 
-_EXAMPLES = 5
 _CONTEXT_LINES = 3
 _WIDEST_LINE = 1_000
 _FILES_NAMED = 200
@@ -46,7 +42,7 @@ def record_of(found: Survey, clusters: Clusters, *, grammar_name: str) -> Survey
         **record_without_causes(found, grammar_name),
         "greedy": [{"cluster": c.id, "parsed": parsed} for c, parsed in clusters.order],
         "clusters": [_cluster(entry, reviewer, reducer) for entry in clusters.ranked],
-        "failures": _failures(found, clusters, recognizer),
+        "failures": failure_records(found, clusters, recognizer.lexer),
     }
 
 
@@ -88,43 +84,17 @@ def record_without_causes(found: Survey, grammar_name: str) -> SurveyRecord:
     }
 
 
-def _places(files: Iterable[SurveyedFile]) -> int:
-    return sum(len(f.places) for f in files)
-
-
-def _failures(found: Survey, clusters: Clusters, recognizer: Recognizer) -> list[FailureRecord]:
-    contexts, names = clusters.contexts, recognizer.lexer.names
-    offenders = [form.kinds[form.index] for form in found.forms]
-    kinds = ["unknown character" if kind == ERROR else names[kind] for kind in offenders]
-    return [
-        {
-            "path": file.path,
-            "line": failed.line,
-            "column": failed.column,
-            "token": failed.token,
-            "kind": kinds[failed.form],
-            "text": failed.source,
-            "expected": list(contexts[failed.form].expected),
-            "rule": contexts[failed.form].rule,
-            "cluster": clusters.cluster_of[file.digest, index],
-            "follows": failed.follows,
-        }
-        for file in found.failing
-        for index, failed in enumerate(file.failures)
-    ]
-
-
 def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> ClusterRecord:
-    files = cluster.files
+    files = [file for file, _ in cluster.files]
     example = cluster.example
     return {
         "id": cluster.id,
         "signature": cluster.signature,
         "title": cluster.title,
-        "failures": len(cluster.members),
-        "lines": len(cluster.members),
-        "follows": sum(m.failed.follows for m in cluster.members),
-        "files": _places(files),
+        "failures": cluster.failures,
+        "lines": cluster.failures,
+        "follows": cluster.following,
+        "files": cluster.places,
         "distinct": len(files),
         "origins": len({origin for f in files for _, origin in f.places}),
         "unlocks": cluster.unlocks,
@@ -133,7 +103,7 @@ def _cluster(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> ClusterR
         "expected": list(cluster.context.expected),
         "token": example.failed.token,
         "example": _example(example),
-        "examples": [_example(m) for m in _examples(cluster)],
+        "examples": list(map(_example, cluster.others)),
         "files_by_origin": _files_by_origin(cluster),
         "reproducer": _reproducer(cluster, reviewer, reducer),
         "proposals": reviewer.records(cluster),
@@ -169,21 +139,11 @@ def _example(member: Member) -> ExampleRecord:
     }
 
 
-def _examples(cluster: Cluster) -> list[Member]:
-    """Further examples, from as many files as there are."""
-    first = cluster.example
-    by_file: dict[str, Member] = {}
-    for member in sorted(cluster.members, key=lambda m: (m.failed.follows, len(m.failed.source))):
-        if member != first:
-            by_file.setdefault(member.file.digest, member)
-    return list(by_file.values())[:_EXAMPLES]
-
-
 def _files_by_origin(cluster: Cluster) -> list[FilesRecord]:
     places: dict[str, dict[str, int]] = defaultdict(dict)
-    for member in cluster.members:
-        for path, origin in member.file.places:
-            places[origin].setdefault(path, member.failed.line)
+    for file, line in cluster.files:
+        for path, origin in file.places:
+            places[origin].setdefault(path, line)
     out = []
     for origin in sorted(places, key=lambda o: (-len(places[o]), o)):
         listed = list(places[origin].items())

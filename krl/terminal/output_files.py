@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any, Final
@@ -66,7 +66,7 @@ def _compact(encoder: json.JSONEncoder, record: Any) -> Iterator[str]:
     for key, value in record.items():
         yield f"{before}{encoder.encode(key)}: "
         before = ", "
-        if isinstance(value, list):
+        if isinstance(value, Collection) and not isinstance(value, str | Mapping):
             opening = "["
             for item in value:
                 yield opening + encoder.encode(item)

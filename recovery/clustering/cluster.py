@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+from array import array
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
-from grammar.parser.failures import FailureContext, FailureFinder
+from grammar.parser.failures import FailureContext, FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
 from recovery.clustering.causes import find_causes
@@ -23,6 +25,9 @@ from recovery.survey.survey import Survey
 from recovery.survey.surveyed_files import SurveyedFile
 from recovery.survey.suspected_keywords import SuspectedKeywords
 from support.parallel.progress import Progress, no_progress
+
+#: Examples of a cluster besides the first.
+MOST_EXAMPLES = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +45,10 @@ class Cluster:
     ``title`` is a description for people. ``id`` is derived from ``signature``, so it is stable as
     long as the signature of the failing line is. ``unlocks`` is the number of files that would
     parse if only this cluster were repaired. ``line`` is the failing line that represents the
-    cluster, and ``example`` a failure of that line. ``restores`` lists, for each of the
-    ``proposals``, the files in which it repairs every line that fails by itself.
+    cluster, and ``example`` a failure of that line; ``others`` are further ones in different files.
+    It has ``failures``, of which so many are ``following``, in the ``files``, each with the line of
+    its first. ``restores`` lists, for each of the ``proposals``, the files in which it repairs
+    every line that fails by itself.
     """
 
     id: str
@@ -50,15 +57,18 @@ class Cluster:
     context: FailureContext
     line: LinePattern
     example: Member
-    members: tuple[Member, ...]
+    others: Sequence[Member]
+    failures: int
+    following: int
+    files: Sequence[tuple[SurveyedFile, int]]
     unlocks: int
     proposals: tuple[Proposal, ...]
     restores: tuple[tuple[SurveyedFile, ...], ...]
 
     @property
-    def files(self) -> tuple[SurveyedFile, ...]:
-        """Distinct files with a failure of this cluster, in the order of the survey."""
-        return tuple({m.file.digest: m.file for m in self.members}.values())
+    def places(self) -> int:
+        """The number of files with a failure of this cluster, copies included."""
+        return sum(len(file.places) for file, _ in self.files)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +76,19 @@ class Clusters:
     """All clusters of a survey by rank, and the greedy order in which to repair them.
 
     ``order`` lists pairs of a cluster and the number of files that parse once it and all before it
-    are repaired. ``cluster_of`` maps (digest, index of a failure) to the id of its cluster.
-    ``contexts`` are those of the survey's forms.
+    are repaired. ``numbers`` has the index in ``ranked`` of the cluster of each failure of a file,
+    by its digest. ``contexts`` are those of the survey's forms.
     """
 
     ranked: tuple[Cluster, ...]
     order: tuple[tuple[Cluster, int], ...]
-    cluster_of: dict[tuple[str, int], str]
+    numbers: Mapping[str, Sequence[int]]
     lines: tuple[LinePattern, ...]
     contexts: tuple[FailureContext, ...]
+
+    def cluster_of(self, file: SurveyedFile, index: int) -> str:
+        """Return the id of the cluster to which a failure of a file belongs."""
+        return self.ranked[self.numbers[file.digest][index]].id
 
 
 def text_on_disk(file: SurveyedFile) -> str:
@@ -117,6 +131,23 @@ def cluster(
     return _assembled(found, groups, causes, cause_of)
 
 
+#: Stands for the number of the line of a failure that only follows from another.
+_FOLLOWS = -1
+
+
+class _DirectFailures(Iterable[tuple[str, FailingLine, Form]]):
+    """The failures of a survey that follow from no other, with digest and form, read each time."""
+
+    def __init__(self, found: Survey) -> None:
+        self._found = found
+
+    def __iter__(self) -> Iterator[tuple[str, FailingLine, Form]]:
+        for file in self._found.failing:
+            for failed in file.failures:
+                if not failed.follows:
+                    yield file.digest, failed, self._found.forms[failed.form]
+
+
 class _FailingLines:
     """The distinct failing lines of a survey, and where each occurs."""
 
@@ -124,33 +155,35 @@ class _FailingLines:
         self.recognizer = Recognizer(found.grammar)
         finder = FailureFinder(self.recognizer)
         self.contexts = [self._context(finder, f.before, f.kinds[: f.index]) for f in found.forms]
-        direct = [
-            (file, index, failed)
-            for file in found.failing
-            for index, failed in enumerate(file.failures)
-            if not failed.follows
-        ]
         lexer = self.recognizer.lexer
-        suspected = SuspectedKeywords(
-            lexer, ((f.digest, x, found.forms[x.form]) for f, _, x in direct)
-        )
+        suspected = SuspectedKeywords(lexer, _DirectFailures(found))
         numbers: dict[LinePattern, int] = {}
         signatures: list[Signature] = []
-        self.line_of: dict[tuple[str, int], int] = {}
+        self.lines_of: dict[str, array[int]] = {}
+        self._at: dict[str, array[int]] = {}
         self.specimens: list[Member] = []  # the shortest occurrence of each line
-        files: dict[int, dict[str, int]] = defaultdict(dict)
-        for file, index, failed in direct:
-            form = found.forms[failed.form]
-            line = LinePattern(form, suspected.of_line(failed, form))
-            number = numbers.setdefault(line, len(numbers))
-            if number == len(signatures):
-                context = self.contexts[failed.form]
-                signatures.append(signature_of(lexer, form, line.keywords, context))
-                self.specimens.append(Member(file, failed))
-            elif len(failed.source) < len(self.specimens[number].failed.source):
-                self.specimens[number] = Member(file, failed)
-            self.line_of[file.digest, index] = number
-            files[number][file.digest] = len(file.places)
+        self.weights: list[int] = []
+        for file in found.failing:
+            own = self.lines_of[file.digest] = array("l")
+            at = self._at[file.digest] = array("l")
+            for failed in file.failures:
+                if failed.follows:
+                    own.append(_FOLLOWS)
+                    continue
+                form = found.forms[failed.form]
+                line = LinePattern(form, suspected.of_line(failed, form))
+                number = numbers.setdefault(line, len(numbers))
+                if number == len(signatures):
+                    context = self.contexts[failed.form]
+                    signatures.append(signature_of(lexer, form, line.keywords, context))
+                    self.specimens.append(Member(file, failed))
+                    self.weights.append(0)
+                elif len(failed.source) < len(self.specimens[number].failed.source):
+                    self.specimens[number] = Member(file, failed)
+                own.append(number)
+                at.append(failed.line)
+            for number in set(own) - {_FOLLOWS}:
+                self.weights[number] += len(file.places)
         self.lines = tuple(numbers)
         self.signatures = signatures
         reasons = ReasonFinder(self.recognizer)
@@ -158,7 +191,6 @@ class _FailingLines:
             reasons.reason(line, signature, self.contexts[found_in.failed.form])
             for line, signature, found_in in zip(numbers, signatures, self.specimens, strict=True)
         ]
-        self.weights = [sum(files[n].values()) for n in range(len(signatures))]
         by_signature: dict[Signature, list[int]] = defaultdict(list)
         for number, signature in enumerate(signatures):
             by_signature[signature].append(number)
@@ -171,13 +203,10 @@ class _FailingLines:
     ) -> Iterator[FailingFile]:
         """Yield the files with failing lines; their texts are read when needed."""
         for file in found.failing:
-            lines = tuple(
-                (failed.line, self.line_of[file.digest, index])
-                for index, failed in enumerate(file.failures)
-                if not failed.follows
+            lines = array("l", (n for n in self.lines_of[file.digest] if n != _FOLLOWS))
+            yield FailingFile(
+                file.digest, file.size, partial(text_of, file), self._at[file.digest], lines
             )
-            if lines:
-                yield FailingFile(file.digest, file.size, partial(text_of, file), lines)
 
     def _context(
         self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]
@@ -188,27 +217,21 @@ class _FailingLines:
 def _assembled(
     found: Survey, groups: _FailingLines, causes: Sequence[Cause], cause_of: dict[int, int]
 ) -> Clusters:
-    members: dict[int, list[Member]] = defaultdict(list)
-    needs: list[tuple[SurveyedFile, frozenset[int], frozenset[int]]] = []
-    by_failure: dict[tuple[str, int], int] = {}
-    for file in found.failing:
-        direct: set[int] = set()
-        last = None
-        for index, failed in enumerate(file.failures):
-            line = groups.line_of.get((file.digest, index))
-            if line is not None:
-                direct.add(line)
-                last = cause_of[line]
-            assert last is not None  # the first failure of a file follows from no other
-            members[last].append(Member(file, failed))
-            by_failure[file.digest, index] = last
-        if direct:
-            needs.append((file, frozenset(direct), frozenset(cause_of[n] for n in direct)))
-    alone: Counter[int] = Counter()
-    for file, _, wanted in needs:
-        if len(wanted) == 1:
-            alone[next(iter(wanted))] += len(file.places)
     heaviest = [_heaviest(cause, groups) for cause in causes]
+    failures = [_Failures(groups.specimens[number]) for number in heaviest]
+    needs: list[_Need] = []
+    shared: dict[frozenset[int], frozenset[int]] = {}
+    for file in found.failing:
+        lines = groups.lines_of[file.digest]
+        causes_of = _with_followers(lines, cause_of)
+        for number, failed in zip(causes_of, file.failures, strict=True):
+            failures[number].add(file, failed)
+        wanted = frozenset(causes_of)
+        needs.append(_Need(file, lines, shared.setdefault(wanted, wanted)))
+    alone: Counter[int] = Counter()
+    for need in needs:
+        if len(need.causes) == 1:
+            alone[next(iter(need.causes))] += len(need.file.places)
     rules = [groups.signatures[n].rule for n in heaviest]
     signatures = _distinct([groups.signatures[n].text for n in heaviest], rules)
     writer = TitleWriter(groups.recognizer)
@@ -223,7 +246,7 @@ def _assembled(
             heaviest[number],
             signatures[number],
             titles[number],
-            members[number],
+            failures[number],
             alone[number],
             groups,
             needs,
@@ -231,15 +254,79 @@ def _assembled(
         for number, cause in enumerate(causes)
     ]
     parsed = _places(found.files) - _places(found.failing)
-    order = _greedy(parsed, [(f, wanted) for f, _, wanted in needs], clusters)
-    ranked = sorted(clusters, key=lambda c: (-c.unlocks, -_places(c.files), -len(c.members), c.id))
+    order = _greedy(parsed, needs, clusters)
+    by_rank = sorted(
+        range(len(clusters)),
+        key=lambda n: (
+            -clusters[n].unlocks,
+            -clusters[n].places,
+            -clusters[n].failures,
+            clusters[n].id,
+        ),
+    )
+    rank_of = {number: rank for rank, number in enumerate(by_rank)}
+    ranks = {line: rank_of[number] for line, number in cause_of.items()}
     return Clusters(
-        tuple(ranked),
+        tuple(clusters[number] for number in by_rank),
         tuple(order),
-        {key: clusters[number].id for key, number in by_failure.items()},
+        {digest: _with_followers(lines, ranks) for digest, lines in groups.lines_of.items()},
         groups.lines,
         tuple(groups.contexts),
     )
+
+
+class _Need(NamedTuple):
+    """What a file needs to parse: its failing lines, and their causes."""
+
+    file: SurveyedFile
+    lines: Sequence[int]
+    causes: frozenset[int]
+
+
+class _Failures:
+    """The failures of one cause, as they are met file by file."""
+
+    def __init__(self, example: Member) -> None:
+        self._example = example
+        self.count = self.following = 0
+        self.files: list[tuple[SurveyedFile, int]] = []
+        self.others: list[Member] = []
+
+    def add(self, file: SurveyedFile, failed: FailingLine) -> None:
+        """Add a failure; its file is that of the last one or a new one."""
+        self.count += 1
+        self.following += failed.follows
+        if not self.files or self.files[-1][0] is not file:
+            self.files.append((file, failed.line))
+        self._offer(Member(file, failed))
+
+    def _offer(self, member: Member) -> None:
+        """Keep a failure among the shortest in different files, direct ones first."""
+        last = self.others[-1] if self.others else None
+        if member == self._example:
+            return
+        if len(self.others) == MOST_EXAMPLES and last and _length(member) >= _length(last):
+            return
+        same = next((one for one in self.others if one.file is member.file), None)
+        if same is not None:
+            if _length(member) >= _length(same):
+                return
+            self.others.remove(same)
+        self.others.append(member)
+        self.others.sort(key=_length)
+        del self.others[MOST_EXAMPLES:]
+
+
+def _length(member: Member) -> tuple[bool, int]:
+    return member.failed.follows, len(member.failed.source)
+
+
+def _with_followers(lines: Sequence[int], of_line: Mapping[int, int]) -> array[int]:
+    """Return the number of each line's cause; what follows has that of the line before it."""
+    numbers = array("l")
+    for line in lines:  # the first failure of a file follows from no other
+        numbers.append(numbers[-1] if line == _FOLLOWS else of_line[line])
+    return numbers
 
 
 def _heaviest(cause: Cause, groups: _FailingLines) -> int:
@@ -272,10 +359,10 @@ def _cluster(
     heaviest: int,
     signature: str,
     title: str,
-    members: Sequence[Member],
+    failures: _Failures,
     unlocks: int,
     groups: _FailingLines,
-    needs: Sequence[tuple[SurveyedFile, frozenset[int], frozenset[int]]],
+    needs: Sequence[_Need],
 ) -> Cluster:
     example = groups.specimens[heaviest]
     return Cluster(
@@ -285,12 +372,15 @@ def _cluster(
         context=groups.contexts[example.failed.form],
         line=groups.lines[heaviest],
         example=example,
-        members=tuple(members),
+        others=failures.others,
+        failures=failures.count,
+        following=failures.following,
+        files=failures.files,
         unlocks=unlocks,
         proposals=cause.proposals,
         restores=tuple(
-            tuple(file for file, direct, _ in needs if direct <= proposal.mended)
-            for proposal in cause.proposals
+            tuple(need.file for need in needs if mended.issuperset(need.lines))
+            for mended in (proposal.mended | {_FOLLOWS} for proposal in cause.proposals)
         ),
     )
 
@@ -316,7 +406,7 @@ def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
 
 def _greedy(
     parsed: int,
-    needs: Sequence[tuple[SurveyedFile, frozenset[int]]],
+    needs: Sequence[_Need],
     clusters: Sequence[Cluster],
 ) -> Iterator[tuple[Cluster, int]]:
     """Yield the clusters in a greedy order, with the number of files that parse after each.
@@ -325,8 +415,8 @@ def _greedy(
     or, on a tie, brings most files closest to it.
     """
     waiting: Counter[frozenset[int]] = Counter()
-    for file, wanted in needs:
-        waiting[wanted] += len(file.places)
+    for need in needs:
+        waiting[need.causes] += len(need.file.places)
     while waiting:
         gain: Counter[int] = Counter()
         near: dict[int, float] = defaultdict(float)

@@ -8,9 +8,11 @@ line was not understood can be read once that one is; it then has the same cause
 
 from __future__ import annotations
 
+from array import array
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
@@ -28,14 +30,20 @@ from recovery.tuning import (
 class FailingFile:
     """A file with failing lines.
 
-    ``failing`` are the lines that fail by themselves, in order, as pairs of the line in the file
-    (from 1) and the number of the failing line. ``text`` returns the text when it is needed.
+    ``at`` are the lines that fail by themselves, in order, by their number in the file (from 1),
+    and ``lines`` the numbers of these failing lines. ``text`` returns the text when it is needed.
     """
 
     digest: str
     size: int
     text: Callable[[], str]
-    failing: tuple[tuple[int, int], ...]
+    at: Sequence[int]
+    lines: Sequence[int]
+
+    @property
+    def failing(self) -> Iterator[tuple[int, int]]:
+        """The failing lines, each with its number in the file."""
+        return zip(self.at, self.lines, strict=True)
 
 
 class FileTrial:
@@ -45,12 +53,13 @@ class FileTrial:
         self._recognizer = recognizer
         self._files = sorted(files, key=lambda file: (file.size, file.digest))
         self._texts: dict[int, list[tuple[str, list[int], int]]] = {}
-        self._occurrences: dict[int, list[tuple[int, int]]] = defaultdict(list)
+        # of each line the indices of its files and its numbers in them, by turns
+        self._occurrences: dict[int, array[int]] = defaultdict(partial(array, "l"))
         self._starting: dict[int, list[int]] = defaultdict(list)
         for place, file in enumerate(self._files):
-            self._starting[file.failing[0][1]].append(place)
+            self._starting[file.lines[0]].append(place)
             for at, line in file.failing:
-                self._occurrences[line].append((place, at))
+                self._occurrences[line].extend((place, at))
 
     def texts(self, lines: Iterable[int]) -> list[str]:
         """Return some of the texts whose first failure is one of the lines."""
@@ -79,13 +88,13 @@ class FileTrial:
         """
         first: dict[int, int] = {}
         for line in mended:
-            for place, at in self._occurrences[line]:
+            for place, at in self._occurrences_of(line):
                 first[place] = min(at, first.get(place, at))
-        near = {line for place in first for _, line in self._files[place].failing}
+        near = {line for place in first for line in self._files[place].lines}
         behind = {
             line
             for line in near.intersection(others)
-            if all(first.get(place, at) < at for place, at in self._occurrences[line])
+            if all(first.get(place, at) < at for place, at in self._occurrences_of(line))
         }
         wanted: dict[int, list[tuple[int, int]]] = {}
         for place in first:
@@ -108,6 +117,11 @@ class FileTrial:
             for at, line in wanted[place]:
                 (left if at in failing else gone).add(line)
         return frozenset(gone - left)
+
+    def _occurrences_of(self, line: int) -> Iterator[tuple[int, int]]:
+        """Yield the index of a file and the number in it for each place where a line fails."""
+        turns = iter(self._occurrences[line])
+        return zip(turns, turns, strict=True)
 
     def _of(self, lines: Iterable[int]) -> list[tuple[str, list[int], int]]:
         out: list[tuple[str, list[int], int]] = []

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from functools import lru_cache
+from operator import attrgetter
+from typing import Any
 
 from grammar.parser.failures import Failure, FailureFinder, Form
 
@@ -33,6 +36,16 @@ class FailingLine:
         return FailingLine(
             self.line, self.column, self.token, self.source, self.words, form, self.follows
         )
+
+
+#: The fields of a failing line in their order (`dataclasses.astuple` copies them, which is slow).
+as_values = attrgetter(*(field.name for field in fields(FailingLine)))
+
+
+def as_failing_line(values: Sequence[Any]) -> FailingLine:
+    """Return the failing line with some values; raises `ValueError` if these are too few."""
+    line, column, token, source, words, form, follows = values
+    return FailingLine(line, column, token, source, tuple(words), form, follows)
 
 
 def failures_of(

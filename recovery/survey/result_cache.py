@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import fields
-from operator import attrgetter
 from typing import Any
 
 from grammar.notation.model import Grammar
 from grammar.parser.failures import Form
-from recovery.survey.failing_line import FailingLine
+from recovery.survey.failing_line import FailingLine, as_failing_line, as_values
 from recovery.survey.unreserved_keywords import NameUse
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
@@ -33,10 +31,6 @@ def recall(store: ResultStore, digest: str) -> Kept | None:
         return None
 
 
-#: The fields of a failing line in their order (`dataclasses.astuple` copies them, which is slow).
-_FAILED = attrgetter(*(field.name for field in fields(FailingLine)))
-
-
 def keep(store: ResultStore, results: Iterable[tuple[str, Kept]]) -> None:
     """Store results by the digests of their contents."""
     store.put((digest, _written(kept)) for digest, kept in results)
@@ -46,7 +40,7 @@ def _written(kept: Kept) -> object:
     if isinstance(kept, str):
         return kept
     failures, forms, names = kept
-    return [list(map(_FAILED, failures)), [(f.before, f.kinds, f.index) for f in forms], names]
+    return [list(map(as_values, failures)), [(f.before, f.kinds, f.index) for f in forms], names]
 
 
 def _read(data: Any) -> Kept:
@@ -54,18 +48,13 @@ def _read(data: Any) -> Kept:
         return data
     failures, forms, (read, bound) = data
     names = NameUse(tuple(_words(read)), tuple(_words(bound)))
-    return tuple(_failed(f) for f in failures), tuple(_forms(forms)), names
+    return tuple(map(as_failing_line, failures)), tuple(_forms(forms)), names
 
 
 def _words(words: list[object]) -> Iterator[str]:
     for word in words:
         assert isinstance(word, str)
         yield sys.intern(word)
-
-
-def _failed(values: list[Any]) -> FailingLine:
-    line, column, token, source, words, form, follows = values
-    return FailingLine(line, column, token, source, tuple(words), form, follows)
 
 
 def _forms(forms: list[list[object]]) -> Iterator[Form]:

@@ -1,13 +1,14 @@
-"""The files of a survey, on disk: most files of a large corpus parse, and nobody looks at them.
+"""The files of a survey and their failing lines, on disk: there may be more than memory.
 
-They are rows of a temporary SQLite database, which the system removes with the process. Only
-failures are kept in memory.
+They are rows of a temporary SQLite database, which the system removes with the process.
 """
 
 from __future__ import annotations
 
 import json
+import marshal
 import sqlite3
+import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -15,7 +16,7 @@ from pathlib import Path
 from typing import overload
 from weakref import finalize
 
-from recovery.survey.failing_line import FailingLine, source_lines
+from recovery.survey.failing_line import FailingLine, as_failing_line, as_values, source_lines
 from support.files.decode import digest
 from support.files.discovery import Found, Skipped, read_source
 
@@ -25,14 +26,14 @@ class SurveyedFile:
     """A distinct content, with its locations and its failures.
 
     ``places`` are (path, origin) of the file and of every copy, in the order of discovery;
-    ``found`` is the first of them.
+    ``found`` is the first of them. Each iteration over ``failures`` may read them anew.
     """
 
     found: Found
     places: tuple[tuple[str, str], ...]
     digest: str
     size: int
-    failures: tuple[FailingLine, ...]
+    failures: Sequence[FailingLine]
 
     @property
     def path(self) -> str:
@@ -47,6 +48,36 @@ class SurveyedFile:
         return source_lines(file.text)
 
 
+class _Failures(Sequence[FailingLine]):
+    """The failing lines of a content, on disk; its files are kept open as long as they are."""
+
+    __slots__ = ("_content", "_count", "_files")
+
+    def __init__(self, files: SurveyedFiles, content: int, count: int) -> None:
+        self._files = files
+        self._content = content
+        self._count = count
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __iter__(self) -> Iterator[FailingLine]:
+        return self._files.failures(self._content)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    @overload
+    def __getitem__(self, place: int) -> FailingLine: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[FailingLine]: ...
+    def __getitem__(self, place: int | slice) -> FailingLine | list[FailingLine]:
+        return list(self)[place]
+
+
 class SurveyedFiles(Sequence[SurveyedFile]):
     """The files with KRL, in the order of discovery; each iteration makes them anew.
 
@@ -57,14 +88,14 @@ class SurveyedFiles(Sequence[SurveyedFile]):
         """Create it without files."""
         self._base = sqlite3.connect("")  # a temporary file, once it is large
         finalize(self, self._base.close)
-        self._failures: dict[str, tuple[FailingLine, ...]] = {}
         self._base.executescript(
             """
             PRAGMA journal_mode = OFF;
             CREATE TABLE candidate (number INTEGER PRIMARY KEY, item TEXT, content INTEGER);
             CREATE INDEX place ON candidate (content) WHERE content IS NOT NULL;
             CREATE TABLE content
-                (number INTEGER PRIMARY KEY, digest TEXT UNIQUE, size INTEGER, reason TEXT);
+                (number INTEGER PRIMARY KEY, digest TEXT UNIQUE, size INTEGER, reason TEXT,
+                failing INTEGER DEFAULT 0, failures BLOB);
             """
         )
 
@@ -104,10 +135,20 @@ class SurveyedFiles(Sequence[SurveyedFile]):
         )
         return added.rowcount == 1
 
-    def set_failures(self, key: str, failures: tuple[FailingLine, ...]) -> None:
+    def set_failures(self, key: str, failures: Sequence[FailingLine]) -> None:
         """Set what fails in the content with a digest; at first nothing does."""
         if failures:
-            self._failures[key] = failures
+            packed = zlib.compress(marshal.dumps(list(map(as_values, failures))), 1)
+            self._base.execute(
+                "UPDATE content SET failing = ?, failures = ? WHERE digest = ?",
+                (len(failures), packed, key),
+            )
+
+    def failures(self, content: int) -> Iterator[FailingLine]:
+        """Yield the failing lines of the content with a number."""
+        query = "SELECT failures FROM content WHERE number = ?"
+        ((packed,),) = self._base.execute(query, (content,))
+        return map(as_failing_line, marshal.loads(zlib.decompress(packed)))
 
     def leave_out(self, key: str, reason: str) -> None:
         """Leave out the content with a digest, which is no KRL."""
@@ -115,14 +156,15 @@ class SurveyedFiles(Sequence[SurveyedFile]):
 
     def left_out(self) -> Iterator[Skipped]:
         """Yield every file that was left out."""
-        for _, _, reason, items in self._contents("IS NOT NULL"):
+        for _, _, _, reason, _, items in self._contents("IS NOT NULL"):
             for one in items:
                 yield Skipped(one.path, reason, one.origin)
 
     def __iter__(self) -> Iterator[SurveyedFile]:
-        for key, size, _, items in self._contents("IS NULL"):
+        for number, key, size, _, failing, items in self._contents("IS NULL"):
             places = tuple((one.path, one.origin) for one in items)
-            yield SurveyedFile(items[0], places, key, size, self._failures.get(key, ()))
+            failures = _Failures(self, number, failing) if failing else ()
+            yield SurveyedFile(items[0], places, key, size, failures)
 
     def __len__(self) -> int:
         ((count,),) = self._base.execute("SELECT COUNT(*) FROM content WHERE reason IS NULL")
@@ -135,16 +177,16 @@ class SurveyedFiles(Sequence[SurveyedFile]):
     def __getitem__(self, place: int | slice) -> SurveyedFile | list[SurveyedFile]:
         return list(self)[place]
 
-    def _contents(self, reason: str) -> Iterator[tuple[str, int, str, list[Found]]]:
-        """Yield digest, size, reason and files of each content."""
+    def _contents(self, reason: str) -> Iterator[tuple[int, str, int, str, int, list[Found]]]:
+        """Yield number, digest, size, reason, count of failures and files of each content."""
         rows = self._base.execute(
-            "SELECT content.number, digest, size, reason, item"
+            "SELECT content.number, digest, size, reason, failing, item"
             " FROM content JOIN candidate ON candidate.content = content.number"
             f" WHERE reason {reason} ORDER BY content.number, candidate.number"
         )
-        for (_, key, size, why), several in groupby(rows, lambda row: row[:4]):
-            found = (_candidate(row[4]) for row in several)
-            yield key, size, why, [one for one in found if isinstance(one, Found)]
+        for content, several in groupby(rows, lambda row: row[:5]):
+            found = (_candidate(row[5]) for row in several)
+            yield *content, [one for one in found if isinstance(one, Found)]
 
 
 def _candidate(item: str) -> Found | Skipped:

@@ -28,6 +28,7 @@ from recovery.tuning import (
 )
 
 _Failure = tuple[str, FailingLine, Form]
+_MOST_NEIGHBOURS = max(2, SUSPECTED_NEIGHBOURS)
 # Signs that can follow a keyword, but no plain name at the beginning of a line.
 _BEGINS_OPERAND = frozenset("{-+")
 _ENDS_OPERAND = frozenset("])}")
@@ -52,7 +53,8 @@ class _Uses:
     """How failing lines use a name: as names are used, or where no name can stand.
 
     The latter are counted in ``odd``, those of them without an operand beside in ``alone``.
-    ``files`` are digests; those in ``led`` have lines that begin with the name and an operand.
+    ``files`` are digests; those in ``led`` have lines that begin with the name and an operand. Of
+    files and neighbours only the first are kept, as many as decide.
     """
 
     plain: int = 0
@@ -77,13 +79,17 @@ class _Uses:
         )
 
 
+def _add(known: set[str], one: str, most: int) -> None:
+    if len(known) < most:
+        known.add(one)
+
+
 class SuspectedKeywords:
     """The names that failing lines under one grammar show to be keywords."""
 
     def __init__(self, lexer: Lexer, failures: Iterable[_Failure]) -> None:
-        """``failures`` are all of a survey, with the digests of their files."""
+        """``failures`` are all of a survey, with the digests of their files; read twice."""
         self.lexer = lexer
-        failures = list(failures)
         self._sole = self._sole_words(failures)
         found: dict[str, _Uses] = defaultdict(_Uses)
         for digest, failed, form in failures:
@@ -114,7 +120,9 @@ class SuspectedKeywords:
                 continue
             before, kind = form.kinds[form.index - 1 : form.index + 1]
             if kind == self.lexer.name_kind and self.lexer.is_keyword(before):
-                places[form.kinds[: form.index]][failed.words[form.index]] += 1
+                words = places[form.kinds[: form.index]]
+                if len(words) <= SUSPECTED_CHOICE:  # no more are asked for
+                    words[failed.words[form.index]] += 1
         return frozenset(
             word
             for words in places.values()
@@ -129,14 +137,15 @@ class SuspectedKeywords:
         is_behind = place > 0 and self._is_operand(kinds, place - 1)
         is_ahead = self._is_operand(kinds, place + 1)
         uses.odd += 1
-        uses.files.add(digest)
+        _add(uses.files, digest, SUSPECTED_FILES)
         uses.alone += not (is_behind or is_ahead)
         if is_behind:
-            uses.before.add(words[place - 1])
+            _add(uses.before, words[place - 1], _MOST_NEIGHBOURS)
         if is_ahead:
-            uses.after.update(words[place + 1 : place + 2])
+            for word in words[place + 1 : place + 2]:
+                _add(uses.after, word, _MOST_NEIGHBOURS)
             if place == 0:
-                uses.led.add(digest)
+                _add(uses.led, digest, SUSPECTED_FILES)
 
     def _stands_out(self, form: Form, place: int, word: str) -> bool:
         """Return whether a name is used like a keyword.

@@ -34,6 +34,7 @@ from recovery.survey.survey import survey
 found = survey([Path(sys.argv[1])], read_file(Path(sys.argv[2])), jobs=int(sys.argv[3]))
 record = analyse(found, [], grammar_name="KRL.g4")
 del record["seconds"], record["analysis_seconds"]
+record["failures"] = list(record["failures"])
 print(json.dumps(record))
 """
 

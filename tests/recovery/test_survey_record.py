@@ -44,7 +44,8 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Survey:
 
 @pytest.fixture(scope="module")
 def record(found: Survey) -> SurveyRecord:
-    return record_of(found, cluster(found), grammar_name="grammar/some.g4")
+    made = record_of(found, cluster(found), grammar_name="grammar/some.g4")
+    return {**made, "failures": [*made["failures"]]}
 
 
 def short(path: str) -> str:
@@ -207,7 +208,7 @@ def test_failures_quote_the_file(record: SurveyRecord) -> None:
 def test_expected_is_what_could_have_come(record: SurveyRecord) -> None:
     """For the first failure of a file the expected tokens are exactly those the grammar allows."""
     lexer = RECOGNIZER.lexer
-    first = {failure["path"]: failure for failure in reversed(record["failures"])}
+    first = {failure["path"]: failure for failure in reversed([*record["failures"]])}
     for path, failure in first.items():
         kinds = RECOGNIZER.kinds(FILES[short(path)].decode("cp1252"))
         state, index = RECOGNIZER.run(RECOGNIZER.start, kinds)

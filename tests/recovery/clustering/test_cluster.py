@@ -1,6 +1,6 @@
 """Failures are grouped by cause, and what mending them brings is what counting brings."""
 
-from collections import Counter
+from collections import defaultdict
 from dataclasses import replace
 from random import Random
 
@@ -8,7 +8,7 @@ import pytest
 
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
-from recovery.clustering.cluster import Cluster, Clusters, cluster
+from recovery.clustering.cluster import MOST_EXAMPLES, Cluster, Clusters, Member, cluster
 from recovery.survey.survey import Survey, survey_texts
 from recovery.survey.surveyed_files import SurveyedFile
 
@@ -46,7 +46,7 @@ def clusters_of(*pieces: str) -> Clusters:
 
 
 def files(found: Cluster) -> set[str]:
-    return {file.path for file in found.files}
+    return {file.path for file, _ in found.files}
 
 
 # ----------------------------------------------------------------------- causes and no less
@@ -78,16 +78,14 @@ def test_a_line_of_another_shape_joins_when_the_same_edit_mends_it() -> None:
 def test_a_program_without_failures_is_in_no_cluster() -> None:
     """Nothing failed, nothing is grouped, and there is nothing to mend."""
     found = clusters_of("HALT", "A=1")
-    assert ((), (), {}) == (found.ranked, found.order, found.cluster_of)
+    assert ((), (), {}) == (found.ranked, found.order, found.numbers)
 
 
 def test_what_only_follows_belongs_to_its_cause() -> None:
     """A block that is not known is one cluster: its opener, what is in it, and its closer."""
     found = clusters_of("SWITCH X\nCASE 1\nA=1\nCASE 2\nENDSWITCH")
     (only,) = found.ranked
-    follows = [member.failed.follows for member in only.members]
-    assert [False, True, True, True] == follows
-    assert 1 == only.unlocks
+    assert (4, 3, 1) == (only.failures, only.following, only.unlocks)
 
 
 # ----------------------------------------------------------------- laws, on corpora by chance
@@ -104,7 +102,7 @@ def corpus(request: pytest.FixtureRequest) -> tuple[Survey, Clusters]:
 
 def wanted(file: SurveyedFile, clusters: Clusters) -> set[str]:
     """The clusters that have to be mended for a file to parse."""
-    return {clusters.cluster_of[file.digest, index] for index, _ in enumerate(file.failures)}
+    return {clusters.cluster_of(file, index) for index, _ in enumerate(file.failures)}
 
 
 def count(found: Survey, clusters: Clusters, mended: set[str]) -> int:
@@ -113,19 +111,37 @@ def count(found: Survey, clusters: Clusters, mended: set[str]) -> int:
 
 
 def test_every_failure_is_in_one_cluster(corpus: tuple[Survey, Clusters]) -> None:
-    """No failure is lost, none counted twice, and who asks by failure gets the same answer."""
+    """No failure is lost, none counted twice; a file is listed with its first one."""
     found, clusters = corpus
-    grouped = Counter(
-        (cluster.id, m.file.digest, m.failed.line, m.failed.column)
-        for cluster in clusters.ranked
-        for m in cluster.members
-    )
-    expected = Counter(
-        (clusters.cluster_of[file.digest, index], file.digest, failed.line, failed.column)
-        for file in found.files
-        for index, failed in enumerate(file.failures)
-    )
-    assert expected == grouped
+    expected: dict[str, list[tuple[str, int, bool]]] = defaultdict(list)
+    for file in found.files:
+        for index, failed in enumerate(file.failures):
+            place = (file.digest, failed.line, failed.follows)
+            expected[clusters.cluster_of(file, index)].append(place)
+    assert set(expected) == {one.id for one in clusters.ranked}
+    for one in clusters.ranked:
+        places = expected[one.id]
+        assert len(places) == one.failures
+        assert sum(follows for _, _, follows in places) == one.following
+        first = {digest: line for digest, line, _ in reversed(places)}
+        assert first == {file.digest: line for file, line in one.files}
+
+
+def test_examples_are_the_shortest_of_different_files(corpus: tuple[Survey, Clusters]) -> None:
+    """Of each file the shortest failure, a direct one first, and of files the first five."""
+    found, clusters = corpus
+    for one in clusters.ranked:
+        members = [
+            Member(file, failed)
+            for file in found.failing
+            for index, failed in enumerate(file.failures)
+            if clusters.cluster_of(file, index) == one.id
+        ]
+        by_file: dict[str, Member] = {}
+        for member in sorted(members, key=lambda m: (m.failed.follows, len(m.failed.source))):
+            if member != one.example:
+                by_file.setdefault(member.file.digest, member)
+        assert list(by_file.values())[:MOST_EXAMPLES] == one.others
 
 
 def test_followers_are_where_their_cause_is(corpus: tuple[Survey, Clusters]) -> None:
@@ -134,7 +150,7 @@ def test_followers_are_where_their_cause_is(corpus: tuple[Survey, Clusters]) -> 
     for file in found.files:
         cause = None
         for index, failed in enumerate(file.failures):
-            own = clusters.cluster_of[file.digest, index]
+            own = clusters.cluster_of(file, index)
             cause = cause if failed.follows else own
             assert cause == own
 
@@ -143,9 +159,9 @@ def test_no_cluster_is_of_followers_only(corpus: tuple[Survey, Clusters]) -> Non
     """What follows makes no cluster of its own, and no example is taken from it."""
     _, clusters = corpus
     for found in clusters.ranked:
-        assert not all(m.failed.follows for m in found.members)
+        assert found.following < found.failures
         assert not found.example.failed.follows
-        assert found.example in found.members
+        assert found.example.file in [file for file, _ in found.files]
 
 
 def test_unlocks_counts_the_files_that_fail_for_nothing_else(
@@ -162,7 +178,7 @@ def test_unlocks_counts_the_files_that_fail_for_nothing_else(
 def test_what_holds_back_most_comes_first(corpus: tuple[Survey, Clusters]) -> None:
     """Clusters are ranked by what they unlock, then by the files they are in."""
     _, clusters = corpus
-    keys = [(c.unlocks, sum(len(f.places) for f in c.files)) for c in clusters.ranked]
+    keys = [(c.unlocks, c.places) for c in clusters.ranked]
     assert sorted(keys, reverse=True) == keys
 
 

@@ -15,7 +15,7 @@ TEXT = "DEF A()\nWAIT 1\nWAIT 2\nEND\n"
 
 
 def file(text: str, *failing: tuple[int, int]) -> FailingFile:
-    return FailingFile(text, len(text), lambda: text, failing)
+    return FailingFile(text, len(text), lambda: text, *zip(*failing, strict=True))
 
 
 def readable_share(alternative: str) -> float:
@@ -60,5 +60,5 @@ def test_a_line_met_without_the_cause_is_not_entailed() -> None:
     assert wider is not None
     both = FileTrial(LOOPLESS, [file(text, (2, 0), (4, 1)), file(alone, (2, 1))])
     assert frozenset() == both.entailed(wider, [0], {1})
-    gone = FileTrial(LOOPLESS, [FailingFile("x", 9, lambda: "", ((2, 0), (4, 1)))])
+    gone = FileTrial(LOOPLESS, [FailingFile("x", 9, lambda: "", (2, 4), (0, 1))])
     assert frozenset() == gone.entailed(wider, [0], {1})

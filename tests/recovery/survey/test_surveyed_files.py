@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from grammar.notation import g4
+from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import survey
 from support.files.discovery import Found
 
@@ -31,6 +32,17 @@ def test_files_that_parse_are_not_kept_in_memory(tmp_path: Path) -> None:
     assert ["bad.src"] == [file.found.file.name for file in found.failing]
     gc.collect()
     assert 1 == sum(isinstance(one, Found) for one in gc.get_objects())
+
+
+def test_failing_lines_are_not_kept_in_memory(tmp_path: Path) -> None:
+    """They are read when they are looked at, also when only the file of them is left."""
+    lines = "".join(f"GOTO X{number}\n" for number in range(50))
+    (tmp_path / "bad.src").write_text(f"DEF BAD()\n{lines}END\n", encoding="utf-8")
+    (bad,) = survey([tmp_path], PRELIMINARY, jobs=1).failing
+    gc.collect()
+    assert not any(isinstance(one, FailingLine) for one in gc.get_objects())
+    assert 50 == len(bad.failures)
+    assert [f"GOTO X{number}" for number in range(50)] == [one.source for one in bad.failures]
 
 
 def test_names_that_are_no_text_come_back(tmp_path: Path) -> None:
