@@ -59,7 +59,7 @@ def _git(*arguments: str) -> str:
 
 def _make_targets() -> set[str]:
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    rules = re.findall(r"^([a-z][a-z ]*):(?!=)", makefile, re.MULTILINE)
+    rules = re.findall(r"^([a-z][a-z -]*):(?!=)", makefile, re.MULTILINE)
     return {target for rule in rules for target in rule.split()}
 
 
@@ -244,6 +244,26 @@ def test_actions_are_pinned_and_may_do_little(workflow: Path) -> None:
     assert [] == [name for name in used if not re.fullmatch(r"[^@]+@[0-9a-f]{40}", name)]
     (permissions,) = re.findall(r"^permissions: (.*)$", text, re.MULTILINE)
     assert permissions in ("{}", "{ contents: read }")
+
+
+@pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
+def test_workflows_run_what_there_is(workflow: Path) -> None:
+    """What a workflow names exists: targets, commands of `krl`, scripts of npm, extras, folders."""
+    text = workflow.read_text(encoding="utf-8")
+    commands = set(typer.main.get_command(app()).commands)  # type: ignore[attr-defined]
+    assert set() == set(re.findall(r"\bmake ([a-z-]+)", text)) - _make_targets()
+    assert set() == set(re.findall(r"(?:run: |&& )krl ([a-z]+)", text)) - commands
+    for job in re.split(r"^  (?=\S+:$)", text, flags=re.MULTILINE):
+        folders = [ROOT / name for name in re.findall(r"working-directory: ([^\s}]+)", job)]
+        folders += [ROOT / name for name in re.findall(r"^ +cd (\S+)$", job, re.MULTILINE)]
+        assert [] == [folder for folder in folders if not folder.is_dir()]
+        scripts = set(re.findall(r"npm run ([a-z]+)", job))
+        scripts |= {"test"} if "npm test" in job else set()
+        for package in [folder / "package.json" for folder in folders] if scripts else ():
+            known = json.loads(package.read_text(encoding="utf-8"))["scripts"]
+            assert set() == scripts - set(known)
+    extras = {name for found in re.findall(r"'\.\[(.*?)\]'", text) for name in found.split(",")}
+    assert set() == extras - set(PROJECT["project"]["optional-dependencies"])
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="no bash here")
