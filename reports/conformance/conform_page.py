@@ -1,6 +1,7 @@
 """The page of a conformance run: suites by executor and robot, and the details of each case."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -55,20 +56,29 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
         "rules": {shown(text(rule, "id"), 20): _rule(rule) for rule in records(record, "rules")},
         "runs": [_run(one) for one in records(record, "history")[-_MAX_RUNS:]],
     }
-    for has_details in (_always, _is_not_fine, _never):
-        listed = [_case(case, has_details=has_details(case)) for case in cases]
-        data = embedded_json({**shared, "cases": listed})
-        if len(data) <= _MAX_DATA_CHARACTERS:
-            break
+    room = _MAX_DATA_CHARACTERS - len(embedded_json(shared)) - len(cases)
+    listed = _listed(cases, _always, room) or _listed(cases, _is_not_fine, room)
+    listed = listed or _listed(cases, _never, math.inf)
     script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
     page = render(
         "conform.html.j2",
         script=f'"use strict";\n{{\n{script}}}\n',
         styles=["vendor/uPlot.min.css", "page.css", "conform.css"],
-        data=data,
+        data=embedded_json({**shared, "cases": listed}),
         view=conform_view(record),
     )
     return write_atomic(folder / "index.html", page)
+
+
+def _listed(cases: list[Record], has_details: Callable[[Record], bool], room: float) -> list[Json]:
+    """Return the cases as the page's script reads them; none if they exceed ``room`` characters."""
+    listed = []
+    for case in cases:
+        listed.append(_case(case, has_details=has_details(case)))
+        room -= len(embedded_json(listed[-1]))
+        if room < 0:
+            return []
+    return listed
 
 
 def _always(_case: Record) -> bool:

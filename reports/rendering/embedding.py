@@ -28,6 +28,8 @@ def printable(text: str) -> str:
     Each character becomes one character, so that columns stay valid. This is for one-line text:
     tabs and line ends are replaced too.
     """
+    if text.isprintable():
+        return text
     return _UNSEEN.sub(_REPLACEMENT, text.translate(_CONTROL_PICTURES))
 
 

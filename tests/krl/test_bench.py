@@ -66,13 +66,13 @@ def test_scale_measures_both_commands_at_each_size(
     """A row for each, with the size that was written and the page, and the growth between them."""
     (tmp_path / "main.src").write_text(PROGRAM, encoding="utf-8", newline="\n")
     target = tmp_path / "out" / "scale.json"
-    given = ["bench", "scale", str(tmp_path), "--sizes", "0.1,0.05", "--json", str(target)]
+    given = ["bench", "scale", str(tmp_path), "--sizes", "0.02,0.01", "--json", str(target)]
     assert 0 == main(given)
     said = capsys.readouterr().out
     record = json.loads(target.read_text(encoding="utf-8"))
     assert ["recover", "check"] * 2 == [row["command"] for row in record["rows"]]
     sizes = [row["bytes"] for row in record["rows"]]
-    assert 50_000 <= sizes[0] == sizes[1] < 100_000 <= sizes[2] == sizes[3] < 120_000
+    assert 10_000 <= sizes[0] == sizes[1] < 20_000 <= sizes[2] == sizes[3] < 24_000
     for row in record["rows"]:
         assert 0 < row["seconds"] < 60
         assert 30e6 < row["peak_bytes"] < 1e9
