@@ -99,7 +99,7 @@ def check(
     ``jobs`` is the number of processes, by default as many as are useful. Raises `InputError`.
     """
     from grammar.check.project.batch import CheckOptions, check_paths
-    from krl.running.program_loading import project_paths
+    from krl.running.project_folders import project_paths
     from support.files.discovery import IngestError
 
     roots = [Path(path) for path in paths]
@@ -312,7 +312,7 @@ def load_backup(path: PathLike) -> Backup:
     """
     from grammar.comparison.content import content_of
     from grammar.comparison.points import POINT_TYPES, numbers_of
-    from krl.running.program_loading import sources_below
+    from krl.running.project_sources import sources_below
 
     contents = [content_of(source) for _, source in sources_below([Path(path)])]
     contents.sort(key=lambda one: one.path)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from interp.program.load import CheckedProgram, Unit
 from krl.debug_adapter.connection import Json
-from krl.running.program_loading import project_root
+from krl.running.project_folders import project_root
 
 
 class ProgramFiles:

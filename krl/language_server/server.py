@@ -28,7 +28,7 @@ from krl.language_server.semantic_tokens import MODIFIERS, TYPES, semantic_token
 from krl.language_server.symbols import folds, outline, wanted
 from krl.language_server.workspace import AnalysedFile, OpenProject
 from krl.project_settings import FILE_NAME
-from krl.running.program_loading import project_root
+from krl.running.project_folders import project_root
 
 # Seconds without a change after which files without an open view are checked.
 _PAUSE = 0.3

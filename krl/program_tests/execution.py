@@ -29,7 +29,8 @@ from interp.values.json_form import to_json
 from krl.errors import InputError, one_line
 from krl.program_tests.recording import compared, record, recording_of
 from krl.program_tests.test_files import Expected, ProgramTest, TestFileError
-from krl.running.program_loading import project_root, read_sources
+from krl.running.project_folders import project_root
+from krl.running.project_sources import read_sources
 from support.files.untrusted import read_text
 
 _WORDS: Final = re.compile(r"[A-Za-z_$][\w$]*")

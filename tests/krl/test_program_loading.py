@@ -6,7 +6,9 @@ from zipfile import ZipFile
 import pytest
 
 from krl.cli import main
-from krl.running.program_loading import load_program, project_paths, project_root, read_sources
+from krl.running.program_loading import load_program
+from krl.running.project_folders import project_paths, project_root
+from krl.running.project_sources import read_sources
 
 FILES = {
     "R1/Program/main.src": "DEF main ( )\nhelp ( )\nEND\n",
@@ -162,7 +164,7 @@ def test_only_what_is_named_is_read_of_a_large_project(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of more bytes than are read, what the program names counts, and the controller's own data."""
-    monkeypatch.setattr("krl.running.program_loading._MOST_BYTES", 100)
+    monkeypatch.setattr("krl.running.project_sources._MOST_BYTES", 100)
     for name, text in {
         "main.src": "DEF main ( )\nPart ( )\nEND\n",
         "part.src": "DEF part ( )\nEND\n",

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from krl.errors import FINDINGS, FINE, one_line
-from krl.running.program_loading import sources_below
+from krl.running.project_sources import sources_below
 from krl.running.run_options import Executor, Robot
 from krl.terminal.options import (
     JobsOption,

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
-from krl.running.program_loading import sources_below
+from krl.running.project_sources import sources_below
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar

@@ -222,7 +222,7 @@ class _Check:
 
     def _report(self) -> "CheckReport":
         from grammar.check.project.batch import check_paths
-        from krl.running.program_loading import project_paths
+        from krl.running.project_folders import project_paths
         from support.files.discovery import IngestError
 
         with as_input_errors(IngestError), progress_bar("checking") as bar:
