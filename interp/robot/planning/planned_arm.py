@@ -24,7 +24,6 @@ from interp.robot.path.targets_in_force import Programmed, check_numbers
 from interp.robot.planning.blend_zones import zone_of
 from interp.robot.planning.blending import blend_of
 from interp.robot.planning.execution import PathExecution
-from interp.robot.planning.junctions import Junction
 from interp.robot.planning.path_events import Passage, events_of
 from interp.robot.planning.spline_blocks import block
 from interp.robot.planning.straight_run import StraightRun
@@ -436,7 +435,7 @@ def _sections(track: Track) -> tuple[Section, ...]:
             None,
             piece.curve,
             piece.limits,
-            junction=Junction(piece.gear),
+            junction=piece.junction,
             is_still=piece.is_still,
             part=part,
         )

@@ -27,6 +27,7 @@ from interp.robot.path.circle import circle_through
 from interp.robot.path.pose_path import PosePath
 from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
 from interp.robot.path.targets_in_force import Programmed
+from interp.robot.planning.junctions import STOP, Junction
 from interp.robot.planning.limits import curve_limits_of
 from interp.robot.planning.spline_ranges import with_ranges
 from interp.robot.planning.tracks import Piece, Track, Tracks, reduced_paths
@@ -129,7 +130,8 @@ def _pieces(
                 check_path(tracks.machine.externals, others.at(_CLOSE))
                 piece = tracks.along(pose_path, axes, others, "SPL", settings)
                 if place:
-                    piece = replace(piece, gear=pose_paths[place - 1].length / pose_path.length)
+                    gear = pose_paths[place - 1].length / pose_path.length
+                    piece = replace(piece, junction=Junction(gear))
                 axes = piece.curve.end[:ROBOT_AXES]
             pieces.append(piece)
             number += 1
@@ -192,8 +194,8 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
             curve_limits = curve_limits_of(
                 curve, tracks.limits, limits, reduced_paths(curve, tracks.machine, own)
             )
-            gear = spans[place - 1] / spans[place] if place > first else 0.0
-            pieces.append(Piece(curve, curve_limits, (), gear))
+            junction = Junction(spans[place - 1] / spans[place]) if place > first else STOP
+            pieces.append(Piece(curve, curve_limits, (), junction))
     last_settings = motion.parts[-1].settings or motion.settings
     track = Track(motion, tuple(pieces), tracks.programmed(last_settings), is_singular)
     return track, target

@@ -14,7 +14,7 @@ import numpy as np
 from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
 from interp.robot.kinematics.solver import Array
-from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
+from interp.robot.planning.junctions import AT_REST, SAME_CURVE, STOP, JoinedStretch
 from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import schedule
@@ -90,7 +90,7 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
     ]
     if not inside or end <= start:
         return pieces
-    if any(pieces[number].gear == 0.0 and ends[number] > start for number in inside):
+    if any(pieces[number].junction == STOP and ends[number] > start for number in inside):
         raise _broken(3215, "the speed falls to zero in a range of constant speed")
     speed = min(
         stretch.programmed * _length(pieces[number])
@@ -209,9 +209,9 @@ def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedPro
             continue
         for place, stretch in enumerate(piece.limits.stretches):
             numbers.append(number)
-            junction = SAME_CURVE if place else Junction(piece.gear)
-            stretches.append(JoinedStretch(stretch, junction))
-    profiles = schedule(stretches, AT_REST, 1.0) or []
+            stretches.append(JoinedStretch(stretch, SAME_CURVE if place else piece.junction))
+    profiles = schedule(stretches, AT_REST, 1.0)
+    assert profiles is not None, "from rest a block can always be travelled"
     for number, joined, profile in zip(numbers, stretches, profiles, strict=True):
         yield number, joined.stretch, profile
 

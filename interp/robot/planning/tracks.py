@@ -27,6 +27,7 @@ from interp.robot.path.orientation import Carried, Orientation, Turning, about, 
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.path.wrist import WristCurve
+from interp.robot.planning.junctions import STOP, Junction
 from interp.robot.planning.limits import (
     AxisLimits,
     CurveLimits,
@@ -49,14 +50,14 @@ _SPLINE_JERKS = (500e3, 50e3)
 class Piece:
     """A part of a motion's path that is one curve; only spline blocks have more than one piece.
 
-    ``paths`` are its limits along the path; none for PTP. The speed at its start is ``gear`` times
-    that at the end of the previous piece; 0 if the arm stops between them.
+    ``paths`` are its limits along the path; none for PTP. ``junction`` is how it continues the
+    previous piece; `STOP` if the arm stops between them.
     """
 
     curve: Curve
     limits: CurveLimits
     paths: tuple[PathLimits, ...] = ()
-    gear: float = 0.0
+    junction: Junction = STOP
     is_still: bool = False
 
 
