@@ -263,9 +263,10 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
 
 @needs_fork
 @pytest.mark.parametrize(
-    ("module", "function", "was", "now", "by_profile"),
+    ("case", "module", "function", "was", "now", "by_profile"),
     [
         (
+            "spline/circle_then_spl",
             "spline",
             "_is_corner",
             "before.is_exact and segment.is_exact",
@@ -273,6 +274,7 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
             True,
         ),
         (
+            "motion/circle_shape",
             "circle",
             "Circle.at",
             "np.cos(phi) * self.first + np.sin(phi) * self.second",
@@ -282,11 +284,11 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
     ],
 )
 def test_red_by_laws_of_the_simulator_only(
-    module: str, function: str, was: str, now: str, by_profile: bool
+    case: str, module: str, function: str, was: str, now: str, by_profile: bool
 ) -> None:
     """An arm that stops where it need not has another profile; one off its points breaks a rule."""
     mutant = _mutant(f"interp.robot.path.{module}", function, was, now)
-    (found,) = try_faults([mutant], reach_of([_case("motion/drawn_shapes")], _SETUP))
+    (found,) = try_faults([mutant], reach_of([_case(case)], _SETUP))
     assert ("red", by_profile) == (found.fate, found.by_profile)
 
 
