@@ -16,9 +16,13 @@ _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 
 @cache
 def equivalent() -> Mapping[tuple[str, ...], str]:
-    """Return the reasons why no case can notice some mutants, by `Mutant.change`."""
+    """Return the reasons why no case can notice some mutants, by `Mutant.change`.
+
+    Where no change of a line can be noticed, by the first three parts of it.
+    """
     keys = ("module", "function", "source", "was", "now")
-    return {tuple(row[key] for key in keys): row["reason"] for row in _known()["mutant"]}
+    rows = _known()["mutant"]
+    return {tuple(row[key] for key in keys if key in row): row["reason"] for row in rows}
 
 
 def search_reason(fault: SeededFault) -> str:

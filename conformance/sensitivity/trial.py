@@ -156,7 +156,8 @@ def _if_equivalent(trial: Trial[_Fault]) -> Trial[_Fault]:
     fault = trial.fault
     if trial.fate != "survived" or not isinstance(fault, Mutant):
         return trial
-    reason = equivalent().get(fault.change, "")
+    known = equivalent()
+    reason = known.get(fault.change) or known.get(fault.change[:3], "")
     if not reason and 0 < trial.runs == trial.reached and not trial.changed:
         reason = search_reason(fault)
     return replace(trial, fate="equivalent", why=reason) if reason else trial
