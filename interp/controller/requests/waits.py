@@ -33,8 +33,7 @@ from interp.values.json_form import to_json
 
 #: A program that has changed nothing for this time, in µs, may make only so many requests in a
 #: slice. So may that of the robot after `_ENDLESS` requests without a wait: it is in an endless
-#: loop. After `_MOST` it ends, if there is no script that may change something for it. What
-#: `QuietTime` skips is not requested.
+#: loop. After `_MOST` it ends, if there is no script that may change something for it.
 IDLE_AFTER: Final = 1_000_000
 _IDLE_REQUESTS: Final = 5
 _ENDLESS: Final = 100_000
@@ -154,7 +153,7 @@ class Waits:
         if has_changed or isinstance(request, _ACTS):
             known, self._points = self._points, len(self._queue.points)
             self._automatic.begin(has_moved=known != self._points)
-        if not isinstance(request, _UNCOUNTED):
+        if not isinstance(request, _UNCOUNTED) and not self._is_idle(task):
             task.unbroken += _weight(request)
             if task.unbroken >= _MOST and not self._player.has_steps:
                 raise BudgetExhausted(f"it has not ended or waited after {_MOST:,} requests")

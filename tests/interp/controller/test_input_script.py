@@ -260,13 +260,18 @@ def test_long_requests_count_as_many(long: str, most: int, monkeypatch: pytest.M
     assert "requests" in str(ran.outcome.error)
 
 
-def test_polling_with_a_counter_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It never repeats itself, and nothing can come that it waits for."""
-    monkeypatch.setattr(waits, "_MOST", 34_000)
-    text = "DEF main ( )\nINT N\nN=0\nWHILE NOT $IN[1]\nN=N+1\nENDWHILE\nEND\n"
+@pytest.mark.parametrize("body", ["", "N=N+1\n", "IF $IN[2] THEN\n$OUT[1]=TRUE\nENDIF\n"])
+def test_polling_is_no_endless_loop(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
+    """It goes on until the time is over on every executor, with a trace and without."""
+    monkeypatch.setattr(waits, "_MOST", 4_000)
+    text = f"DEF main ( )\nINT N\nN=0\nWHILE NOT $IN[1]\n{body}ENDWHILE\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
-    ran = run_program(program, RunSetup("vm"))
-    assert "requests" in str(ran.outcome.error)
+    setup = RunSetup(profile=FEW, until=9_000_000)
+    assert {"time"} == {
+        run_program(program, replace(setup, executor=one, is_traced=is_traced)).outcome.ending
+        for one in EXECUTORS
+        for is_traced in (False, True)
+    }
 
 
 def test_loop_that_moves_is_no_wait(go: Go) -> None:
