@@ -296,6 +296,9 @@ MOST_DISTINCT = 8
 #: Reserved words that a title lists, where several stand for names. Measured: the same with 1.
 MOST_LISTED = 3
 
+#: Examples in the record of a cluster besides the first. Bound: a page shows them all.
+MOST_EXAMPLES = 5
+
 # ----------------------------------------------------------------------------- growing a grammar
 # `recovery.induction`.
 

@@ -34,7 +34,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     from support.files.discovery import Skipped, read_source
 
     archive, inner = in_archive(file)
-    files = _files_on_disk(file) if archive is None else _filesin_archive(file, archive, inner)
+    files = _files_on_disk(file) if archive is None else _files_in_archive(file, archive, inner)
     main = _shown(files.asked, files.root)
     whole = chosen = _of_one_project(files.found, files.root, main)
     is_large = len(whole) > _MOST_FILES or sum(one.size for one in whole) > _MOST_BYTES
@@ -81,7 +81,7 @@ def _files_on_disk(file: Path) -> _Files:
     return _Files(root, asked, found, are_mixed)
 
 
-def _filesin_archive(file: Path, archive: Path, inner: str) -> _Files:
+def _files_in_archive(file: Path, archive: Path, inner: str) -> _Files:
     found = _discovered([archive])
     asked = _named(file, found, archive, inner)
     paths = {one: PurePosixPath(_shown(one, archive)) for one in found}

@@ -24,10 +24,8 @@ from recovery.survey.signature import Signature, signature_of
 from recovery.survey.survey import Survey
 from recovery.survey.surveyed_files import SurveyedFile
 from recovery.survey.suspected_keywords import SuspectedKeywords
+from recovery.tuning import MOST_EXAMPLES
 from support.parallel.progress import Progress, no_progress
-
-#: Examples of a cluster besides the first.
-MOST_EXAMPLES = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,10 +129,6 @@ def cluster(
     return _assembled(found, groups, causes, cause_of)
 
 
-#: Stands for the number of the line of a failure that only follows from another.
-_FOLLOWS = -1
-
-
 class _DirectFailures(Iterable[tuple[str, FailingLine, Form]]):
     """The failures of a survey that follow from no other, with digest and form, read each time."""
 
@@ -150,6 +144,9 @@ class _DirectFailures(Iterable[tuple[str, FailingLine, Form]]):
 
 class _FailingLines:
     """The distinct failing lines of a survey, and where each occurs."""
+
+    #: Stands for the number of the line of a failure that only follows from another.
+    FOLLOWS = -1
 
     def __init__(self, found: Survey) -> None:
         self.recognizer = Recognizer(found.grammar)
@@ -168,7 +165,7 @@ class _FailingLines:
             at = self._at[file.digest] = array("l")
             for failed in file.failures:
                 if failed.follows:
-                    own.append(_FOLLOWS)
+                    own.append(self.FOLLOWS)
                     continue
                 form = found.forms[failed.form]
                 line = LinePattern(form, suspected.of_line(failed, form))
@@ -182,7 +179,7 @@ class _FailingLines:
                     self.specimens[number] = Member(file, failed)
                 own.append(number)
                 at.append(failed.line)
-            for number in set(own) - {_FOLLOWS}:
+            for number in set(own) - {self.FOLLOWS}:
                 self.weights[number] += len(file.places)
         self.lines = tuple(numbers)
         self.signatures = signatures
@@ -203,7 +200,7 @@ class _FailingLines:
     ) -> Iterator[FailingFile]:
         """Yield the files with failing lines; their texts are read when needed."""
         for file in found.failing:
-            lines = array("l", (n for n in self.lines_of[file.digest] if n != _FOLLOWS))
+            lines = array("l", (n for n in self.lines_of[file.digest] if n != self.FOLLOWS))
             yield FailingFile(
                 file.digest, file.size, partial(text_of, file), self._at[file.digest], lines
             )
@@ -325,7 +322,7 @@ def _with_followers(lines: Sequence[int], of_line: Mapping[int, int]) -> array[i
     """Return the number of each line's cause; what follows has that of the line before it."""
     numbers = array("l")
     for line in lines:  # the first failure of a file follows from no other
-        numbers.append(numbers[-1] if line == _FOLLOWS else of_line[line])
+        numbers.append(numbers[-1] if line == _FailingLines.FOLLOWS else of_line[line])
     return numbers
 
 
@@ -380,7 +377,9 @@ def _cluster(
         proposals=cause.proposals,
         restores=tuple(
             tuple(need.file for need in needs if mended.issuperset(need.lines))
-            for mended in (proposal.mended | {_FOLLOWS} for proposal in cause.proposals)
+            for mended in (
+                proposal.mended | {_FailingLines.FOLLOWS} for proposal in cause.proposals
+            )
         ),
     )
 

@@ -39,7 +39,8 @@ _IDLE_REQUESTS: Final = 5
 _ENDLESS: Final = 100_000
 _MOST: Final = 120_000
 #: Requests that count as so many others, because they take as long: calls of routines, and reads or
-#: writes of a system variable or a part of it. `_POSITIONS` are how names of positions begin.
+#: writes of a system variable or a part of it. `_POSITIONS` are how names of positions begin. $ERR
+#: is written when ON_ERROR_PROCEED catches a fault.
 _LONG: Final = {
     "FORWARD": 5,
     "INVERSE": 30,
@@ -51,6 +52,7 @@ _LONG: Final = {
     "$BASE": 3,
     "$DISTANCE": 3,
     "$DIST_NEXT": 3,
+    "$ERR": 10,
 }
 _POSITIONS: Final = ("$POS_", "$AXIS_")
 _LONG_POSITION: Final = 10
@@ -146,7 +148,8 @@ class Waits:
 
         Raises `BudgetExhausted` if the robot's program is in an endless loop.
         """
-        if has_changed or not isinstance(request, (*_LOOKS, Write)):
+        catches = isinstance(request, Write) and request.path[0] == "$ERR"
+        if has_changed or catches or not isinstance(request, (*_LOOKS, Write)):
             task.busy_at = self._state.clock.now
         if task.name != "robot":
             return

@@ -260,6 +260,15 @@ def test_long_requests_count_as_many(long: str, most: int, monkeypatch: pytest.M
     assert "requests" in str(ran.outcome.error)
 
 
+def test_catching_faults_is_no_polling(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A loop that only catches the same fault is endless, and each counts as many requests."""
+    monkeypatch.setattr(waits, "_MOST", 12_000)
+    text = "DEF main ( )\nINT E\nE=0\nLOOP\nON_ERROR_PROCEED\nE=1/(E-E)\nENDLOOP\nEND\n"
+    program = load([Source(text, "main.src")], "main.src")
+    setup = RunSetup(profile=replace(FEW, requests=10), limits=Limits(statements=6_000))
+    assert "requests" in str(run_program(program, setup).outcome.error)
+
+
 @pytest.mark.parametrize("body", ["", "N=N+1\n", "IF $IN[2] THEN\n$OUT[1]=TRUE\nENDIF\n"])
 def test_polling_is_no_endless_loop(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
     """It goes on until the time is over on every executor, with a trace and without."""

@@ -8,9 +8,10 @@ import pytest
 
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
-from recovery.clustering.cluster import MOST_EXAMPLES, Cluster, Clusters, Member, cluster
+from recovery.clustering.cluster import Cluster, Clusters, Member, cluster
 from recovery.survey.survey import Survey, survey_texts
 from recovery.survey.surveyed_files import SurveyedFile
+from recovery.tuning import MOST_EXAMPLES
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 #: Pieces of programs: some are fine, some fail, some fail and make others follow.
