@@ -37,8 +37,8 @@ class EndedMotion:
     """A motion that came to its end, with times in µs; a blend at either end is left out.
 
     ``begins`` and ``stops`` say whether it starts from rest and ends at rest. ``planned`` is the
-    time at which it was planned. ``is_held`` is set if a BRAKE, RESUME, HALT or
-    message that has to be acknowledged happened between that time and its end.
+    time at which it was planned. ``is_held`` is set if a BRAKE, RESUME, HALT or message
+    that has to be acknowledged happened between that time and its end.
     """
 
     motion: Motion
@@ -118,11 +118,12 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
     if path is None or machine is None:
         return
     stops = [(one.time or 0, one.kind) for one in seen.of_kind("brake", "resume", "halt")]
-    messages = [
+    pauses = [time for time, _ in stops]
+    pauses += (
         one.time or 0
         for one in seen.of_kind("message")
         if one.fields.get("type") == "acknowledgement"
-    ]
+    )
     starts = [one.time or 0 for one in seen.of_kind("motion_start")]
     known = path.times[-1] + _cycle(path.times)
     found: dict[tuple[str, object], Event] = {}
@@ -135,7 +136,7 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
         if event is None or end is None or end.time is None:
             continue
         planned = found.get(("motion_planned", motion.number), event).time or 0
-        is_held = any(planned <= time <= end.time for time in (*dict(stops), *messages))
+        is_held = any(planned <= time <= end.time for time in pauses)
         _, last_stop = max((each for each in stops if each[0] <= planned), default=(0, ""))
         if last_stop == "resume" and motion.kind.startswith("CIRC"):
             continue

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from grammar.check.analysis.context import Context
 from grammar.check.analysis.spelling import Spelling
 from grammar.check.names.unresolved_name import (
+    MOST_SLIPS,
     SLUGS,
     Declared,
     Files,
@@ -27,9 +28,6 @@ from grammar.syntax.references import Space
 
 #: The code of a part that its type lacks, by the mark before it.
 _PARTS = {"#": "no-such-constant", ".": "no-such-component"}
-# A slip is made once or twice; what is used more often without a declaration is one, several of
-# these are not: their declarations are missing.
-_MOST_SLIPS = 2
 
 
 # ------------------------------------------------------------------------------------ a file
@@ -114,9 +112,9 @@ def slips_in_project(
     often = {
         key[0]
         for key in slips
-        if uses[key][0].finding is None and sum(one.count for one in uses[key]) > _MOST_SLIPS
+        if uses[key][0].finding is None and sum(one.count for one in uses[key]) > MOST_SLIPS
     }
-    if len(often) > 1:  # their declarations are missing, or were given other names
+    if len(often) > 1:  # these declarations are missing, or were given other names
         slips = {key: at for key, at in slips.items() if key[0] not in often}
     return slips
 
@@ -135,7 +133,7 @@ def _slipped(some: Sequence[UnresolvedName], files: Files, spelling: Spelling) -
         slug, is_certain = _PARTS[mark], first.finding.severity == "error"
         shown = mark.removeprefix(".")
         written, name = f"{shown}{written} of {type_}", f"{shown}{called}"
-    if count < _MOST_SLIPS and not spelling.is_likelier(called, first.near[0]):
+    if count < MOST_SLIPS and not spelling.is_likelier(called, first.near[0]):
         return None
     region = at.region(files)
     if region is None:

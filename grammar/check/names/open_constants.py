@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache, lru_cache
 
 from grammar.check.analysis.context import Context
-from grammar.check.names.unresolved_name import Files
+from grammar.check.names.unresolved_name import MOST_SLIPS, SERIES, Files
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.diagnostics.did_you_mean import one_of
 from grammar.diagnostics.typos import Series, Typos
@@ -17,11 +17,6 @@ from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import walk
 from support.lazy_dataclass import dataclass
-
-# A slip is made once or twice; what is written more often is called so.
-_MOST_SLIPS = 2
-# So many names that are near one and the same are a series.
-_SERIES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,14 +100,14 @@ def misspelt_constants(
     typos = Typos([*declared.values(), *usual])
     for key, some in uses.items():
         is_known = key in declared or any(one.has_unknown_type for one in some)
-        if is_known or counts[key] > _MOST_SLIPS:
+        if is_known or counts[key] > MOST_SLIPS:
             continue
         near = some[0].near or tuple(
             name
             for name in typos.meant(some[0].name, has_plurals=False)
             if name.upper() in declared or counts[name.upper()] > counts[key]
         )
-        if 0 < len(near) < _SERIES:
+        if 0 < len(near) < SERIES:
             fix = one_of([f"#{name}" for name in near])
             for one in some:
                 message = f"no enumeration has the constant #{one.name}"

@@ -11,17 +11,21 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from grammar.check.analysis.spelling import Spelling
-from grammar.check.names.unresolved_name import SLUGS, WORDS, Key, UnresolvedName, times
+from grammar.check.names.unresolved_name import (
+    MOST_SLIPS,
+    SERIES,
+    SLUGS,
+    WORDS,
+    Key,
+    UnresolvedName,
+    times,
+)
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, diagnose
 from grammar.diagnostics.did_you_mean import one_of
 from grammar.diagnostics.typos import Typos
 from grammar.syntax.references import Space
 
-# A slip is made once or twice; what is written more often is called so.
-_MOST_SLIPS = 2
-# So many names that are near one and the same are a series.
-_SERIES = 3
 # Two names of so many letters that are one slip apart and used once each are one.
 _LONG = 6
 # So many names that nothing declares are mistakes; of more, what declares them is missing. So it is
@@ -62,10 +66,10 @@ def _slips(
     series = Counter(name for names in meant.values() for name in names)
     slips = {}
     for key, some in uses.items():
-        near = tuple(name for name in meant[key] if series[name] < _SERIES)
+        near = tuple(name for name in meant[key] if series[name] < SERIES)
         if not near and counts[key] == 1 and (word := spelling.meant(some[0].name)):
             near = (word,)
-        is_rare = counts[key] <= (_MOST_SLIPS if key[0] else 1)
+        is_rare = counts[key] <= (MOST_SLIPS if key[0] else 1)
         if near and (is_rare or any(one.is_swapped for one in some)):
             slips[key] = near
     return slips

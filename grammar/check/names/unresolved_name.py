@@ -35,6 +35,10 @@ WORDS: Mapping[Space | None, str] = {
     Space.TYPE: "type",
     Space.CHANNEL: "channel",
 }
+#: A slip is made once or twice; what is written more often is called so.
+MOST_SLIPS = 2
+#: So many names that are near one and the same are a series.
+SERIES = 3
 
 
 @dataclass(frozen=True, slots=True)

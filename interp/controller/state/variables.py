@@ -192,15 +192,18 @@ class Variables:
             self.writes += 1
             self._untyped_parts[path] = copied(value)
             return
-        before = self._texts(path)
+        before = self._parts(path)
         if name in self._with_twins:  # existing snapshots keep the old value
             self._values[name] = copied(self._root(name))
             self._snapshot = None
         self._store(path, value)
-        self.writes += before is None or before != self._texts(path)
+        self.writes += before is None or before != self._parts(path)
 
-    def _texts(self, path: Path) -> Any:
-        """Return the parts of a value as texts, so that 0.0 and -0.0 differ; ``None`` if unset."""
+    def _parts(self, path: Path) -> Any:
+        """Return the parts of a value as texts, so that 0.0 and -0.0 differ, and 1 and TRUE.
+
+        ``None`` if it has none.
+        """
         try:
             return _texts(part(self._root(str(path[0])), path[1:]))
         except Fault:
