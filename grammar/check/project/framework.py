@@ -24,6 +24,7 @@ from grammar.check.names.project_names import of_project as of_names
 from grammar.check.names.unresolved_name import Files, UnresolvedName
 from grammar.check.structure import folds, misplaced_statements, splines
 from grammar.check.types import declarations, initial_values, statements, undeclared_kinds
+from grammar.check.types.missing_arguments import OpenCall, missing_arguments, open_calls
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.semantics.link import Project, Workspace
 from grammar.semantics.predefined import System
@@ -63,7 +64,7 @@ class Findings:
 
     ``references`` are names that other files may declare, ``uses`` the names in upper case that the
     file uses and some file declares, ``effects`` what other files depend on, ``constants`` those
-    whose enumeration is not known.
+    whose enumeration is not known, ``calls`` those whose routine is not known.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -71,6 +72,7 @@ class Findings:
     effects: Effects = NO_EFFECTS
     uses: frozenset[str] = frozenset()
     constants: tuple[OpenConstant, ...] = ()
+    calls: tuple[OpenCall, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,6 +122,7 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
         effects(context),
         used_names(context),
         tuple(open_constants(context)),
+        tuple(open_calls(context)),
     )
     context.flows.clear()  # they refer to the context: a cycle would keep the tree
     return Checked(
@@ -153,6 +156,7 @@ def check_project(
     rest = (one for one in references if not one.finding and one.slip not in slips)
     found += of_names(rest, spelling)
     found += misspelt_constants(constants, files, spelling.files)
+    found += missing_arguments(call for one in kept for call in one.calls)
     found += of_effects((one.effects for one in kept), lambda: spelling.files)
     return in_order(found)
 
