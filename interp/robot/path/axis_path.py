@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -19,6 +19,7 @@ from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.robot.kinematics.targets import check_path, follow
+from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.robot.path.transition import Transition, chained
 from interp.robot.path.uniform_spline import UniformSpline
@@ -44,7 +45,9 @@ _ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axi
 
 
 class Curve(Protocol):
-    """A path of the axes."""
+    """A path of the axes; two curves are equal only if they are the same object."""
+
+    def __hash__(self) -> int: ...
 
     @property
     def arm(self) -> Kinematics:
@@ -392,6 +395,12 @@ def tool_tangents(curve: Curve, u: Array) -> Array:
     both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
     tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)
     return tangents
+
+
+@lru_cache(maxsize=32)
+def tool_way(curve: Curve) -> ArcLength:
+    """Return the distance in mm that the tool travels along a curve from u = 0 on."""
+    return ArcLength(lambda u: tool_tangents(curve, u))
 
 
 def _singular() -> Fault:

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Approximation, Motion
-from interp.robot.path.arc_length import ArcLength
-from interp.robot.path.axis_path import Curve, tool_tangents
+from interp.robot.path.axis_path import Curve, tool_way
 from interp.robot.planning.ramps import Bounds, ramp
 from interp.robot.planning.tracks import Piece, Track
 
@@ -130,7 +129,7 @@ def _turning_share(curve: Curve, share: float) -> float:
 
 def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:
     """Return the share on which the tool travels a distance."""
-    way = ArcLength(lambda u: tool_tangents(curve, u))
+    way = tool_way(curve)
     if distance >= way.length:
         return 1.0
     wanted = way.length - distance if at_end else distance

@@ -22,8 +22,8 @@ Entry = tuple[Section, JoinedStretch | None]
 class PathExecution:
     """Adds the legs of a timeline.
 
-    Times are seconds; a route is the path that lies ahead at a time. What was travelled before that
-    time is never changed.
+    Times are seconds; a path is that of a plan, and a route the part of it that lies ahead at a
+    time. What was travelled before that time is never changed.
     """
 
     def __init__(self, timeline: Timeline) -> None:
@@ -31,12 +31,12 @@ class PathExecution:
 
     # --------------------------------------------------------------------------- progress
 
-    def ahead(self, route: Sequence[Section], time: float) -> tuple[Section, ...]:
-        """Return the part of a route that is not travelled yet at a time."""
+    def ahead(self, path: Sequence[Section], time: float) -> tuple[Section, ...]:
+        """Return the part of a path that is not travelled yet at a time."""
         travelled = 0
-        while travelled < len(route) and self._is_travelled(route[travelled], time):
+        while travelled < len(path) and self._is_travelled(path[travelled], time):
             travelled += 1
-        return tuple(route[travelled:])
+        return tuple(path[travelled:])
 
     def reached(self, section: Section, time: float) -> float:
         """Return the parameter that is reached on a section at a time."""
@@ -65,18 +65,19 @@ class PathExecution:
 
     def go(
         self,
-        route: Sequence[Section],
+        path: Sequence[Section],
         time: float,
         override: float,
         *,
-        new_behind: Section | None = None,
+        new_behind: Key | None = None,
     ) -> bool:
-        """Travel a route from a time on, starting in the state of the arm at that time.
+        """Travel a path from a time on, starting in the state of the arm at that time.
 
-        If ``new_behind`` is given, the route after this section is new. Then nothing changes and
+        If ``new_behind`` is given, the path after this section is new. Then nothing changes and
         the result is false if a seam would be passed faster than is allowed.
         """
         is_strict = new_behind is not None
+        route = self.ahead(path, time)
         if not route:
             return True
         leg = self._under_way(time)
@@ -87,14 +88,15 @@ class PathExecution:
         # dropped and what is under way ends faster than it allows now. Neither is the fault of what
         # comes far behind, so it begins where that can be.
         for state, begins, rest in self._ahead_of(leg, route, max(time, leg.begins)):
-            if is_strict and not any(section is new_behind for section in rest):
+            if is_strict and all(section.key != new_behind for section in rest):
                 return False
             if not rest or self._lay(rest, state, begins, override, is_strict):
                 return True
         return False
 
-    def halt(self, route: Sequence[Section], time: float, *, is_hard: bool) -> None:
-        """Stop on the route as soon as possible."""
+    def halt(self, path: Sequence[Section], time: float, *, is_hard: bool) -> None:
+        """Stop on the path as soon as possible."""
+        route = self.ahead(path, time)
         leg = self._under_way(time)
         if leg is None or not route:
             past = self._timeline.leg_at(time)
@@ -106,12 +108,12 @@ class PathExecution:
         for each in legs:
             self._timeline.append(each)
 
-    def stop_from(self, route: Sequence[Section], time: float) -> tuple[Key, float] | None:
+    def stop_from(self, path: Sequence[Section], time: float) -> tuple[Key, float] | None:
         """Return where a stop that begins at a time would end; ``None`` if the arm stands then."""
         leg = self._timeline.leg_at(time)
         if leg is None or leg.ends <= time:
             return None
-        _, legs = self._ramp_down(leg, route, time, is_hard=False)
+        _, legs = self._ramp_down(leg, path, time, is_hard=False)
         last = legs[-1] if legs else leg
         return last.section.key, last.last
 

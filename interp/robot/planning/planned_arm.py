@@ -8,9 +8,8 @@ the stop as it is.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -19,22 +18,14 @@ from interp.robot.arm import ArmEvent, Motion, Position, Samples
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.kinematics.targets import check_limits
-from interp.robot.path.axis_path import tool_tangents
 from interp.robot.path.targets_in_force import Programmed, check_numbers
 from interp.robot.planning.blend_zones import zone_of
 from interp.robot.planning.blending import blend_of
 from interp.robot.planning.execution import PathExecution
-from interp.robot.planning.path_events import Passage, events_of
+from interp.robot.planning.path_events import agenda
+from interp.robot.planning.plan import Plan
 from interp.robot.planning.spline_blocks import block
-from interp.robot.planning.straight_run import StraightRun
-from interp.robot.planning.timeline import (
-    MICROSECOND,
-    Key,
-    Leg,
-    Section,
-    Timeline,
-    micros,
-)
+from interp.robot.planning.timeline import MICROSECOND, Key, Leg, Timeline, micros
 from interp.robot.planning.torque_limits import Dynamics, TorqueLimits
 from interp.robot.planning.tracks import Track, Tracks
 from interp.values.faults import Fault
@@ -44,27 +35,10 @@ _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the pla
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Plan:
-    """Everything that is planned and not travelled yet; the next motion follows ``last``.
-
-    ``programmed`` is the target from which the next motion starts, ``straight`` the straight run
-    that ends with the last motion, if it has more than one motion.
-    """
-
-    programmed: Programmed
-    route: tuple[Section, ...] = ()
-    passages: tuple[Passage, ...] = ()
-    last: Track | None = None
-    straight: StraightRun | None = None
-    is_aborted: bool = False
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class _Mark:
-    plan: _Plan
-    brakes: tuple[_Plan | None, ...]
+    plan: Plan
+    brakes: tuple[Plan | None, ...]
     legs: tuple[Leg, ...]
-    stopped: ArmEvent | None
     now: int
 
 
@@ -84,15 +58,17 @@ class PlannedArm:
         axes = np.array(machine.standing(start))
         axes[:ROBOT_AXES] = self._tracks.arm.coupled(axes[:ROBOT_AXES])
         check_limits((*machine.axes, *machine.externals), axes.tolist())
-        self._plan = _Plan(Programmed(self._tracks.arm, axes))
+        self._plan = Plan(Programmed(self._tracks.arm, axes))
         #: For each brake what it interrupted, once other motions were planned behind it [INT-09].
-        self._brakes: list[_Plan | None] = []
+        self._brakes: list[Plan | None] = []
         self._timeline = Timeline(axes)
         self._execution = PathExecution(self._timeline)
         self._override = 1.0
-        self._stopped: ArmEvent | None = None
-        self._agenda: list[ArmEvent] | None = None
         self._now = 0
+        #: The end of the last brake, until it was taken.
+        self._stopped: ArmEvent | None = None
+        #: All events ahead, the earliest last; ``None`` if the path has changed since.
+        self._agenda: list[ArmEvent] | None = None
 
     # ------------------------------------------------------------------------------- planning
 
@@ -102,7 +78,7 @@ class PlannedArm:
         Returns the numbers of messages that stop nothing: 3171 for a motion of length zero
         [MOT-11], 2868 for a PTP into a singularity [POS-08].
         """
-        self._observe(now)
+        self._advance(now)
         check_numbers(motion)
         plan = self._standing_plan() if self._is_braked else self._plan
         if motion.kind in {"SPLINE", "PTP_SPLINE"}:
@@ -111,155 +87,93 @@ class PlannedArm:
             track, programmed = self._tracks.track(
                 motion, plan.programmed, is_after_abort=plan.is_aborted
             )
-        if plan is not self._plan:
+        if self._is_braked:
             self._brakes[-1] = self._plan
-            self._plan = plan
-        if not self._append_blended(track, programmed):
-            sections = _sections(track)
-            self._plan = _Plan(
-                programmed,
-                (*self._plan.route, *sections),
-                (*self._plan.passages, Passage(motion, sections)),
-                track,
-            )
-            self._reschedule(self._plan.route)
+        following = self._blended(plan, track, programmed)
+        if following is None or not self._schedule(following, new_behind=plan.sections[-1].key):
+            following = plan.with_motion(track, programmed)
+            self._schedule(following)
+        self._plan = following
         return track.notices
 
     def mark(self) -> object:
         """See `interp.robot.arm.Arm.mark`."""
-        return _Mark(
-            self._plan,
-            tuple(self._brakes),
-            tuple(self._timeline.legs),
-            self._stopped,
-            self._now,
-        )
+        return _Mark(self._plan, tuple(self._brakes), tuple(self._timeline.legs), self._now)
 
     def rewind(self, mark: object) -> None:
         """See `interp.robot.arm.Arm.rewind`."""
         if not isinstance(mark, _Mark):
             raise TypeError("not a mark of this arm")
-        self._plan, self._brakes = mark.plan, list(mark.brakes)
+        self._plan, self._brakes, self._now = mark.plan, list(mark.brakes), mark.now
         self._timeline.restore(mark.legs)
-        self._stopped, self._now = mark.stopped, mark.now
         self._agenda = None
 
-    def _append_blended(self, track: Track, programmed: Programmed) -> bool:
-        """Append a motion with a blend into it, if a blend exists and there is time for it."""
-        before = self._plan
-        if before.last is None or not before.route or not before.passages:
-            return False
-        body, passage = before.route[-1], before.passages[-1]
-        zone = zone_of(before.last, track)
-        if zone is None or body.number != passage.number:
-            return False
-        leaves = 1.0 - zone.before
-        reached = self._execution.reached(body, self._now * MICROSECOND)
+    def _blended(self, plan: Plan, track: Track, programmed: Programmed) -> Plan | None:
+        """Return a plan with one more motion and a blend into it, or ``None``.
+
+        There may be no blend, or it may be too late for it.
+        """
+        path = plan.sections
+        if plan.last is None or not self._execution.ahead(path, self._seconds):
+            return None
+        zone = zone_of(plan.last, track)
+        if zone is None:
+            return None
+        body, leaves = path[-1], 1.0 - zone.before
+        reached = self._execution.reached(body, self._seconds)
         if self._override == 0.0:  # it may brake still
             reached = max(reached, self._execution.stood_at(body))
         if leaves < body.start or reached > leaves:
-            return False
+            return None
+        machine, limits = self._tracks.machine, self._tracks.limits
         try:
-            machine, limits = self._tracks.machine, self._tracks.limits
-            planned = blend_of(before.last, track, zone, machine, limits, before.straight)
+            blend = blend_of(plan.last, track, zone, machine, limits, plan.straight)
         except Fault:
-            return False
-        number = track.motion.number
-        shorter = replace(body, end=1.0 - planned.zone.before)
-        blend = Section(body.number, number, planned.curve, planned.limits, junction=planned.into)
-        first, *others = _sections(track)
-        rest = (replace(first, start=planned.zone.after, junction=planned.out), *others)
-        route = (*before.route[:-1], shorter, blend, *rest)
-        if planned.straight is not None:
-            route = tuple(planned.straight.bounded(section) for section in route)
-            shorter = route[len(before.route) - 1]
-        if not self._reschedule(route, new_behind=shorter):
-            return False
-        self._plan = _Plan(
-            programmed,
-            route,
-            (
-                *before.passages[:-1],
-                replace(passage, body=(*passage.body[:-1], shorter), out=blend),
-                Passage(track.motion, rest, into=blend),
-            ),
-            track,
-            planned.straight,
-        )
-        return True
+            return None
+        return plan.with_blend(blend, track, programmed)
 
-    def _standing_plan(self) -> _Plan:
+    def _standing_plan(self, *, is_aborted: bool = False) -> Plan:
         """Return an empty plan that starts where the arm stops."""
-        legs = self._timeline.legs
-        axes = self._timeline.axes_at(max(legs[-1].ends, self._now * MICROSECOND))
-        return _Plan(Programmed(self._tracks.arm, axes))
+        axes = self._timeline.axes_at(self._end)
+        return Plan(Programmed(self._tracks.arm, axes), is_aborted=is_aborted)
 
     # ----------------------------------------------------------------------------------- events
 
     def next_event(self) -> ArmEvent | None:
         """See `interp.robot.arm.Arm.next_event`."""
-        agenda = self._events()
-        return agenda[-1] if agenda else None
+        events = self._events()
+        return events[-1] if events else None
 
     def take(self) -> ArmEvent:
         """Take the next event as `interp.robot.arm.Arm.take`; raises `IndexError` without one."""
         event = self._events().pop()
-        self._now = max(self._now, event.time)
+        self._advance(event.time)
         if event.kind == "stopped":
             self._stopped = None
-            return event
-        self._plan = replace(self._plan, passages=self._taken(self._plan.passages, event))
+        else:
+            self._plan = self._plan.without(event)
         return event
 
     def pending(self) -> int:
         """See `interp.robot.arm.Arm.pending`."""
-        return sum(
-            ("motion_end", None) not in passage.taken
-            for plan in self._plans()
-            for passage in plan.passages
-        )
-
-    def _plans(self) -> Iterator[_Plan]:
-        """Yield what brakes have interrupted, and the current plan."""
-        yield from (plan for plan in self._brakes if plan is not None)
-        yield self._plan
-
-    def _oldest(self) -> float:
-        """Return the number of the oldest motion of which a part or an event may lie ahead."""
-        sections: list[Section] = []
-        for plan in self._plans():
-            sections += plan.route[:1]
-            sections += [part for passage in plan.passages[:1] for part, _, _ in passage.parts()]
-        return min((section.number for section in sections), default=math.inf)
-
-    def _taken(self, passages: tuple[Passage, ...], event: ArmEvent) -> tuple[Passage, ...]:
-        """Return passages without an event; one without events is dropped unless it is the last."""
-        found = []
-        for passage in passages:
-            known = passage
-            if passage.number == event.motion:
-                known = replace(passage, taken=passage.taken | {(event.kind, event.key)})
-            if passage is passages[-1] or not known.is_over:
-                found.append(known)
-        return tuple(found)
+        return sum(plan.pending for plan in self._plans())
 
     def _events(self) -> list[ArmEvent]:
         """Return all events ahead, the earliest last."""
         if self._agenda is None:
-            found = [
-                (time, passage.number, rank, event)
-                for passage in self._plan.passages
-                for time, rank, event in events_of(
-                    passage, self._timeline, self._now, self._stop_from
-                )
-            ]
-            found.sort(key=lambda entry: entry[:3], reverse=True)
-            self._agenda = [event for _, _, _, event in found]
-            if self._stopped is not None:
-                time = self._stopped.time
-                place = sum(event.time > time for event in self._agenda)
-                self._agenda.insert(place, self._stopped)
+            path, is_braked = self._plan.sections, self._is_braked
+
+            def stop_from(time: float) -> tuple[Key, float] | None:
+                return None if is_braked else self._execution.stop_from(path, time)
+
+            self._agenda = agenda(
+                self._plan.passages, self._timeline, self._now, stop_from, self._stopped
+            )
         return self._agenda
+
+    def _plans(self) -> tuple[Plan, ...]:
+        """Return what brakes have interrupted, and the current plan."""
+        return (*(plan for plan in self._brakes if plan is not None), self._plan)
 
     # ------------------------------------------------------------------------------ where it is
 
@@ -276,24 +190,16 @@ class PlannedArm:
 
     def speed(self, time: int) -> float:
         """See `interp.robot.arm.Arm.speed`."""
-        seconds = time * MICROSECOND
-        leg = self._timeline.leg_at(seconds)
-        if leg is None or seconds >= leg.ends:
-            return 0.0
-        state = leg.state(seconds)
-        tangent = tool_tangents(leg.section.curve, np.array([state.u]))
-        return float(np.linalg.norm(tangent)) * state.speed / 1000.0
+        leg = self._timeline.leg_at(time * MICROSECOND)
+        return 0.0 if leg is None else leg.tool_speed(time * MICROSECOND) / 1000.0
 
     def distances(self, time: int) -> tuple[float, float]:
         """See `interp.robot.arm.Arm.distances`; 0 and 0 where no motion is on."""
-        seconds = time * MICROSECOND
-        leg = self._timeline.leg_at(seconds)
+        leg = self._timeline.leg_at(time * MICROSECOND)
         if leg is None:
             return 0.0, 0.0
-        section, u = leg.section, leg.state(seconds).u
-        number = section.number
-        if section.following is not None and u >= 0.5:
-            number = section.following
+        section, u = leg.section, leg.state(time * MICROSECOND).u
+        number = section.motion_at(u)
         for passage in self._plan.passages:
             if passage.number == number:
                 return passage.distances(section.key, u)
@@ -305,7 +211,8 @@ class PlannedArm:
 
     def forget(self, time: int) -> None:
         """See `interp.robot.arm.Arm.forget`."""
-        self._timeline.forget(time * MICROSECOND, self._oldest())
+        oldest = min(plan.oldest for plan in self._plans())
+        self._timeline.forget(time * MICROSECOND, oldest)
 
     def path(self) -> tuple[Leg, ...]:
         """Return the legs of the path, from the oldest that is kept to the last planned one.
@@ -322,122 +229,99 @@ class PlannedArm:
         if not 0.0 <= percent <= 100.0:
             text = f"$OV_PRO is {percent:g}, not within 0 to 100"
             raise Fault("invalid", text, number=1422, rules=("MOT-09",))
-        self._observe(now)
+        self._advance(now)
         was, self._override = self._override, percent / 100.0
         if self._is_braked or was == self._override:
             return
         if self._override == 0.0:
             self._halt(is_hard=False)
         else:
-            self._reschedule(self._plan.route)
+            self._schedule(self._plan)
 
     def brake(self, now: int, is_hard: bool) -> None:
         """See `interp.robot.arm.Arm.brake`."""
-        self._observe(now)
+        self._advance(now)
         self._halt(is_hard=is_hard)
         self._brakes.append(None)
-        self._tell_stop()
+        self._announce_stop()
 
     def proceed(self, now: int) -> None:
         """See `interp.robot.arm.Arm.proceed`: undoes the latest brake.
 
         Raises `ValueError` where the arm has been moved away and not back.
         """
-        self._observe(now)
+        self._advance(now)
         if self._brakes and (plan := self._brakes[-1]) is not None:
-            here = self._timeline.axes_at(self._end())
+            here = self._timeline.axes_at(self._end)
             if np.abs(here - self._left_at(plan)).max() > _BACK:
                 raise ValueError("the arm is not where the brake has left it")
             self._plan = plan
         del self._brakes[-1:]
         self._stopped = None
         if not self._is_braked and self._override > 0.0:
-            self._reschedule(self._plan.route)
+            self._schedule(self._plan)
 
     def discard(self, now: int) -> None:
         """See `interp.robot.arm.Arm.discard`."""
-        self._observe(now)
-        is_moving = self._execution.is_moving(now * MICROSECOND)
+        self._advance(now)
+        is_moving = self._execution.is_moving(self._seconds)
         if is_moving and not self._is_braked:
             self._halt(is_hard=False)
-            self._tell_stop()
+            self._announce_stop()
         else:
-            self._timeline.cut(now * MICROSECOND if not is_moving else self._end())
+            self._timeline.cut(self._end if is_moving else self._seconds)
         self._brakes.clear()
-        axes = self._timeline.axes_at(self._end())
-        self._plan = _Plan(Programmed(self._tracks.arm, axes), is_aborted=True)
+        self._plan = self._standing_plan(is_aborted=True)
         self._agenda = None
 
-    def _tell_stop(self) -> None:
+    def _announce_stop(self) -> None:
+        """Set the event of the end of a brake, in the motion in which the arm comes to rest."""
+        leg = self._timeline.leg_at(self._end)
         passages = self._plan.passages
-        number = passages[0].number if passages else 0
-        leg = self._timeline.leg_at(self._end())
-        if leg is not None:
-            number = leg.section.number
-        time = max(self._now, micros(self._end()))
-        self._stopped = ArmEvent(time, "stopped", number)
-        self._agenda = None
+        number = leg.section.number if leg else passages[0].number if passages else 0
+        self._stopped = ArmEvent(max(self._now, micros(self._end)), "stopped", number)
 
-    def _end(self) -> float:
-        """Return the end of the last leg in seconds, or now."""
-        return max(self._timeline.end, self._now * MICROSECOND)
+    def _left_at(self, plan: Plan) -> Array:
+        """Return the axes at which a plan was interrupted."""
+        ahead = self._execution.ahead(plan.sections, self._seconds)
+        if not ahead:
+            return plan.programmed.axes
+        axes: Array = ahead[0].curve.axes(np.array([self._execution.stood_at(ahead[0])]))[0]
+        return axes
 
     @property
     def _is_braked(self) -> bool:
-        """Whether the last brake still holds what it has interrupted."""
+        """Whether nothing was planned behind the last brake."""
         return bool(self._brakes) and self._brakes[-1] is None
 
-    def _observe(self, now: int) -> None:
-        """Advance the time: remove from the route what was travelled."""
+    # -------------------------------------------------------------------------- time and schedule
+
+    @property
+    def _seconds(self) -> float:
+        """The present time in seconds."""
+        return self._now * MICROSECOND
+
+    @property
+    def _end(self) -> float:
+        """The end of the last leg in seconds, or now."""
+        return max(self._timeline.end, self._seconds)
+
+    def _advance(self, now: int) -> None:
         self._now = max(self._now, now)
-        route = self._plan.route
-        ahead = self._execution.ahead(route, self._now * MICROSECOND)
-        if len(ahead) < len(route):
-            self._plan = replace(self._plan, route=ahead)
 
-    def _left_at(self, plan: _Plan) -> Array:
-        """Return the axes at which a plan was interrupted."""
-        if not plan.route:
-            return plan.programmed.axes
-        section = plan.route[0]
-        axes: Array = section.curve.axes(np.array([self._execution.stood_at(section)]))[0]
-        return axes
+    def _schedule(self, plan: Plan, *, new_behind: Key | None = None) -> bool:
+        """Schedule a plan from now on, unless the override is 0.
 
-    def _reschedule(self, route: Sequence[Section], *, new_behind: Section | None = None) -> bool:
-        """Plan a route from now on, unless the override is 0.
-
-        If the route is new after a section, do so only if no seam is passed too fast; return
+        If the path is new behind a section, do so only if no seam is passed too fast; return
         whether it was done.
         """
         self._agenda = None
         if self._override == 0.0:
             return True
-        time = self._now * MICROSECOND
-        return self._execution.go(route, time, self._override, new_behind=new_behind)
+        path, time = plan.sections, self._seconds
+        return self._execution.go(path, time, self._override, new_behind=new_behind)
 
     def _halt(self, *, is_hard: bool) -> None:
         """Stop on the path."""
         self._agenda = None
-        self._execution.halt(self._plan.route, self._now * MICROSECOND, is_hard=is_hard)
-
-    def _stop_from(self, time: float) -> tuple[Key, float] | None:
-        """Return where a brake at a time would end; ``None`` if the arm stands then."""
-        if self._is_braked:
-            return None
-        return self._execution.stop_from(self._plan.route, time)
-
-
-def _sections(track: Track) -> tuple[Section, ...]:
-    """Return the sections of a motion without blends."""
-    return tuple(
-        Section(
-            track.motion.number,
-            None,
-            piece.curve,
-            piece.limits,
-            junction=piece.junction,
-            is_still=piece.is_still,
-            part=part,
-        )
-        for part, piece in enumerate(track.pieces)
-    )
+        self._execution.halt(self._plan.sections, self._seconds, is_hard=is_hard)

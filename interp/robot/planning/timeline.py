@@ -6,27 +6,27 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Samples
 from interp.robot.kinematics.solver import Array
-from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.axis_path import Curve, tool_tangents
 from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile
 
 MICROSECOND = 1e-6
+APEX = 0.5
+"""The parameter of a blend at which the first motion ends and the second begins [TRG-02]."""
 #: The number of a motion, whether it is the blend behind it, and the part of a spline block.
 Key = tuple[int, bool, int]
 
 _NOTHING = 1e-9  # of u
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Section:
     """A part of the path: of one motion, or the blend between two.
 
@@ -65,10 +65,9 @@ class Section:
             for place, part in enumerate(parts)
         ]
 
-    @cached_property
-    def way(self) -> ArcLength:
-        """The distance that the tool travels along the curve from u = 0 on."""
-        return ArcLength(lambda u: tool_tangents(self.curve, u))
+    def motion_at(self, u: float) -> int:
+        """Return the number of the motion that is on at a parameter."""
+        return self.number if self.following is None or u < APEX else self.following
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,6 +109,14 @@ class Leg:
         """Return the time in seconds at which a parameter is passed."""
         passed = self.profile.time_at((u - self.stretch.start) * self.stretch.size)
         return min(self.begins + passed, self.ends)
+
+    def tool_speed(self, time: float) -> float:
+        """Return the speed of the tool at a time in mm/s; 0 from its end on."""
+        if time >= self.ends:
+            return 0.0
+        state = self.state(time)
+        tangent = tool_tangents(self.section.curve, np.array([state.u]))
+        return float(np.linalg.norm(tangent)) * state.speed
 
 
 class Timeline:

@@ -103,6 +103,14 @@ def test_braking_at_rest(driver: Driver) -> None:
     assert ("stopped", driver.now) == (event.kind, event.time)
 
 
+def test_moving_after_a_brake_before_the_first_motion(driver: Driver) -> None:
+    """An arm that never moved can be braked and then moved."""
+    driver.arm.brake(0, False)
+    driver.move("PTP", {"A1": 10.0})
+    driver.play()
+    assert 10.0 == driver.arm.position(driver.now).axes[0]
+
+
 def test_going_on_before_it_stands(moving: Driver) -> None:
     """Who goes on while the arm brakes finds it on its path, still moving."""
     moving.play(until=moving.now + 300_000)
