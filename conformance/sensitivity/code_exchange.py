@@ -44,8 +44,19 @@ def reassigned(module: ModuleType, name: str, value: ast.expr) -> Sequence[Calla
 def recoded(module: ModuleType, tree: ast.Module) -> Sequence[Callable[[], None]]:
     """Exchange the code of the functions that a tree has otherwise; returns what undoes it.
 
+    Raises `InvalidMutant` where none is another.
+    """
+    found = other_code(module, tree)
+    if not found:
+        raise InvalidMutant("it compiles to the same code")
+    return exchanged(found)
+
+
+def other_code(module: ModuleType, tree: ast.Module) -> Sequence[tuple[FunctionType, CodeType]]:
+    """Return the functions of which a tree has other code, with that code.
+
     Functions, comprehensions and lambdas are to begin where they did. Raises `InvalidMutant` where
-    none is another, or one has other variables of the functions around it.
+    one has other variables of the functions around it.
     """
     path = str(module.__file__)
     original = compile(text_of(module.__name__), path, "exec", dont_inherit=True)
@@ -55,10 +66,13 @@ def recoded(module: ModuleType, tree: ast.Module) -> Sequence[Callable[[], None]
         for old, new in _different(original, mutated)
         for function in _functions().get(_key(old), ())
     ]
-    if not found:
-        raise InvalidMutant("it compiles to the same code")
     if any(one.__code__.co_freevars != new.co_freevars for one, new in found):
         raise InvalidMutant("it has other variables of the functions around it")
+    return found
+
+
+def exchanged(found: Sequence[tuple[FunctionType, CodeType]]) -> Sequence[Callable[[], None]]:
+    """Give functions other code; returns what undoes it."""
     undo = [partial(setattr, one, "__code__", one.__code__) for one, _ in found]
     for one, new in found:
         one.__code__ = new

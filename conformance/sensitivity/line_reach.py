@@ -5,10 +5,12 @@ from __future__ import annotations
 import ast
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from itertools import compress, count
+from types import CodeType, FunctionType
 from typing import Any, Final
 
 import numpy as np
@@ -17,7 +19,7 @@ from conformance.evaluation.execution import Setup
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.runner import run_case
-from conformance.sensitivity.code_exchange import InvalidMutant, load, recoded
+from conformance.sensitivity.code_exchange import exchanged, load, other_code
 from conformance.sensitivity.mutated_code import modules, tree_of
 from conformance.sensitivity.mutation_operators import span
 from conformance.suite.case import Case
@@ -177,19 +179,25 @@ def _marked() -> Iterator[Mapping[str, _Marks]]:
     undo: list[Callable[[], None]] = []
     found = {}
     for name in modules():
-        module, tree = import_module(name), tree_of(name)
-        lasts: dict[int, int] = {}
-        _add_marks(tree, lasts)
-        size = max(lasts.values(), default=0) + 1
-        found[name] = _Marks(bytearray(size), bytearray(size), lasts)
-        vars(module).update(zip(_MARKS, (found[name].functions, found[name].lambdas), strict=True))
-        with suppress(InvalidMutant):  # it has no functions
-            undo += recoded(module, tree)
+        found[name], code = _with_marks(name)
+        undo += exchanged(code)
     try:
         yield found
     finally:
         for one in undo:
             one()
+
+
+@cache
+def _with_marks(name: str) -> tuple[_Marks, Sequence[tuple[FunctionType, CodeType]]]:
+    """Return the marks of a module, and its functions with code that sets them."""
+    module, tree = import_module(name), tree_of(name)
+    lasts: dict[int, int] = {}
+    _add_marks(tree, lasts)
+    size = max(lasts.values(), default=0) + 1
+    found = _Marks(bytearray(size), bytearray(size), lasts)
+    vars(module).update(zip(_MARKS, (found.functions, found.lambdas), strict=True))
+    return found, other_code(module, tree)
 
 
 def _add_marks(tree: ast.Module, lasts: dict[int, int]) -> None:

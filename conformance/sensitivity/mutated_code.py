@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
+import re
 import tomllib
 from collections.abc import Sequence
-from fnmatch import fnmatchcase
+from fnmatch import fnmatchcase, translate
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -22,11 +23,12 @@ PACKAGES: Final = tuple(_TABLE["packages"])
 OF_CASES: Final = tuple(name for name in PACKAGES if name != "machine")
 #: Patterns of the modules and functions of which no mutant is drawn.
 LEFT_OUT: Final = tuple(name for row in _TABLE["left_out"] for name in row["names"])
+_LEFT_OUT: Final = re.compile("|".join(map(translate, LEFT_OUT)))
 
 
 def is_left_out(name: str) -> bool:
     """Return whether no mutant is drawn of a module or function, ``interp.values.values.empty``."""
-    return any(fnmatchcase(name, each) for each in LEFT_OUT)
+    return _LEFT_OUT.match(name) is not None
 
 
 @cache
