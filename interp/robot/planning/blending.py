@@ -25,10 +25,10 @@ from interp.robot.path.axis_path import (
 )
 from interp.robot.path.pose_path import Blend, StraightLine
 from interp.robot.path.transition import Cubics, Overlap, Rounding, Transition
+from interp.robot.planning.axis_limits import AxisLimits
 from interp.robot.planning.blend_zones import Zone
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
 from interp.robot.planning.limits import (
-    AxisLimits,
     CurveLimits,
     PathLimits,
     constant_speed_limits,
@@ -153,7 +153,7 @@ def _blend_limits(
         one.limits.stretches[-1].bounds(1.0),
         other.limits.stretches[0].bounds(1.0),
     )
-    beside = before.scaled(into.gear), after.scaled(1.0 / out.gear)
+    beside = before * into.gear, after * (1.0 / out.gear)
     size = one.limits.stretches[-1].size / into.gear
     curve_limits = constant_speed_limits(rates, limits, beside, programmed, most, size)
     return curve_limits.within(first.axis_limits.torques, curve)

@@ -2,24 +2,24 @@
 
 For u(t) along a curve q(u), an axis has the speed ``q'·u̇`` and the acceleration ``q''·u̇² +
 q'·ü``. If ``|q''|·v² + |q'|·a`` is below the limit of every axis, every profile with speeds up to v
-and accelerations up to a respects the limits. So each stretch of a curve gets one v and one a,
-computed from samples; a curve whose samples differ much is divided into several stretches. The
-torques of an arm with known masses lower both (`interp.robot.planning.torque_limits`).
+and accelerations up to a respects the limits; the same holds for the jerk. So each stretch of a
+curve gets one set of bounds, computed from samples; a curve whose samples differ much is divided
+into several stretches. The torques of an arm with known masses lower the bounds
+(`interp.robot.planning.torque_limits`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from interp.robot.arm import Load
-from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, Rates
+from interp.robot.planning.axis_limits import AxisLimits
 from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.torque_limits import TorqueLimits, TorqueMargin
 
@@ -38,56 +38,6 @@ _UNEVEN = 1.25
 _SHORTEST = 4  # samples of a stretch
 _RAMP = 0.08
 """Seconds over which a path acceleration builds up: an assumption, no rule has a figure."""
-
-_ROTARY = Dynamics(180.0, 450.0, 4500.0)
-_LINEAR = Dynamics(1000.0, 2500.0, 25000.0)
-"""The dynamics of an axis without machine data: assumed, similar to those of other arms."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class AxisLimits:
-    """Speed, acceleration and jerk of all axes, each ``(axes,)``, in deg or mm and seconds.
-
-    ``torques`` are the limits of an arm whose masses are known.
-    """
-
-    velocity: Array
-    acceleration: Array
-    jerk: Array
-    torques: TorqueLimits | None = None
-
-    def equals(self, other: AxisLimits) -> bool:
-        """Return whether all limits are equal."""
-        names = ("velocity", "acceleration", "jerk")
-        are_equal = all(np.array_equal(getattr(self, n), getattr(other, n)) for n in names)
-        return are_equal and self.torques == other.torques
-
-    def carrying(self, loads: Mapping[str, Load]) -> AxisLimits:
-        """Return the limits of the arm with these loads."""
-        if self.torques is None:
-            return self
-        return replace(self, torques=self.torques.carrying(loads))
-
-    def scaled(
-        self, velocity: Sequence[float], acceleration: Sequence[float], jerk: Sequence[float]
-    ) -> AxisLimits:
-        """Return limits scaled by percentages; one outside 0 to 100 counts as 100 [MOT-02]."""
-        count = len(self.velocity)
-        return AxisLimits(
-            self.velocity * _shares(velocity, count),
-            self.acceleration * _shares(acceleration, count),
-            self.jerk * _shares(jerk, count),
-            self.torques,
-        )
-
-    def merged(self, other: AxisLimits, choose: Callable[[Array, Array], Array]) -> AxisLimits:
-        """Return the lower or the higher limit for each axis; torques are those of the first."""
-        return AxisLimits(
-            choose(self.velocity, other.velocity),
-            choose(self.acceleration, other.acceleration),
-            choose(self.jerk, other.jerk),
-            self.torques,
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,46 +58,40 @@ class PathLimits:
 class Stretch:
     """A part of a curve with one set of bounds, in units of u.
 
-    ``velocity`` is what the axes allow; ``programmed`` is the speed that the override scales.
-    ``hardest`` and ``sharpest`` are acceleration and jerk of the hardest possible braking ramp
-    [INT-09]. ``size`` is the length in mm or degrees that u represents; it keeps numbers in a
-    sensible range. A blend may be passed at constant speed up to ``even``, which is more than
-    ``velocity``; for a blend ``hardest`` and ``sharpest`` are what remains at that speed.
+    ``size`` is the length in mm or degrees that u represents; it keeps numbers in a sensible range.
+    ``programmed`` is the speed that the override scales. ``normal`` are the bounds of a change of
+    speed, ``hard`` those of the hardest possible braking ramp [INT-09]. A blend may be passed at
+    constant speed with the bounds ``constant``: a higher speed than in ``normal``, with the
+    acceleration and jerk that remain at that speed.
     """
 
     start: float
     end: float
-    velocity: float
-    programmed: float
-    acceleration: float
-    jerk: float
-    hardest: float
-    sharpest: float
     size: float
-    even: float = 0.0
+    programmed: float
+    normal: Bounds
+    hard: Bounds
+    constant: Bounds | None = None
 
     def bounds(self, override: float, is_hard: bool = False) -> Bounds:
-        """Return the bounds at an override of 0 to 1."""
-        speed = min(self.velocity, self.programmed * override)
-        if is_hard and not self.even:
-            return Bounds(speed, self.hardest, self.sharpest)
-        return Bounds(speed, self.acceleration, self.jerk)
+        """Return the bounds of a change of speed at an override of 0 to 1."""
+        return (self.hard if is_hard else self.normal).up_to(self.programmed * override)
 
-    def even_bounds(self, override: float) -> Bounds:
-        """Return the bounds of a blend at constant speed."""
-        return Bounds(min(self.even, self.programmed * override), self.hardest, self.sharpest)
+    def constant_bounds(self, override: float) -> Bounds:
+        """Return the bounds at constant speed."""
+        return (self.constant or self.normal).up_to(self.programmed * override)
 
     def within(self, margin: TorqueMargin) -> Stretch:
         """Return the stretch with bounds at which no torque exceeds what is free of it."""
-        velocity, even = min(self.velocity, margin.fastest), min(self.even, margin.fastest)
-        left = margin.left(min(velocity, self.programmed))
-        left_even = margin.left(min(even, self.programmed)) if even else left
+
+        def bounded(bounds: Bounds) -> Bounds:
+            velocity = min(bounds.velocity, margin.fastest)
+            left = margin.left(min(velocity, self.programmed))
+            return Bounds(velocity, min(bounds.acceleration, left), bounds.jerk)
+
+        constant = self.constant and bounded(self.constant)
         return replace(
-            self,
-            velocity=velocity,
-            acceleration=min(self.acceleration, left),
-            hardest=min(self.hardest, left_even),
-            even=even,
+            self, normal=bounded(self.normal), hard=bounded(self.hard), constant=constant
         )
 
     def between(self, start: float, end: float) -> Stretch:
@@ -158,10 +102,15 @@ class Stretch:
 
     def part(self, start: float, share: float) -> Stretch:
         """Return the stretch in the parameter of a part of the curve, given its start and share."""
-        rates = ("velocity", "programmed", "acceleration", "jerk", "hardest", "sharpest", "even")
-        scaled = {name: getattr(self, name) / share for name in rates}
-        ends = {"start": (self.start - start) / share, "end": (self.end - start) / share}
-        return replace(self, size=self.size * share, **ends, **scaled)
+        return Stretch(
+            (self.start - start) / share,
+            (self.end - start) / share,
+            self.size * share,
+            self.programmed / share,
+            self.normal / share,
+            self.hard / share,
+            self.constant and self.constant / share,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -194,17 +143,6 @@ class CurveLimits:
         return CurveLimits(tuple(each.part(start, share) for each in self.between(start, end)))
 
 
-def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> AxisLimits:
-    """Return the limits in the machine data [MOT-05, MOT-06], with those of its torques."""
-    known = [_dynamics(axis) for axis in (*machine.axes, *machine.externals)]
-    return AxisLimits(
-        np.array([one.velocity for one in known]),
-        np.array([one.acceleration for one in known]),
-        np.array([one.jerk for one in known]),
-        torques,
-    )
-
-
 def curve_limits_of(
     curve: Curve, machine: AxisLimits, programmed: AxisLimits, paths: Sequence[PathLimits]
 ) -> CurveLimits:
@@ -215,43 +153,29 @@ def curve_limits_of(
     empty.
     """
     grid = curve.grid
-    first, second, third = (np.abs(rates) for rates in curve.rates(grid))
-    straight = _positive(first)
-    wanted = min((path.acceleration / path.length for path in paths), default=math.inf)
+    samples = _Samples(curve.rates(grid))
     slowest = np.minimum(
-        _least(programmed.velocity / straight),
+        samples.speed(programmed),
         min((path.velocity / path.length for path in paths), default=math.inf),
     )
-    velocity = _least(machine.velocity / straight)
-    per_axis = _least(programmed.acceleration / straight)
-    smooth = _least(programmed.jerk / straight)
-    hardest = _least(machine.acceleration / straight)
-    sharpest = _least(machine.jerk / straight)
-    acceleration = np.minimum(per_axis, wanted)
-    if not curve.is_straight:
-        acceleration = np.minimum(_SHARE * _MARGIN * per_axis, wanted)
-        left = programmed.acceleration - first * acceleration[:, None]
-        velocity = np.minimum(velocity, np.sqrt(_least(left / _positive(second)))) * _MARGIN
-        velocity = np.minimum(velocity, np.cbrt(_least(_BENT * programmed.jerk / _positive(third))))
-        used = np.minimum(velocity, slowest)[:, None]
-        margin = _least(_BENT * programmed.jerk / _positive(3.0 * second * used))
-        acceleration = np.minimum(acceleration, margin)
-        bent = second * used**2
-        hardest = _least((machine.acceleration - bent) / straight) * _MARGIN
-        hardest = np.maximum(np.minimum(hardest, margin), acceleration)
-        turned = third * used**3 + 3.0 * second * used * acceleration[:, None]
-        smooth = np.minimum(smooth, _least((programmed.jerk - turned) / straight) * _MARGIN)
-        sharpest = np.minimum(sharpest, _least((machine.jerk - turned) / straight) * _MARGIN)
-    used = np.minimum(velocity, slowest)
-    smooth = np.minimum(smooth, sharpest)
+    steepest = min((path.acceleration / path.length for path in paths), default=math.inf)
+    if curve.is_straight:
+        normal, hard = samples.straight(machine, programmed, steepest)
+    else:
+        normal, hard = samples.curved(machine, programmed, steepest, slowest)
+    jerk = np.minimum(normal.jerk, hard.jerk)
     for path in paths:
         is_known = math.isfinite(path.jerk)
-        smooth = np.minimum(smooth, path.jerk / path.length if is_known else acceleration / _RAMP)
-    size = max([*(path.length for path in paths), float(first.max(initial=0.0)), 1e-9])
-    columns = np.stack((velocity, slowest, acceleration, smooth, hardest, sharpest), axis=1)
-    columns *= _ROUNDING
-    cuts = _cuts(used, 0, len(grid) - 1)
-    stretches = (_stretch(grid, columns, low, high, size) for low, high in pairwise(cuts))
+        smooth = path.jerk / path.length if is_known else normal.acceleration / _RAMP
+        jerk = np.minimum(jerk, smooth)
+    normal = replace(normal, jerk=jerk)
+    size = max([*(path.length for path in paths), float(samples.first.max(initial=0.0)), 1e-9])
+    stretches = []
+    for low, high in pairwise(_cuts(np.minimum(normal.velocity, slowest), 0, len(grid) - 1)):
+        part = slice(max(low - 1, 0), high + 2)  # with the next sample on either side
+        start, end = float(grid[low]), float(grid[high])
+        wanted = float(slowest[part].min()) * _ROUNDING
+        stretches.append(Stretch(start, end, size, wanted, normal.least(part), hard.least(part)))
     return CurveLimits(tuple(stretches)).within(programmed.torques, curve)
 
 
@@ -270,73 +194,110 @@ def constant_speed_limits(
     blend, it is limited to a share of the constant speed.
     """
     programmed = min(programmed, *(bounds.velocity for bounds in beside))
-    sampled = _Sampled(rates, limits)
-    even = min(sampled.steady_speed(_MARGIN), most)
-    eased = min(sampled.steady_speed(_MARGIN * _EASED), most)
-    acceleration, jerk = sampled.left(min(eased, programmed), beside)
-    hardest, sharpest = sampled.left(min(even, programmed), beside)
-    stretch = Stretch(
-        start=0.0,
-        end=1.0,
-        velocity=eased,
-        programmed=programmed,
-        acceleration=acceleration,
-        jerk=jerk,
-        hardest=hardest,
-        sharpest=sharpest,
-        size=size,
-        even=even,
-    )
-    return CurveLimits((stretch,))
+    samples = _Samples(rates)
+    fastest = float(samples.speed(limits).min()) * _ROUNDING
+    sharpest, quickest = samples.steady_speeds(limits)
+
+    def bounds(share: float) -> Bounds:
+        """Return the bounds up to a share of the speed at which curvature takes all of an axis."""
+        speed = min(fastest, share * sharpest, share * quickest, most)
+        return Bounds(speed, *samples.left(limits, min(speed, programmed), beside))
+
+    normal, constant = bounds(_MARGIN * _EASED), bounds(_MARGIN)
+    return CurveLimits((Stretch(0.0, 1.0, size, programmed, normal, normal, constant),))
 
 
-class _Sampled:
-    """Samples of a curve, and what they leave of the limits."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _SampledBounds:
+    """Bounds at samples of a curve, each ``(n,)``."""
 
-    def __init__(self, rates: Rates, limits: AxisLimits) -> None:
-        first, second, third = (np.abs(each) for each in rates)
-        self._limits = limits
-        self._second, self._third = second, third
-        self._straight = _positive(first)
-        self._fastest = float((limits.velocity / self._straight).min())
-        self._sharpest = math.sqrt((limits.acceleration / _positive(second)).min())
-        self._quickest = math.cbrt((limits.jerk / _positive(third)).min())
+    velocity: Array
+    acceleration: Array
+    jerk: Array
 
-    def steady_speed(self, share: float) -> float:
-        """Return the largest constant speed at which the curve can be travelled.
+    def least(self, part: slice) -> Bounds:
+        """Return the lowest bounds of a part of the samples."""
+        rows = self.velocity[part], self.acceleration[part], self.jerk[part]
+        velocity, acceleration, jerk = (float(row.min()) * _ROUNDING for row in rows)
+        return Bounds(velocity, acceleration, jerk)
 
-        It is limited to a share of the speed at which the curvature alone uses all of an axis's
-        acceleration or jerk.
+
+class _Samples:
+    """Samples of a curve: what they leave of the limits of the axes, and bounds from that.
+
+    ``first``, ``second`` and ``third`` are the absolute derivatives of the axes by u, each
+    ``(n, axes)``.
+    """
+
+    def __init__(self, rates: Rates) -> None:
+        self.first, self.second, self.third = (np.abs(each) for each in rates)
+        self._divisors = _positive(self.first)
+
+    def speed(self, limits: AxisLimits) -> Array:
+        """Return the largest speed at each sample, ``(n,)``."""
+        return _least(limits.velocity / self._divisors)
+
+    def acceleration(self, limits: AxisLimits, speed: Array | float = 0.0) -> Array:
+        """Return the acceleration that curvature leaves at a speed, ``(n,)``."""
+        return _least((limits.acceleration - self.second * speed**2) / self._divisors)
+
+    def jerk(self, limits: AxisLimits, used: Array | float = 0.0) -> Array:
+        """Return the jerk that is left of the limits once so much of it is used, ``(n,)``."""
+        return _least((limits.jerk - used) / self._divisors)
+
+    def straight(
+        self, machine: AxisLimits, programmed: AxisLimits, steepest: float
+    ) -> tuple[_SampledBounds, _SampledBounds]:
+        """Return the normal and the hard bounds of a straight curve.
+
+        The normal acceleration is at most ``steepest``.
         """
-        return min(self._fastest * _ROUNDING, share * self._sharpest, share * self._quickest)
+        velocity = self.speed(machine)
+        hard = _SampledBounds(velocity, self.acceleration(machine), self.jerk(machine))
+        acceleration = np.minimum(self.acceleration(programmed), steepest)
+        return _SampledBounds(velocity, acceleration, self.jerk(programmed)), hard
 
-    def left(self, speed: float, beside: Sequence[Bounds]) -> tuple[float, float]:
+    def curved(
+        self, machine: AxisLimits, programmed: AxisLimits, steepest: float, slowest: Array
+    ) -> tuple[_SampledBounds, _SampledBounds]:
+        """Return the same of a curve that is travelled at the speed ``slowest`` ``(n,)`` or less.
+
+        The speed leaves the axes enough for half of their acceleration.
+        """
+        acceleration = np.minimum(_SHARE * _MARGIN * self.acceleration(programmed), steepest)
+        left = programmed.acceleration - self.first * acceleration[:, None]
+        bent = np.sqrt(_least(left / _positive(self.second)))
+        velocity = np.minimum(self.speed(machine), bent) * _MARGIN
+        turned = np.cbrt(_least(_BENT * programmed.jerk / _positive(self.third)))
+        velocity = np.minimum(velocity, turned)
+        speed = np.minimum(velocity, slowest)[:, None]
+        most = _least(_BENT * programmed.jerk / _positive(3.0 * self.second * speed))
+        acceleration = np.minimum(acceleration, most)
+        hardest = np.minimum(self.acceleration(machine, speed) * _MARGIN, most)
+        hardest = np.maximum(hardest, acceleration)
+        jerk = self.third * speed**3 + 3.0 * self.second * speed * acceleration[:, None]
+        smooth, sharpest = (self.jerk(each, jerk) * _MARGIN for each in (programmed, machine))
+        hard = _SampledBounds(velocity, hardest, sharpest)
+        return _SampledBounds(velocity, acceleration, smooth), hard
+
+    def steady_speeds(self, limits: AxisLimits) -> tuple[float, float]:
+        """Return the speeds at which curvature takes all of an axis's acceleration, and jerk."""
+        sharpest = math.sqrt((limits.acceleration / _positive(self.second)).min())
+        return sharpest, math.cbrt((limits.jerk / _positive(self.third)).min())
+
+    def left(
+        self, limits: AxisLimits, speed: float, beside: Sequence[Bounds]
+    ) -> tuple[float, float]:
         """Return the acceleration and jerk that remain at a speed, at most those beside it."""
-        limits, straight = self._limits, self._straight
-        acceleration = float(((limits.acceleration - self._second * speed**2) / straight).min())
-        turned = limits.jerk - self._third * speed**3
-        bent = 3.0 * self._second * speed
-        margin = float((turned / 2.0 / _positive(bent)).min())
-        acceleration = min(acceleration, margin, *(bounds.acceleration for bounds in beside))
-        jerk = float(((turned - bent * acceleration) / straight).min())
+        turned = limits.jerk - self.third * speed**3
+        bent = 3.0 * self.second * speed
+        acceleration = min(
+            float(self.acceleration(limits, speed).min()),
+            float((turned / 2.0 / _positive(bent)).min()),
+            *(bounds.acceleration for bounds in beside),
+        )
+        jerk = float(((turned - bent * acceleration) / self._divisors).min())
         return acceleration * _ROUNDING, min(jerk, *(bounds.jerk for bounds in beside)) * _ROUNDING
-
-
-def _stretch(grid: Array, columns: Array, low: int, high: int, size: float) -> Stretch:
-    """Return the stretch between two samples; it also respects the next sample on either side."""
-    least = columns[max(low - 1, 0) : high + 2].min(axis=0)
-    velocity, programmed, acceleration, jerk, hardest, sharpest = (float(value) for value in least)
-    return Stretch(
-        start=float(grid[low]),
-        end=float(grid[high]),
-        velocity=velocity,
-        programmed=programmed,
-        acceleration=acceleration,
-        jerk=jerk,
-        hardest=hardest,
-        sharpest=sharpest,
-        size=size,
-    )
 
 
 def _cuts(speeds: Array, low: int, high: int) -> list[int]:
@@ -350,17 +311,6 @@ def _cuts(speeds: Array, low: int, high: int) -> list[int]:
     if max(lowest) <= _UNEVEN * min(lowest):  # no use in a cut between two that are alike
         return [*left[:-1], *right[1:]]
     return [*left, *right[1:]]
-
-
-def _dynamics(axis: Axis) -> Dynamics:
-    if axis.dynamics is not None:
-        return axis.dynamics
-    return _LINEAR if axis.kind is AxisKind.LINEAR else _ROTARY
-
-
-def _shares(percents: Sequence[float], count: int) -> Array:
-    known = [percent / 100.0 if 0.0 < percent <= 100.0 else 1.0 for percent in percents[:count]]
-    return np.array(known + [1.0] * (count - len(known)))
 
 
 def _positive(rates: Array) -> Array:

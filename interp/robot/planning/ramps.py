@@ -26,9 +26,16 @@ class Bounds:
             choose(self.jerk, other.jerk),
         )
 
-    def scaled(self, share: float) -> Bounds:
+    def up_to(self, velocity: float) -> Bounds:
+        """Return the bounds with at most this speed."""
+        return Bounds(min(self.velocity, velocity), self.acceleration, self.jerk)
+
+    def __mul__(self, scale: float) -> Bounds:
         """Return the bounds in another unit."""
-        return Bounds(self.velocity * share, self.acceleration * share, self.jerk * share)
+        return Bounds(self.velocity * scale, self.acceleration * scale, self.jerk * scale)
+
+    def __truediv__(self, scale: float) -> Bounds:
+        return Bounds(self.velocity / scale, self.acceleration / scale, self.jerk / scale)
 
 
 @dataclass(frozen=True, slots=True)

@@ -183,7 +183,7 @@ def spans_of(
     scale, highest = 0.0, Bounds(0.0, 0.0, 0.0)
     for place, joined in enumerate(stretches):
         stretch, junction = joined.stretch, joined.junction
-        is_first, is_blend = place == 0, stretch.even > 0.0
+        is_first, is_blend = place == 0, stretch.constant is not None
         stands = not is_first and junction.gear <= 0.0
         if is_first or stands:
             scale, bend = stretch.size, 0.0
@@ -191,9 +191,9 @@ def spans_of(
             before, scale = scale, scale / junction.gear
             bend = scale * junction.bend / before**2
         own = stretch.bounds(override, is_hard)
-        if is_blend and is_first and state.speed * _ALIKE > stretch.velocity:
-            own = stretch.even_bounds(override)
-        bounds = own.scaled(scale)
+        if is_blend and is_first and state.speed * _ALIKE > stretch.normal.velocity:
+            own = stretch.constant_bounds(override)
+        bounds = own * scale
         last = spans[-1] if spans else None
         if (
             last is not None
@@ -205,7 +205,8 @@ def spans_of(
             last.bounds = last.bounds.merged(bounds, min)
         else:
             highest = bounds
-            constant, eased = stretch.even_bounds(override).scaled(scale), stretch.velocity * scale
+            constant = stretch.constant_bounds(override) * scale
+            eased = stretch.normal.velocity * scale
             is_constant = is_blend and not is_first
             spans.append(Span(bounds, constant, eased, is_blend, is_constant, stands))
             if last is not None:

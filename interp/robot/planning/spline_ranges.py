@@ -17,6 +17,7 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, STOP, JoinedStretch
 from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile
+from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.schedule import schedule
 from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault
@@ -104,9 +105,10 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
         whole = pieces[number].limits
         within = []
         for stretch in whole.between(low, high):
-            if stretch.velocity * length < speed * (1.0 - _SAME):
+            if stretch.normal.velocity * length < speed * (1.0 - _SAME):
                 raise _broken(3214, "the programmed speed cannot be kept in its range")
-            within.append(replace(stretch, programmed=min(speed / length, stretch.velocity)))
+            most = min(speed / length, stretch.normal.velocity)
+            within.append(replace(stretch, programmed=most))
         stretches = (*whole.between(0.0, low), *within, *whole.between(high, 1.0))
         changed[number] = replace(pieces[number], limits=CurveLimits(stretches))
     _check_reached(changed, ends, start, end, speed)
@@ -181,21 +183,16 @@ def _slowed(pieces: Pieces, groups: Sequence[range], wanted: Sequence[float]) ->
 
 def _slower(piece: Piece, share: float) -> Piece:
     """Return a piece with its speed scaled by a share; acceleration and jerk match."""
-    return replace(
-        piece,
-        limits=CurveLimits(
-            tuple(
-                replace(
-                    stretch,
-                    velocity=stretch.velocity * share,
-                    programmed=stretch.programmed * share,
-                    acceleration=stretch.acceleration * share**2,
-                    jerk=stretch.jerk * share**3,
-                )
-                for stretch in piece.limits.stretches
-            )
-        ),
-    )
+    stretches = []
+    for stretch in piece.limits.stretches:
+        normal = stretch.normal
+        slower = Bounds(
+            normal.velocity * share, normal.acceleration * share**2, normal.jerk * share**3
+        )
+        hard = stretch.hard.up_to(slower.velocity)
+        programmed = stretch.programmed * share
+        stretches.append(replace(stretch, programmed=programmed, normal=slower, hard=hard))
+    return replace(piece, limits=CurveLimits(tuple(stretches)))
 
 
 # ---------------------------------------------------------------------------------------- shared

@@ -17,7 +17,8 @@ from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine
-from interp.robot.planning.limits import AxisLimits, CurveLimits, curve_limits_of
+from interp.robot.planning.axis_limits import AxisLimits
+from interp.robot.planning.limits import CurveLimits, curve_limits_of
 from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, reduced_paths
 

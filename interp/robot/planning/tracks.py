@@ -27,12 +27,11 @@ from interp.robot.path.orientation import Carried, Orientation, Turning, about, 
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine
 from interp.robot.path.targets_in_force import Programmed
 from interp.robot.path.wrist import WristCurve
+from interp.robot.planning.axis_limits import AxisLimits, axis_limits
 from interp.robot.planning.junctions import STOP, Junction
 from interp.robot.planning.limits import (
-    AxisLimits,
     CurveLimits,
     PathLimits,
-    axis_limits,
     curve_limits_of,
 )
 from interp.robot.planning.torque_limits import TorqueLimits

@@ -160,9 +160,9 @@ def longest(line: PlannedArm, program: Sequence[Motion], ahead: int) -> float:
     """
     leg = line.path()[-1]
     stretches, size = leg.section.limits.stretches, leg.section.limits.stretches[0].size
-    speeds = [min(one.velocity, one.programmed) * size for one in stretches]
-    acceleration = min(one.acceleration for one in stretches) * size
-    jerk = min(one.jerk for one in stretches) * size
+    speeds = [min(one.normal.velocity, one.programmed) * size for one in stretches]
+    acceleration = min(one.normal.acceleration for one in stretches) * size
+    jerk = min(one.normal.jerk for one in stretches) * size
     names = program[1].target or {}
     points = np.array([[(motion.target or {})[name] for name in names] for motion in program])
     ways = np.linalg.norm(points - points[0], axis=1)

@@ -15,7 +15,8 @@ from interp.robot.kinematics.targets import follow
 from interp.robot.path.axis_path import JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine, poses_of
-from interp.robot.planning.limits import CurveLimits, PathLimits, axis_limits, curve_limits_of
+from interp.robot.planning.axis_limits import axis_limits
+from interp.robot.planning.limits import CurveLimits, PathLimits, curve_limits_of
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.machine_data import MachineData
@@ -60,7 +61,9 @@ def test_a_straight_line_of_axes(machine: MachineData) -> None:
     )
     limits = axis_limits(machine)
     (stretch,) = curve_limits_of(curve, limits, limits, ()).stretches
-    assert (4.0, 40.0 / 3.0) == pytest.approx((stretch.velocity, stretch.acceleration))
+    assert (4.0, 40.0 / 3.0) == pytest.approx(
+        (stretch.normal.velocity, stretch.normal.acceleration)
+    )
 
 
 def bounds_hold(curve: PosePathCurve, curve_limits: CurveLimits, machine: MachineData) -> None:
@@ -73,12 +76,9 @@ def bounds_hold(curve: PosePathCurve, curve_limits: CurveLimits, machine: Machin
         before, here, behind = (curve.axes(middle + shift) for shift in (-step, 0.0, step))
         first = np.abs(behind - before) / (2 * step)
         second = np.abs(behind - 2 * here + before) / step**2
-        for velocity, acceleration in (
-            (min(stretch.velocity, stretch.programmed), stretch.acceleration),
-            (min(stretch.velocity, stretch.programmed), stretch.hardest),
-        ):
-            assert (first * velocity <= limits.velocity * (1 + 1e-6)).all()
-            used = second * velocity**2 + first * acceleration
+        for bounds in (stretch.bounds(1.0), stretch.bounds(1.0, is_hard=True)):
+            assert (first * bounds.velocity <= limits.velocity * (1 + 1e-6)).all()
+            used = second * bounds.velocity**2 + first * bounds.acceleration
             assert (used <= limits.acceleration * (1 + 1e-3)).all()
 
 
@@ -98,7 +98,7 @@ def test_a_line_past_a_singularity(machine: MachineData) -> None:
     curve = line(machine, (-40.0, 150.0, 60.0), start)
     limits = axis_limits(machine)
     curve_limits = curve_limits_of(curve, limits, limits, (PathLimits(166.0, 2000.0, 5000.0),))
-    speeds = [stretch.velocity for stretch in curve_limits.stretches]
+    speeds = [stretch.normal.velocity for stretch in curve_limits.stretches]
     assert max(speeds) > 3 * min(speeds)
     assert all(one.end == other.start for one, other in pairwise(curve_limits.stretches))
     bounds_hold(curve, curve_limits, machine)

@@ -1,5 +1,7 @@
 """Speeds at the seams of stretches, and what lies between them."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 from interp.robot.planning.junctions import AT_REST, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import Stretch
 from interp.robot.planning.profile import SpeedProfile
+from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.schedule import braking, schedule
 
 
@@ -14,7 +17,10 @@ def joined(
     gear: float, start: float, end: float, velocity: float, even: float = 0.0
 ) -> JoinedStretch:
     """A stretch with a speed of its own, per unit of u; a blend where it has an even one."""
-    stretch = Stretch(start, end, velocity, velocity, 2.0, 20.0, 4.0, 80.0, 1000.0, even)
+    normal, hard = Bounds(velocity, 2.0, 20.0), Bounds(velocity, 4.0, 80.0)
+    constant = replace(hard, velocity=even) if even else None
+    hard = hard if constant is None else normal
+    stretch = Stretch(start, end, 1000.0, velocity, normal, hard, constant)
     return JoinedStretch(stretch, Junction(gear))
 
 
@@ -115,7 +121,7 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
     for step, profile, length in zip(steps, profiles, lengths, strict=True):
         assert before == pytest.approx(profile.knots[0][2], abs=1e-6)
         assert length * 1000.0 == pytest.approx(profile.length, rel=1e-6, abs=1e-6)
-        most = step.stretch.velocity * override * 1000.0
+        most = step.stretch.normal.velocity * override * 1000.0
         assert max(profile.final, *(knot[2] for knot in profile.knots)) <= most * (1 + 1e-5) + 1e-6
         before = profile.final
     assert 0.0 == pytest.approx(before, abs=1e-4)
