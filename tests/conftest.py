@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # `HYPOTHESIS_PROFILE=search` looks for new ones, and for many.
 settings.register_profile(
     "suite",
-    max_examples=30,
+    max_examples=20,
     derandomize=True,
     deadline=None,
     suppress_health_check=[
