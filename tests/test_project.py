@@ -72,6 +72,16 @@ def test_top_level_is_as_designed() -> None:
     assert set() == TOP_LEVEL - found
 
 
+def test_hooks_run_for_names_in_capitals() -> None:
+    """Controllers write CELL.SRC, and a commit of it alone is checked."""
+    hooks = (ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8")
+    patterns = re.findall(r"^  files: (.+)$", hooks, re.MULTILINE)
+    assert patterns
+    for pattern in patterns:
+        found = [bool(re.search(pattern, name)) for name in ("a.src", "R1/CELL.SRC", "a.txt")]
+        assert [True, True, False] == found
+
+
 @pytest.mark.parametrize("name", PACKAGES)
 def test_package_says_what_it_is(name: str) -> None:
     """Every package says what it is, and re-exports nothing; only `krl` is a library for others."""

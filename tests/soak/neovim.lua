@@ -138,6 +138,7 @@ end
 local function main()
   vim.cmd.edit("cell.src")
   found.filetype = vim.bo.filetype
+  found.filetype_in_capitals = vim.filetype.match({ filename = "CELL.SRC" })
   language_server()
   vim.cmd("edit! loop1.src")
   debug_adapter()

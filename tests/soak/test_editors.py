@@ -70,6 +70,7 @@ def test_neovim_shows_and_debugs_krl(tmp_path: Path) -> None:
     assert "how many are on the pallet" in hover
     assert found == {
         "filetype": "krl",
+        "filetype_in_capitals": "krl",
         "findings": [[4, "KRL001"], [8, "KRL117"], [8, "KRL117"]],
         "symbols": ["CELL", "Fetch"],
         "signature": "DEF Fetch(n:IN INT, m:IN INT)",
