@@ -273,7 +273,7 @@ def tip_of(point: PlannedPoint, machine: MachineData) -> list[float]:
 def _arm(machine: MachineData, path: PathRecord | None, scene: Scene) -> ArmRecord:
     frames = () if path is None else path.placements
     return {
-        "axes": [axis.name for axis in (*machine.axes, *machine.externals)],
+        "axes": [axis.name for axis in machine.every_axis],
         "links": [
             {
                 "name": link.name,
@@ -318,7 +318,7 @@ def _numbers(pose: Pose) -> list[float]:
 
 
 def _limits(machine: MachineData) -> LimitsRecord:
-    axes = (*machine.axes, *machine.externals)
+    axes = machine.every_axis
     dynamics = [axis.dynamics for axis in axes]
     torques = (*machine.torques, *(math.inf,) * (len(axes) - len(machine.torques)))
     return {

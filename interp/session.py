@@ -29,12 +29,8 @@ from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.data_list import DataListError
 from interp.robot.kinematics.dynamics_data import with_torques
-from interp.robot.kinematics.machine_data import (
-    ROBOT_AXES,
-    MachineData,
-    MachineDataError,
-    read_machine,
-)
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.stand_in import (
     NO_MACHINE,
@@ -269,7 +265,7 @@ def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -
         return PlannedArm(machine, start, InverseDynamics(Cell(machine, robot=file)))
 
     arm = DeferredArm(made)
-    every = zip((*machine.axes, *machine.externals), machine.standing(start), strict=True)
+    every = zip(machine.every_axis, machine.standing(start), strict=True)
     stands = all(axis.lower <= value <= axis.upper for axis, value in every)
     if not stands or machine.palletising is not None or not machine.is_wrist_central:
         try:  # what is impossible is reported before the program runs

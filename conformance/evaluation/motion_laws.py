@@ -84,7 +84,7 @@ def _wrong_end(one: EndedMotion) -> Iterator[Violation]:
     target = dict(motion.target)
     if not one.stops or motion.is_relative or motion.angle is not None or motion.parts:
         return
-    names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
+    names = [axis.name for axis in one.machine.every_axis]
     is_free = one.machine.palletising is None
     wanted = {name: target[name] for name in names if name in target}
     for name, value in wanted.items():
@@ -108,7 +108,7 @@ def _not_at_rest(one: EndedMotion) -> Iterator[Violation]:
 
     At a distance of t from rest, an axis can have moved by at most j·t³/6, with the largest jerk j.
     """
-    axes, times = (*one.machine.axes, *one.machine.externals), one.path.times
+    axes, times = one.machine.every_axis, one.path.times
     jerks = np.array([axis.dynamics.jerk if axis.dynamics else math.inf for axis in axes])
     for moment, rests in ((one.start, one.begins), (one.end, one.stops)):
         place = int(np.searchsorted(times, moment))

@@ -83,7 +83,7 @@ class EndedMotion:
     @cached_property
     def axis_rates(self) -> Array | None:
         """The largest speed, acceleration and jerk in a PTP, (3, axes); ``None`` if unknown."""
-        settings, axes = self.motion.settings, (*self.machine.axes, *self.machine.externals)
+        settings, axes = self.motion.settings, self.machine.every_axis
         dynamics = [axis.dynamics for axis in axes if axis.dynamics is not None]
         if len(dynamics) < len(axes):
             return None

@@ -46,7 +46,7 @@ def _limit_violations(seen: Observation, path: PathRecord) -> Iterator[Violation
     """Check software limits [MOT-15], speeds [MOT-06], accelerations [MOT-02] and jerks."""
     if seen.machine is None:
         return
-    axes = (*seen.machine.axes, *seen.machine.externals)[: path.axes.shape[1]]
+    axes = seen.machine.every_axis[: path.axes.shape[1]]
     limits = [one.dynamics for one in axes]
     rows = path.axes
     for order, (rule, what) in enumerate(

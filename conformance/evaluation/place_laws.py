@@ -111,7 +111,7 @@ def _excess(
     if way.axes is not None and (criterion == "C_PTP" or one.motion.kind == "SPTP"):
         travel = np.abs(way.axes[-1] - way.axes[0])
         share = min(max(one.motion.settings.approximation.cptp, 0.0), 100.0) / 100.0
-        axes = (*one.machine.axes, *one.machine.externals)
+        axes = one.machine.every_axis
         reach = share * np.array([axis.approximation for axis in axes])
         most = min(float((reach / np.maximum(travel, 1e-9)).min()), _HALF) * travel.max()
         found.append((np.abs(place - way.axes[-int(at_end)]).max() - most) / _NEAR_DEGREES)
@@ -175,7 +175,7 @@ def _tool(one: EndedMotion, axes: Array) -> Array:
 
 def axes_of(one: EndedMotion, before: Array | None) -> Array | None:
     """Return the axes of a target given as axes; omitted ones keep their value [MOT-16]."""
-    names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
+    names = [axis.name for axis in one.machine.every_axis]
     target = one.motion.target
     if before is None or one.motion.is_relative or not set(names[:ROBOT_AXES]) & set(target):
         return None

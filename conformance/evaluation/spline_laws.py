@@ -106,7 +106,7 @@ def _off_block(one: EndedMotion) -> str:
 def _off_ptp_block(one: EndedMotion) -> str:
     """Return by how much the axes of a block of SPTP are off, or "" if its targets are no axes."""
     most = one.axis_rates
-    names = [axis.name for axis in (*one.machine.axes, *one.machine.externals)]
+    names = [axis.name for axis in one.machine.every_axis]
     speeds = [part.settings.axis_velocity for part in one.motion.parts if part.settings is not None]
     if most is None or any(each != one.motion.settings.axis_velocity for each in speeds):
         return ""

@@ -78,7 +78,8 @@ def read_machine_file(path: Path) -> "MachineData":
     """Return the arm in a $machine.dat, if its kinematics can be solved. Raises `InputError`."""
     from interp.robot.kinematics.arms import kinematics_of
     from interp.robot.kinematics.data_list import DataListError
-    from interp.robot.kinematics.machine_data import MachineDataError, read_machine
+    from interp.robot.kinematics.machine_data import MachineDataError
+    from interp.robot.kinematics.machine_reader import read_machine
     from support.files.decode import decode
     from support.files.untrusted import read_bytes
 

@@ -6,6 +6,7 @@ sign, aggregates of them, and assignments to single elements of arrays.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -43,6 +44,13 @@ def read_data_list(text: str, path: str = "") -> Mapping[Key, Value]:
                 if declarator.value is not None:
                     _enter(values, _named(declarator.name, declarator.indices), declarator.value)
     return values
+
+
+def line_of(text: str, name: str) -> int | None:
+    """Return the last line that gives a value to a variable, such as ``$AXIS_DIR[3]``."""
+    assignment = re.compile(rf"(?i)\s*(\w+\s+){{0,3}}{re.escape(name)}\s*(\[\]\s*)?=")
+    lines = text.splitlines()
+    return next((n for n in range(len(lines), 0, -1) if assignment.match(lines[n - 1])), None)
 
 
 def _tolerant(text: str, path: str) -> ast.Module:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from interp.robot.kinematics.data_list import read_data_list
+from interp.robot.kinematics.data_list import line_of, read_data_list
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 
 _GEARS = 37
@@ -44,14 +44,7 @@ def with_torques(machine: MachineData, text: str, path: str) -> MachineData:
         return machine
     for place, length in lengths.items():
         if not abs(datum(place) - length) < _CLOSE:
-            line = next(
-                (
-                    number
-                    for number, line in enumerate(text.splitlines(), start=1)
-                    if line.replace(" ", "").upper().startswith(f"$DYN_DAT[{place}]=")
-                ),
-                1,
-            )
+            line = line_of(text, f"$DYN_DAT[{place}]") or 1
             name = values.get(("$MODEL_NAME",))
             other = name.strip().removeprefix("#") if isinstance(name, str) else "another arm"
             raise MachineDataError(

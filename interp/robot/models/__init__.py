@@ -9,7 +9,8 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from interp.robot.kinematics.machine_data import MachineData, read_machine
+from interp.robot.kinematics.machine_data import MachineData
+from interp.robot.kinematics.machine_reader import read_machine
 
 #: The arm that is used if a project has no machine data.
 DEFAULT = "kr6r900"

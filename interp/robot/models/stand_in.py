@@ -33,9 +33,8 @@ from interp.robot.kinematics.machine_data import (
     MachineData,
     MachineDataError,
     WristLink,
-    read_machine,
-    with_axis_limits_of,
 )
+from interp.robot.kinematics.machine_reader import read_machine, with_axis_limits_of
 from interp.robot.models import default_machine
 from interp.values.poses import IDENTITY, Pose
 

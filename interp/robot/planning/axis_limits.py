@@ -12,8 +12,7 @@ from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, Machi
 from interp.robot.kinematics.solver import Array
 from interp.robot.planning.torque_limits import TorqueLimits
 
-_ROTARY = Dynamics(180.0, 450.0, 4500.0)
-_LINEAR = Dynamics(1000.0, 2500.0, 25000.0)
+_ROTARY, _LINEAR = Dynamics.ramped(180.0), Dynamics.ramped(1000.0)
 """The dynamics of an axis without machine data: assumed, similar to those of other arms."""
 
 
@@ -65,7 +64,7 @@ class AxisLimits:
 
 def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> AxisLimits:
     """Return the limits in the machine data [MOT-05, MOT-06], with those of its torques."""
-    known = [_dynamics(axis) for axis in (*machine.axes, *machine.externals)]
+    known = [_dynamics(axis) for axis in machine.every_axis]
     return AxisLimits(
         np.array([one.velocity for one in known]),
         np.array([one.acceleration for one in known]),

@@ -123,7 +123,7 @@ def _turning_share(curve: Curve, share: float) -> float:
     """Return the share on which no axis is farther away than a part of $APO_DIS_PTP [BLD-03]."""
     (travel,), _, _ = curve.rates(np.ones(1))
     machine = curve.arm.machine
-    reach = np.array([axis.approximation for axis in (*machine.axes, *machine.externals)])
+    reach = np.array([axis.approximation for axis in machine.every_axis])
     return float((share * reach / np.maximum(np.abs(travel), 1e-9)).min())
 
 

@@ -102,7 +102,7 @@ def blend_of(
     axes = BlendedAxes(one, other, transition)
     curve: Curve = axes
     if common is None:
-        check_path((*machine.axes, *machine.externals), curve.axes(curve.grid))
+        check_path(machine.every_axis, curve.axes(curve.grid))
     else:
         pose_path = Blend(common[0].tool_path, common[1].tool_path, transition)
         (start,) = one.axes(np.array([1.0 - zone.before]))

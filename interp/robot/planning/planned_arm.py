@@ -57,7 +57,7 @@ class PlannedArm:
         self._tracks = Tracks(machine, torques)
         axes = np.array(machine.standing(start))
         axes[:ROBOT_AXES] = self._tracks.arm.coupled(axes[:ROBOT_AXES])
-        check_limits((*machine.axes, *machine.externals), axes.tolist())
+        check_limits(machine.every_axis, axes.tolist())
         self._plan = Plan(Programmed(self._tracks.arm, axes))
         #: For each brake what it interrupted, once other motions were planned behind it [INT-09].
         self._brakes: list[Plan | None] = []

@@ -108,7 +108,7 @@ class Tracks:
         self.machine = machine
         self.arm = kinematics_of(machine)
         self.limits = axis_limits(machine, torques)
-        self.every = (*machine.axes, *machine.externals)
+        self.every = machine.every_axis
 
     def track(
         self, motion: Motion, before: Programmed, *, is_after_abort: bool = False

@@ -90,11 +90,11 @@ class Cell:
 
     def columns(self, model: Any) -> tuple[npt.NDArray[np.int64], Array]:
         """Return the axis of each joint of the model, and its unit in radians or metres."""
-        names = [axis.name for axis in (*self.machine.axes, *self.machine.externals)]
+        names = [axis.name for axis in self.machine.every_axis]
         if self.robot is not None:
             names[: len(self.robot.joints)] = self.robot.joints
         columns = [names.index(model.joint(place).name) for place in range(model.njnt)]
-        every = (*self.machine.axes, *self.machine.externals)
+        every = self.machine.every_axis
         is_linear = [every[column].kind is AxisKind.LINEAR for column in columns]
         return np.array(columns), np.where(is_linear, 1e-3, math.pi / 180.0)
 

@@ -33,7 +33,7 @@ class ContactCheck:
         self._model = cell.model()
         self._data = mujoco.MjData(self._model)
         self._columns, self._units = cell.columns(self._model)
-        every = (*cell.machine.axes, *cell.machine.externals)
+        every = cell.machine.every_axis
         reach = reach_of(cell.machine) * math.pi / 180.0
         self._travel = np.array([1.0 if a.kind is AxisKind.LINEAR else reach for a in every])
         self._before: tuple[int, Array] | None = None

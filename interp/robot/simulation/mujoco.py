@@ -16,15 +16,13 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 from mujoco import rollout
 
 from interp.robot.arm import Load, Samples
+from interp.robot.kinematics.solver import Array
 from interp.robot.simulation.cell import Cell, put_loads
 from interp.robot.simulation.inverse_dynamics import InverseDynamics
 from interp.robot.simulation.robot import Measured, RobotFault, check_samples
-
-Array = npt.NDArray[np.float64]
 
 _STEP = 1_000  # µs
 _CHUNK = 120_000  # µs

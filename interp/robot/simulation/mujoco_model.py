@@ -38,7 +38,7 @@ def mjcf_of(machine: MachineData) -> str:
     reach = reach_of(machine)
     links = links_of(machine)
     names = [link.name for link in links if link.touches]
-    axes = (*machine.axes, *machine.externals)
+    axes = machine.every_axis
     driven = [axes[link.joint].name for link in links if link.joint is not None]
     lines = [
         f'<mujoco model="{_escaped(machine.name) or "arm"}">',
@@ -106,7 +106,7 @@ def _nested(
 def _joint(link: Link, machine: MachineData, indent: str) -> list[str]:
     if link.joint is None:
         return []
-    axis = (*machine.axes, *machine.externals)[link.joint]
+    axis = machine.every_axis[link.joint]
     kind = 'type="slide" ' if link.is_linear else ""
     drive = ""
     if link.rotor:

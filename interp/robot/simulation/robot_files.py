@@ -18,27 +18,21 @@ from typing import Any, Final
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from interp.robot.kinematics.chain import Chain, Joint
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
     Axis,
     AxisKind,
-    CartesianLimits,
     Dynamics,
     MachineData,
-    WristLink,
 )
-from interp.values.poses import IDENTITY, Pose
+from interp.robot.kinematics.solver import Array
+from interp.values.poses import Pose
 from support.files.untrusted import read_bytes
-
-Array = npt.NDArray[np.float64]
 
 _FLANGES: Final = ("flange", "tool0", "attachment_site")
 _KINDS: Final = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-_RUN_UP_TIME = 0.4  # seconds to full speed, as for machine data
-_FILTER_TIME = 0.1
 
 
 class RobotFileError(Exception):
@@ -251,7 +245,6 @@ def _machine(
         if model.jnt_limited[joint]:
             lower, upper = (float(end) * unit for end in model.jnt_range[joint])
         speed = speeds.get(model.joint(joint).name, 0.0) * unit
-        gain = speed / _RUN_UP_TIME
         axes.append(
             Axis(
                 name=f"A{number}",
@@ -259,29 +252,14 @@ def _machine(
                 direction=1,
                 lower=lower,
                 upper=upper,
-                dynamics=Dynamics(speed, gain, gain / _FILTER_TIME) if speed else None,
+                dynamics=Dynamics.ramped(speed) if speed else None,
                 approximation=90.0,
             )
         )
     most = [_torque(model, joint) for joint in joints]
     return MachineData(
-        name=_name(path),
-        version="",
+        name=path.stem[:60],
         axes=tuple(axes),
-        externals=(),
-        robroot=IDENTITY,
-        tiroro=IDENTITY,
-        length_a=0.0,
-        length_b=0.0,
-        tx3p3=IDENTITY,
-        dh_4=WristLink(0.0, 0.0, 0.0),
-        dh_5=WristLink(0.0, 0.0, 0.0),
-        tflwp=IDENTITY,
-        singul_pos=(0, 0, 0),
-        velocity=CartesianLimits(3.0, 400.0, 400.0),
-        acceleration=CartesianLimits(10.0, 1000.0, 1000.0),
-        t1_speed=0.25,
-        t1_reduction=0.07,
         torques=(*most, *(math.inf,) * (ROBOT_AXES - len(most))),
         own_chain=chain,
     )
@@ -299,7 +277,3 @@ def _torque(model: Any, joint: int) -> float:
         and model.actuator_forcelimited[place]
     ]
     return max(drives, default=math.inf)
-
-
-def _name(path: Path) -> str:
-    return path.stem[:60]

@@ -17,11 +17,9 @@ from interp.robot.arm import Arm, Load, Motion
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import matrix_of
+from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.simulation.observations import Observation, Observer, TorqueCheck
 from interp.robot.simulation.robot import Measured, Robot, RobotFault
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,8 @@ import pytest
 from interp.port.requests import At
 from interp.robot.arm import ArmEvent, Motion, Samples, Settings
 from interp.robot.kinematics.arms import kinematics_of
-from interp.robot.kinematics.machine_data import MachineData, read_machine
+from interp.robot.kinematics.machine_data import MachineData
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.solver import Kinematics
 from interp.robot.planning.planned_arm import PlannedArm
 
@@ -89,7 +90,7 @@ class Driver:
         self.now = 0
         self.events: list[ArmEvent] = []
         self._number = 0
-        every = (*machine.axes, *machine.externals)
+        every = machine.every_axis
         self.fastest = np.array([axis.dynamics.velocity for axis in every if axis.dynamics])
         self.steepest = np.array([axis.dynamics.acceleration for axis in every if axis.dynamics])
 

@@ -9,7 +9,7 @@ import pytest
 
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import Key, Value, read_data_list
-from interp.robot.kinematics.machine_data import read_machine
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.targets import solve
 from interp.values.faults import Fault

@@ -12,7 +12,7 @@ from conformance.suite.case import CASES
 from grammar.syntax.source import Source
 from interp.controller.state.profile import Profile
 from interp.program.load import CheckedProgram, load
-from interp.robot.kinematics.machine_data import read_machine
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.session import EXECUTORS, RunResult, RunSetup, run_program
 
 WITH_TABLE = CASES / "motion" / "$machine.dat"

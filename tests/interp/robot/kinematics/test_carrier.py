@@ -11,7 +11,8 @@ from grammar.syntax.source import Source
 from interp.port.requests import At
 from interp.program.load import load
 from interp.robot.arm import Motion, Settings
-from interp.robot.kinematics.machine_data import MachineData, MachineDataError, read_machine
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.session import RunSetup, run_program
 from interp.values.poses import Pose

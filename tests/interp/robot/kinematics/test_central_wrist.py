@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from interp.robot.kinematics.central_wrist import CentralWrist
-from interp.robot.kinematics.machine_data import MachineData, MachineDataError, read_machine
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
 from interp.values.poses import IDENTITY, Pose
 

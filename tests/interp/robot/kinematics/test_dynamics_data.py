@@ -5,7 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from interp.robot.kinematics.dynamics_data import with_torques
-from interp.robot.kinematics.machine_data import MachineDataError, read_machine
+from interp.robot.kinematics.machine_data import MachineDataError
+from interp.robot.kinematics.machine_reader import read_machine
 
 LENGTHS = {12: 400.0, 13: 25.0, 14: 455.0, 15: 35.0, 17: 420.0, 18: 80.0}
 GEARS = (372.0, 300.0, 161.0, 42.0, 42.0, 28.0)

@@ -5,12 +5,8 @@ from collections.abc import Callable
 
 import pytest
 
-from interp.robot.kinematics.machine_data import (
-    AxisKind,
-    CartesianLimits,
-    MachineDataError,
-    read_machine,
-)
+from interp.robot.kinematics.machine_data import AxisKind, CartesianLimits, MachineDataError
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.values.poses import IDENTITY, Pose
 
 

@@ -17,8 +17,8 @@ from interp.robot.kinematics.machine_data import (
     MachineDataError,
     Palletising,
     WristLink,
-    read_machine,
 )
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.numeric import NumericKinematics
 from interp.robot.kinematics.palletiser import Palletiser
 from interp.robot.kinematics.solver import Array, Kinematics, matrix_of

@@ -184,7 +184,7 @@ def longest(line: PlannedArm, program: Sequence[Motion], ahead: int) -> float:
 
 def _used(machine: MachineData, axes: Array) -> tuple[float, float, float]:
     """Shares of speed, acceleration and jerk, by differences at every step."""
-    known = [axis.dynamics for axis in (*machine.axes, *machine.externals) if axis.dynamics]
+    known = [axis.dynamics for axis in machine.every_axis if axis.dynamics]
     shares = []
     for order, name in ((1, "velocity"), (2, "acceleration"), (3, "jerk")):
         limits = np.array([getattr(one, name) for one in known])
@@ -198,7 +198,7 @@ def programmed_share(program: Sequence[Motion], arm: PlannedArm) -> float:
     kinds = {motion.number: motion.kind for motion in program}
     settings = program[0].settings
     machine = default_machine()
-    known = [axis.dynamics for axis in (*machine.axes, *machine.externals) if axis.dynamics]
+    known = [axis.dynamics for axis in machine.every_axis if axis.dynamics]
     most = np.array([one.velocity for one in known]) * settings.axis_velocity[0] / 100.0
     shares = [0.0]
     for leg in arm.path():

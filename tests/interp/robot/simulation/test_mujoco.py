@@ -11,7 +11,7 @@ from interp.robot.api.control_core import ControlCore
 from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Samples, Settings
 from interp.robot.kinematics.arms import kinematics_of
-from interp.robot.kinematics.machine_data import read_machine
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.targets import follow, solve
 from interp.robot.models import default_machine

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from interp.robot.kinematics.arms import kinematics_of
-from interp.robot.kinematics.machine_data import MachineData, read_machine
+from interp.robot.kinematics.machine_data import MachineData
+from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.generate import generated
 from interp.robot.simulation.links import reach_of
