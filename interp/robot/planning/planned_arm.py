@@ -125,9 +125,8 @@ class PlannedArm:
             reached = max(reached, self._execution.stood_at(body))
         if leaves < body.start or reached > leaves:
             return None
-        machine, limits = self._tracks.machine, self._tracks.limits
         try:
-            blend = blend_of(plan.last, track, zone, machine, limits, plan.straight)
+            blend = blend_of(self._tracks, plan.last, track, zone, plan.straight)
         except Fault:
             return None
         return plan.with_blend(blend, track, programmed)

@@ -30,7 +30,7 @@ from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning.junctions import STOP, Junction
 from interp.robot.planning.limits import curve_limits_of
 from interp.robot.planning.spline_ranges import with_ranges
-from interp.robot.planning.tracks import Piece, Track, Tracks, reduced_paths
+from interp.robot.planning.tracks import Piece, Track, Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
@@ -189,11 +189,10 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
             else:
                 part_of = Piecewise(spline, float(knots[place - first]), spans[place])
                 curve = JointSpline(tracks.arm, own.placement, part_of)
-                check_path(tracks.every, part_of.at(_CLOSE))
+                check_path(tracks.machine.every_axis, part_of.at(_CLOSE))
             limits = tracks.programmed(own)
-            curve_limits = curve_limits_of(
-                curve, tracks.limits, limits, reduced_paths(curve, tracks.machine, own)
-            )
+            paths = tracks.reduced_paths(curve, own)
+            curve_limits = curve_limits_of(curve, tracks.limits, limits, paths)
             junction = Junction(spans[place - 1] / spans[place]) if place > first else STOP
             pieces.append(Piece(curve, curve_limits, (), junction))
     last_settings = motion.parts[-1].settings or motion.settings

@@ -12,15 +12,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
+from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine
-from interp.robot.planning.axis_limits import AxisLimits
 from interp.robot.planning.limits import CurveLimits, curve_limits_of
 from interp.robot.planning.timeline import Key, Section
-from interp.robot.planning.tracks import Track, reduced_paths
+from interp.robot.planning.tracks import Track, Tracks
 
 _BESIDE = 2e-5
 """Distance of a point from a straight run, as a share of its length, that no axis can notice."""
@@ -78,12 +77,11 @@ class StraightRun:
 
 
 def extended(
+    tracks: Tracks,
     run: StraightRun | None,
     first: Track,
     second: Track,
     shares: tuple[float, float],
-    machine: MachineData,
-    limits: AxisLimits,
 ) -> StraightRun | None:
     """Return a run with one more motion; if that does not continue it, the run of the last two.
 
@@ -117,11 +115,11 @@ def extended(
     places[number, True, 0] = corner - shares[0] * before, corner + shares[1] * behind
     places[following, False, 0] = corner, length
     if whole.is_straight:
-        paths = reduced_paths(whole, machine, first.motion.settings, second.motion.settings)
+        paths = tracks.reduced_paths(whole, first.motion.settings, second.motion.settings)
     else:
         paths = tuple(replace(x, length=x.length * length / behind) for x in other.paths)
     return StraightRun(
-        parts, places, length, curve_limits_of(whole, limits, second.axis_limits, paths)
+        parts, places, length, curve_limits_of(whole, tracks.limits, second.axis_limits, paths)
     )
 
 

@@ -108,7 +108,6 @@ class Tracks:
         self.machine = machine
         self.arm = kinematics_of(machine)
         self.limits = axis_limits(machine, torques)
-        self.every = machine.every_axis
 
     def track(
         self, motion: Motion, before: Programmed, *, is_after_abort: bool = False
@@ -144,9 +143,8 @@ class Tracks:
         curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
         limits = self.programmed(settings)
         is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
-        curve_limits = curve_limits_of(
-            curve, self.limits, limits, reduced_paths(curve, self.machine, settings)
-        )
+        paths = self.reduced_paths(curve, settings)
+        curve_limits = curve_limits_of(curve, self.limits, limits, paths)
         piece = Piece(curve, curve_limits, is_still=is_still)
         track = Track(motion, (piece,), limits, goal.is_singular)
         return track, before.reached(goal.axes, goal.components, settings.placement)
@@ -258,6 +256,19 @@ class Tracks:
             limits.append(PathLimits(angle, turn, turn_gain, jerks[1]))
         return tuple(limit for limit in limits if limit.length > _STILL)
 
+    def reduced_paths(self, curve: Curve, *settings: Settings) -> tuple[PathLimits, ...]:
+        """Return the limits of a curve in axis space if one of the settings is for T1.
+
+        The speed of the tool is limited to $VEL_CP_T1 there, too [MOT-07].
+        """
+        if curve.pose_path is not None or not any(each.is_reduced for each in settings):
+            return ()
+        tangents = tool_tangents(curve, np.linspace(0.0, 1.0, 65))
+        fastest = float(np.linalg.norm(tangents, axis=1).max())
+        if fastest < _STILL:
+            return ()
+        return (PathLimits(fastest, self.machine.t1_speed * _METRE, math.inf),)
+
     def check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
         """Raise `Fault` 1102 if an axis is too fast and $CP_VEL_TYPE forbids to slow down.
 
@@ -274,25 +285,9 @@ class Tracks:
         speeds = np.minimum(np.sqrt(2.0 * gain * np.minimum(grid, 1.0 - grid)), most)
         over = (np.abs(first) * speeds[:, None] > self.limits.velocity).any(axis=0)
         if over.any():
-            name = self.every[int(np.argmax(over))].name
+            name = self.machine.every_axis[int(np.argmax(over))].name
             text = f"the path would move {name} faster than it can"
             raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
-
-
-def reduced_paths(
-    curve: Curve, machine: MachineData, *settings: Settings
-) -> tuple[PathLimits, ...]:
-    """Return the limits of a curve in axis space if one of the settings is for T1.
-
-    The speed of the tool is limited to $VEL_CP_T1 there, too [MOT-07].
-    """
-    if curve.pose_path is not None or not any(each.is_reduced for each in settings):
-        return ()
-    tangents = tool_tangents(curve, np.linspace(0.0, 1.0, 65))
-    fastest = float(np.linalg.norm(tangents, axis=1).max())
-    if fastest < _STILL:
-        return ()
-    return (PathLimits(fastest, machine.t1_speed * _METRE, math.inf),)
 
 
 def _turning(settings: Settings, start: Array, end: Array) -> Turning:

@@ -301,11 +301,11 @@ def test_a_blend_of_axes_keeps_within_software_limits(driver: Driver) -> None:
     first, there = tracks.track(turn, here)
     second, _ = tracks.track(line, there)
     zone = Zone(0.4, 0.4)
-    curve = blend_of(first, second, zone, driver.machine, tracks.limits).curve
+    curve = blend_of(tracks, first, second, zone).curve
     most = float(curve.axes(np.linspace(0.0, 1.0, 500))[:, 0].max())
     axis = driver.machine.axes[0]
     for upper, is_beyond in ((most + 0.01, False), (most - 0.5, True)):
         axes = (replace(axis, upper=upper), *driver.machine.axes[1:])
-        machine = replace(driver.machine, axes=axes)
+        limited = Tracks(replace(driver.machine, axes=axes))
         with pytest.raises(Fault) if is_beyond else nullcontext():
-            blend_of(first, second, zone, machine, tracks.limits)
+            blend_of(limited, first, second, zone)
