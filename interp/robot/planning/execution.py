@@ -98,9 +98,15 @@ class PathExecution:
         """Stop on the path as soon as possible."""
         route = self.ahead(path, time)
         leg = self._under_way(time)
-        if leg is None or not route:
+        if leg is None:
             past = self._timeline.leg_at(time)
             self._timeline.cut(time if past is None else max(time, past.ends))
+            return
+        if not route or route[0].key != leg.section.key:  # it stops on a path that was left
+            keys = {section.key for section in route}
+            legs = self._timeline.after(leg)
+            starts = (each.begins for each in legs if each.section.key in keys)
+            self._timeline.cut(next(starts, self._timeline.end))
             return
         time = max(time, leg.begins)
         begins, legs = self._ramp_down(leg, route, time, is_hard)

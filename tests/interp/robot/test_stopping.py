@@ -111,6 +111,27 @@ def test_moving_after_a_brake_before_the_first_motion(driver: Driver) -> None:
     assert 10.0 == driver.arm.position(driver.now).axes[0]
 
 
+@pytest.mark.parametrize("is_hard", [None, False, True])
+@pytest.mark.parametrize("has_next", [False, True])
+def test_stopping_again_before_it_stands(
+    moving: Driver, has_next: bool, is_hard: bool | None
+) -> None:
+    """Who stops already is not stopped sooner, whatever was planned meanwhile."""
+    moving.play(until=moving.now + 420_000)
+    moving.arm.discard(moving.now)
+    stop = moving.arm.path()[-1].ends
+    if has_next:
+        moving.move("PTP", FIRST)
+    moving.now += 20_000
+    if is_hard is None:
+        moving.arm.discard(moving.now)
+    else:
+        moving.arm.brake(moving.now, is_hard)
+    assert stop == moving.arm.path()[-1].ends
+    moving.play()
+    moving.check_limits()
+
+
 def test_going_on_before_it_stands(moving: Driver) -> None:
     """Who goes on while the arm brakes finds it on its path, still moving."""
     moving.play(until=moving.now + 300_000)
