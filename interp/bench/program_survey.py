@@ -245,7 +245,7 @@ def _run_program(place: int, bounds: RunBounds) -> dict[str, Any]:
         robot=bounds.robot,
         profile=profile,
         until=bounds.until,
-        limits=Limits(_STATEMENTS, profile.statements),
+        limits=Limits(_STATEMENTS, _STATEMENTS, profile.statements),
         is_tolerant=bounds.stands_in,
         skips_failures=bounds.stands_in,
     )

@@ -234,6 +234,7 @@ class Scheduler:
                         task.busy_at = self.state.clock.now  # it waited, and polled nothing
                         if not blocked.is_postponed:
                             task.unbroken = 0
+                            task.executor.waited()
                     self.state.trace.origin = task.name, blocked.request.at
                     changes = self._changes
                     answer = blocked.finish()
@@ -299,6 +300,8 @@ class Scheduler:
             if task.spent > self.waits.requests_left(task, most):
                 late = self.waits.until(request, last, lambda: self._answer(task, request))
                 late.is_postponed = True
+                if self.waits.is_idle(task):
+                    task.executor.waited()
                 return late
         exempt = task.exempt_line
         if exempt is not None and (request.at.file, request.at.line) != exempt:

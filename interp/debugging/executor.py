@@ -126,6 +126,10 @@ class DebuggedExecutor:
         self._open = self._again = None
         self.inside.unwind(depth)
 
+    def waited(self) -> None:
+        """Count functions anew; see `interp.port.executor.Executor`."""
+        self.inside.waited()
+
     def companion(self, routine: str, sink: Sink | None = None) -> Executor:
         """Return a debugged executor over the same data lists, for the submit interpreter."""
         companion = self.inside.companion(routine, sink)

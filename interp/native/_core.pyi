@@ -3,6 +3,7 @@ from typing import overload
 from interp.bytecode.cell_layout import Raw
 
 class Core:
+    functions: int
     left: int
     last: int
     most_calls: int

@@ -273,6 +273,7 @@ static int try_image(const uint8_t *data, size_t length)
             abort();
         krl_begin(&machine, code);
         machine.left = machine.whole = PER_SLICE;
+        machine.functions = STATEMENTS;
         runs++;
         run(&machine, (int32_t)(machine.routines[code].entry - machine.steps), 0, &statements);
     }

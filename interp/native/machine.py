@@ -185,7 +185,8 @@ class _NativeCode:
                 operation = self._outside[stop] = self._made(stop >> 3, _Stop(why))
             return operation
         if why == _Stop.FAULT:
-            raise fault(_SLUGS[stop >> 3])
+            code = stop >> 3
+            raise fault(_SLUGS[code]) if code < len(_SLUGS) else self._services.overrun()
         if why == _Stop.BREAK:
             counter = self._services.counter
             if self._state.reader is None:

@@ -476,7 +476,7 @@ static PyMemberDef core_members[] = {
     MEMBER(code, READONLY),   MEMBER(fp, READONLY), MEMBER(serial, READONLY), MEMBER(open, READONLY),
     MEMBER(statement, 0),     MEMBER(left, 0),      MEMBER(last, 0),          MEMBER(top, 0),
     MEMBER(most_calls, 0),    MEMBER(quota, 0),     MEMBER(whole, 0),         MEMBER(stops, 0),
-    MEMBER(traced, READONLY),
+    MEMBER(functions, 0),     MEMBER(traced, READONLY),
     {NULL, 0, 0, 0, NULL},
 };
 

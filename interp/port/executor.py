@@ -54,6 +54,10 @@ class Executor(Protocol):
         """Leave all routines deeper than ``depth``; continue after the call there [INT-10]."""
         ...
 
+    def waited(self) -> None:
+        """Count the functions that a program may call anew, because it has waited."""
+        ...
+
     def companion(self, routine: str, sink: Sink | None = None) -> Executor:
         """Return another executor over the same data lists, for the submit interpreter [SUB-01].
 

@@ -44,13 +44,15 @@ MOST_BLOCKS = 50
 class Limits:
     """The limits of a run.
 
-    A program counts as endless after ``statements`` statements. Time must pass after ``per_slice``
-    statements without another request. The stack overflows at ``depth`` calls [SCO-12]. If
-    ``skips_failures`` is set, a statement that fails is reported as `interp.port.requests.Skip`,
-    and the program continues after it.
+    A program counts as endless after ``statements`` statements; also after functions that take as
+    long as ``functions`` of them (`interp.values.builtins.WEIGHTS`), if it has not waited in
+    between. Time must pass after ``per_slice`` statements without another request. The stack
+    overflows at ``depth`` calls [SCO-12]. If ``skips_failures`` is set, a statement that fails is
+    reported as `interp.port.requests.Skip`, and the program continues after it.
     """
 
     statements: int = 10_000_000
+    functions: int = 10_000_000
     per_slice: int = 1_000
     depth: int = 64
     skips_failures: bool = False
@@ -58,6 +60,12 @@ class Limits:
     def exhausted(self) -> BudgetExhausted:
         """Return the exception to raise when a statement beyond the limit would begin."""
         return BudgetExhausted(f"it has not ended after {self.statements:,} statements")
+
+    def overrun(self) -> BudgetExhausted:
+        """Return the exception to raise when functions have taken longer than they may."""
+        return BudgetExhausted(
+            f"it has not ended or waited after functions as long as {self.functions:,} statements"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,6 +107,7 @@ class Calls(Expressions):
         if name in BUILTINS:
             _check_arguments(zip(function.parameters, node.arguments, places, values, strict=False))
             result, changes = call(name, values, Surroundings(self.run.random, self.find))
+            self.run.charge(name)
         else:
             values = [copied(value) for value in values]
             paths = [place.path if isinstance(place, SystemPlace) else None for place in places]

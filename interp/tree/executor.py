@@ -146,6 +146,7 @@ class TreeExecutor:
         """
         deferred, guard = self._run.deferred(code), self._run.guard
         depth, cells, skips = self._run.depth, self._run.cells, self._run.skips
+        functions = self._run.functions  # how often a condition is evaluated differs
         self._run.guard = Guard.OFF  # it applies to statements, not to a condition
         self._run.skips = False
         frame = deferred.frame.for_code(deferred.frame.unit.line(deferred.node))
@@ -165,9 +166,13 @@ class TreeExecutor:
                 reply = self._reply_to_condition(asked, read, stack)
         finally:
             self._run.guard, self._run.depth, self._run.cells = guard, depth, cells
-            self._run.skips = skips
+            self._run.skips, self._run.functions = skips, functions
         value: Value = reply
         return value
+
+    def waited(self) -> None:
+        """Count functions anew; see `interp.port.executor.Executor`."""
+        self._run.functions = self._run.limits.functions
 
     def companion(self, routine: str, sink: Sink | None = None) -> TreeExecutor:
         """Return another executor over the same data lists."""

@@ -88,6 +88,8 @@ class Expressions(Designators):
         for each in chain:
             wanted = left.type if isinstance(left, EnumValue) else UNKNOWN
             left = apply(each.operator, left, (yield from self.value(each.right, wanted)))
+            if each.operator == ":":
+                self.run.charge(":")
         return left
 
     def _aggregate(self, node: ast.Aggregate, wanted: Type) -> Steps[Value]:

@@ -21,7 +21,7 @@ from interp.port.requests import At, CodeHandle, Request, Slice
 from interp.program.load import CheckedProgram, Limits, Routine, Unit
 from interp.program.variables import cells_of_routine
 from interp.tree.places import LocalPlace, Place, SystemPlace
-from interp.values.builtins import Randomness
+from interp.values.builtins import WEIGHTS, Randomness
 from interp.values.faults import LinkError
 
 
@@ -100,8 +100,9 @@ class ProgramState:
     ``depth`` is the number of open calls, ``cells`` the number of scalars in all variables. The
     attributes ``lines``, ``assignments``, ``calls``, ``returns`` and ``branches`` are the sink if
     it receives that kind of event, else ``None``. ``begun`` is the number of statements that have
-    begun; the slice ends when it reaches ``due``. ``changes`` counts everything that makes one pass
-    of a loop differ from the previous one: new values, requests, random numbers, events.
+    begun; the slice ends when it reaches ``due``. ``functions`` is the weight of functions that may
+    be called before the program waits. ``changes`` counts everything that makes one pass of a loop
+    differ from the previous one: new values, requests, random numbers, functions, events.
     """
 
     def __init__(
@@ -124,6 +125,7 @@ class ProgramState:
         self.skips = self.limits.skips_failures
         self.begun = 0
         self.due = self.limits.per_slice
+        self.functions = self.limits.functions
         self.changes = 0
         self._sizes: dict[Routine, int] = {}
         self._codes: list[DeferredCode] = []
@@ -144,6 +146,14 @@ class ProgramState:
         self.begun += 1
         if self.lines is not None:
             self.lines.line(self.at(frame))
+
+    def charge(self, function: str) -> None:
+        """Count a predefined function, or the operator ``:``; raise `BudgetExhausted`."""
+        if weight := WEIGHTS.get(function, 0):
+            self.changes += 1
+            self.functions -= weight
+            if self.functions < 0:
+                raise self.limits.overrun()
 
     def asked(self) -> None:
         """Begin a new slice, after any request."""

@@ -29,8 +29,8 @@ _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
 #: With automatic inputs, seconds without motion after which the program is taken to wait for ever.
 _AUTO_PATIENCE = 20.0
 #: Statements after which a program counts as endless: the same for all machines, so that their
-#: traces are equal. A loop that only computes ends within 5 s of the slowest, and of the tree
-#: interpreter one of texts, too.
+#: traces are equal. A loop ends within 5 s of the slowest and of the tree interpreter; functions
+#: are limited to as much time.
 _STATEMENTS, _TREE_STATEMENTS = 5_000_000, 150_000
 
 
@@ -218,7 +218,7 @@ def prepared_run(
         motion=options.motion.value,
         until=round(seconds * 1e6),
         patience=round(patience * 1e6),
-        limits=Limits(statements=most, per_slice=profile.statements),
+        limits=Limits(most, options.statements or _STATEMENTS, profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,
         machine=own.machine,

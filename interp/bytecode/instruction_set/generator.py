@@ -18,6 +18,7 @@ from interp.bytecode.instruction_set.table import (
     Shape,
     instructions,
 )
+from interp.values.builtins import WEIGHTS
 from interp.values.faults import FAULTS
 
 _ROOT = Path(__file__).resolve().parents[3]
@@ -30,6 +31,8 @@ _MADE_BY = (
 _CHECKED_ELSEWHERE = frozenset({"line", "target"})
 #: Steps that the machine in C leaves out: nothing is ever read of a view that is missing.
 _CHECKED_IN_PYTHON = frozenset({("check", "element")})
+#: The names in C of operators with a weight.
+_IN_C = {":": "COMPOSE"}
 _BEGIN = "<!-- instructions: made by python -m interp.bytecode.instruction_set --write -->"
 _END = "<!-- end of instructions -->"
 
@@ -88,6 +91,11 @@ def _header() -> str:
         "enum krl_fault {",
         *(f"    KRL_FAULT_{slug.upper()} = {kind.code}," for slug, kind in FAULTS.items()),
         f"    KRL_FAULT_COUNT = {len(FAULTS)}",
+        "};",
+        "",
+        "/* As how many statements functions count. */",
+        "enum krl_weight {",
+        *(f"    KRL_WEIGHT_{_IN_C.get(name, name)} = {one}," for name, one in WEIGHTS.items()),
         "};",
         "",
         "#endif",

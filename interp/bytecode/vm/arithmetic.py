@@ -15,6 +15,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import cells_of, size, value_at
 from interp.bytecode.vm.context import Rule, Rules, Site, computed
 from interp.bytecode.vm.state import Operation
+from interp.values.builtins import WEIGHTS
 from interp.values.faults import fault
 from interp.values.geometric_operator import composed
 from interp.values.operators import PRIMITIVES, Primitive
@@ -117,7 +118,7 @@ class ArithmeticRules(Rules):
     def _compose(self, site: Site, left: int, right: int) -> Operation:
         cells, pop, after = self._cells, self._stack.pop, site.after
         left_type, right_type = self._types[left], self._types[right]
-        width = size(right_type)
+        width, charge = size(right_type), self._runtime.hooks.charge
 
         def operation() -> Operation:
             other = value_at(cells, pop(), right_type)
@@ -126,6 +127,7 @@ class ArithmeticRules(Rules):
             assert isinstance(other, StructureValue), "verified"
             target = pop()
             cells[target : target + width] = cells_of(composed(one, other), right_type)
+            charge(WEIGHTS[":"])
             return after
 
         return operation

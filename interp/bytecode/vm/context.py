@@ -38,6 +38,9 @@ class Hooks(Protocol):
     def builtin(self, number: int, after: Operation) -> Operation:
         """Return the operation of a `BUILTIN` instruction."""
 
+    def charge(self, weight: int) -> None:
+        """Count a function; raise `interp.values.faults.BudgetExhausted`."""
+
     def tell(self, instruction: Instruction, after: Operation) -> Operation:
         """Return the operation of a trace instruction."""
 

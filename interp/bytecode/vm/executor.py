@@ -205,6 +205,7 @@ class Machine:
         state = self._state
         number, serial = self._parts_of(code, CodeKind.CONDITION)
         height, calls, guard = len(state.stack), len(state.calls), self._services.counter.guard
+        functions = state.functions
         operation: Operation | None = self._threaded.entries[number]
         self._push_frame(number, serial, lambda: None)
         self._services.counter.guard = Guard.OFF  # it holds for a statement, and this is none
@@ -220,7 +221,7 @@ class Machine:
                 raise LinkError(NOT_IN_CONDITIONS) from None
             raise
         finally:
-            state.reader = None
+            state.reader, state.functions = None, functions
             self._services.counter.guard = guard
             state.most_calls -= 1
             self._services.entered -= 1
@@ -233,6 +234,10 @@ class Machine:
         return type(self)(
             self._verified, routine, self._limits, sink, self._random, beside=self._together[0]
         )
+
+    def waited(self) -> None:
+        """Count functions anew; see `interp.port.executor.Executor`."""
+        self._services.counter.waited()
 
     def unwind(self, depth: int) -> None:
         """Leave all routines deeper than ``depth``, with the actions entered in them [INT-10]."""

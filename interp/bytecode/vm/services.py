@@ -21,8 +21,8 @@ from interp.port.events import Sink, wanting
 from interp.port.requests import At, MoveEmily, Request, Slice, StopAdvance, Value, Write
 from interp.port.requests import CodeHandle as HandedOver
 from interp.program.load import Limits
-from interp.values.builtins import FUNCTIONS, Surroundings, call
-from interp.values.faults import LinkError
+from interp.values.builtins import FUNCTIONS, WEIGHTS, Surroundings, call
+from interp.values.faults import BudgetExhausted, LinkError
 from interp.values.values import converted, text_of
 
 #: The message if a condition does more than compute and read.
@@ -213,15 +213,27 @@ class Services:
             return computed(function.function, len(builtin.parts), state.stack, after)
         entry = Entry(self._program, state, builtin.parts, builtin.parts, builtin.result)
         make, name = self._makers.parts(builtin.parts), builtin.name
+        weight = WEIGHTS.get(name.upper(), 0)
 
         def operation() -> Operation | None:
             block = entry.take()
             values = entry.values(block)
             result, changes = call(name, make(values, _NOWHERE), self._surroundings)
+            self.charge(weight)
             store = self._stores(entry, block, values, changes)
             return self._stored(store, entry, block, result, after)
 
         return operation
+
+    def charge(self, weight: int) -> None:
+        """Count a function; raise `interp.values.faults.BudgetExhausted`."""
+        self._state.functions -= weight
+        if self._state.functions < 0:
+            raise self.overrun()
+
+    def overrun(self) -> BudgetExhausted:
+        """Return the exception to raise when functions have taken longer than they may."""
+        return self._limits.overrun()
 
     def _is_real(self, part: Argument) -> bool:
         return (

@@ -28,7 +28,8 @@ class State:
     0.
 
     ``left`` is how many statements may begin before `statement_budget` has work, out of ``quota``.
-    ``whole`` is the value of ``left`` at the beginning of a slice; each
+    ``functions`` is the weight of functions that may still be called. ``whole`` is the value of
+    ``left`` at the beginning of a slice; each
     `interp.port.requests.StopAdvance` begins one, and ``stops`` of them may pass without a request.
     ``most_calls`` is the maximum number of open calls, ``most_cells`` the end of the memory for
     frames, ``last`` the cell that was last written through a reference.
@@ -45,6 +46,7 @@ class State:
         "code",
         "completion",
         "fp",
+        "functions",
         "last",
         "left",
         "most_calls",
@@ -79,6 +81,7 @@ class State:
         self.serials = 0
         self.left = self.quota = self.whole = 1
         self.stops = 0
+        self.functions = 0
         self.last = 0
         self.reader: Reader | None = None
         self.request: Request | None = None

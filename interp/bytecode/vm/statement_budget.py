@@ -7,6 +7,9 @@ All executors follow the same rules:
   slice, or of all slices that may pass at once, have begun since the last request, the next one is
   preceded by `interp.port.requests.Slice`.
 - A `interp.port.requests.StopAdvance` that may pass without a request begins a slice, too.
+- If functions have taken longer than ``Limits`` allows since the program waited last, the one that
+  has done so fails in the same way. Those that a condition calls do not count, because how often it
+  is evaluated differs.
 - ON_ERROR_PROCEED is valid for the statement that begins next, in whichever routine, until another
   one begins.
 
@@ -21,7 +24,7 @@ from typing import Final
 from interp.bytecode.vm.state import State
 from interp.program.load import Limits
 
-#: The largest ``State.quota``, which C holds in 32 bits.
+#: The largest number in the state, as C has 32 bits.
 _LARGEST: Final = 2**31 - 1
 
 
@@ -56,6 +59,7 @@ class Counter:
         self._stopped = 0
         self._most_stops = 0
         state.whole = limits.per_slice + 1
+        self.waited()
         self._refill()
 
     @property
@@ -98,7 +102,8 @@ class Counter:
         if self._guard is not Guard.OFF or self.spare <= 0:
             return None
         due = self._due - self._begun
-        return due, self._slices, self._passed, self._allowed, self._stopped
+        functions = self._state.functions
+        return due, self._slices, self._passed, self._allowed, self._stopped, functions
 
     @property
     def spare(self) -> int:
@@ -109,6 +114,10 @@ class Counter:
         """Count this number of statements as begun."""
         self._begun += statements
         self._due += statements
+
+    def waited(self) -> None:
+        """Count functions anew, because the program has waited."""
+        self._state.functions = min(self._limits.functions, _LARGEST)
 
     def passes_stop(self) -> bool:
         """Return whether a `StopAdvance` needs no request; if so, a slice begins."""

@@ -132,10 +132,11 @@ class Waits:
 
         These are few if it is in a loop that waits until something changes, or in an endless loop.
         """
-        is_limited = self._is_idle(task) or task.unbroken >= _ENDLESS
+        is_limited = self.is_idle(task) or task.unbroken >= _ENDLESS
         return min(most, _IDLE_REQUESTS) if is_limited and task.level is None else most
 
-    def _is_idle(self, task: Task) -> bool:
+    def is_idle(self, task: Task) -> bool:
+        """Return whether a program has changed nothing for some time."""
         return self._state.clock.now - task.busy_at >= IDLE_AFTER
 
     def is_spent(self, task: Task) -> bool:
@@ -156,7 +157,7 @@ class Waits:
         if has_changed or isinstance(request, _ACTS):
             known, self._points = self._points, len(self._queue.points)
             self._automatic.begin(has_moved=known != self._points)
-        if not isinstance(request, _UNCOUNTED) and not self._is_idle(task):
+        if not isinstance(request, _UNCOUNTED) and not self.is_idle(task):
             task.unbroken += _weight(request)
             if task.unbroken >= _MOST and not self._player.has_steps:
                 raise BudgetExhausted(f"it has not ended or waited after {_MOST:,} requests")

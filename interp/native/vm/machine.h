@@ -128,6 +128,7 @@ struct krl_machine {
     int32_t quota; /* the initial value of `left`, plus what STOP steps have added */
     int32_t whole; /* the value of `left` where a slice begins */
     int32_t stops; /* STOP steps that may pass until Python has to execute one */
+    int32_t functions; /* the weight of functions that may still be called */
     int32_t last; /* the cell of the last assignment through a reference */
     int32_t top;  /* the cell after the operand stack in use; valid while the machine has stopped */
 
@@ -143,7 +144,7 @@ struct krl_machine {
 enum krl_stop {
     KRL_STOP_STEP,   /* Python has to execute the step */
     KRL_STOP_LINE,   /* `left` is used up: the statement of the step waits for Python */
-    KRL_STOP_FAULT,  /* `at` is the code of the fault */
+    KRL_STOP_FAULT,  /* `at` is the code of the fault, or KRL_OVERRUN */
     KRL_STOP_LEFT,   /* a frame that Python has opened has ended; its result is on the stack */
     KRL_STOP_ACTION, /* an action has ended; its frame is still open */
     KRL_STOP_END,    /* the first routine of the program has ended */
@@ -202,8 +203,9 @@ void krl_stop_at(struct krl_step *step, enum krl_stop why);
 
 /* ---------------------------------------------------------------------------- numeric_functions.c */
 
-/* Functions return the code of a fault, or KRL_FINE. */
-enum { KRL_FINE = -1 };
+/* Functions return the code of a fault, or KRL_FINE. KRL_OVERRUN says that functions have taken
+ * longer than they may. */
+enum { KRL_FINE = -1, KRL_OVERRUN = KRL_FAULT_COUNT };
 
 enum krl_function { KRL_ABS, KRL_SQRT, KRL_SIN, KRL_COS, KRL_TAN, KRL_ACOS, KRL_ATAN2, KRL_FUNCTIONS };
 
@@ -231,7 +233,8 @@ enum krl_text_function krl_text_function_of(const struct krl_program *program,
                                             const struct krl_entry *entry);
 
 /* Executes a text function, whose `inputs` are on the stack. A result replaces the first of them.
- * Returns 0, with nothing done, if Python has to execute it: it faults, or is a rare case. */
+ * Returns 0, with nothing done, if Python has to execute it: it faults, is a rare case, or takes
+ * longer than functions may. */
 int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
                   const struct krl_entry *entry, krl_cell *inputs);
 

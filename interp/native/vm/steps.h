@@ -72,6 +72,12 @@ typedef krl_cell krl_register;
         if (UNLIKELY(condition))                                                                   \
             FAULT(name);                                                                           \
     } while (0)
+/* Counts a function that has been computed. */
+#define CHARGE(name)                                                                               \
+    do {                                                                                           \
+        if (UNLIKELY((machine->functions -= KRL_WEIGHT_##name) < 0))                               \
+            return KRL_OVERRUN;                                                                    \
+    } while (0)
 /* Faults if what is read has no value. In native code the C compiler drops the check where it knows
  * the tag. */
 #define READ(name, place)                                                                          \
@@ -516,6 +522,7 @@ STEP(COMPOSE)
     int fault = krl_compose(cells + INT(A), cells + INT(B), cells + INT(C), pc->d);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
+    CHARGE(COMPOSE);
     NEXT();
 }
 
@@ -524,6 +531,7 @@ STEP(INVERT)
     int fault = krl_invert(cells + INT(B), cells + INT(A), pc->c);
     if (UNLIKELY(fault != KRL_FINE))
         return fault;
+    CHARGE(INV_POS);
     NEXT();
 }
 

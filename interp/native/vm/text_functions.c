@@ -9,22 +9,23 @@ struct known {
      * SREAD changes. */
     const char *parameters;
     int32_t result;
+    int32_t weight;
 };
 
 static const struct known known[KRL_TEXT_FUNCTIONS] = {
-    [KRL_STRLEN] = {"STRLEN", "T", KRL_TYPE_INT},
-    [KRL_STRDECLLEN] = {"STRDECLLEN", "D", KRL_TYPE_INT},
-    [KRL_STRCLEAR] = {"STRCLEAR", "C", KRL_TYPE_BOOL},
-    [KRL_STRADD] = {"STRADD", "CT", KRL_TYPE_INT},
-    [KRL_STRCOPY] = {"STRCOPY", "CT", KRL_TYPE_BOOL},
-    [KRL_STRCOMP] = {"STRCOMP", "TTM", KRL_TYPE_BOOL},
-    [KRL_STRFIND] = {"STRFIND", "NTTM", KRL_TYPE_INT},
-    [KRL_STRTOBOOL] = {"STRTOBOOL", "TB", KRL_TYPE_BOOL},
-    [KRL_STRTOINT] = {"STRTOINT", "TI", KRL_TYPE_BOOL},
-    [KRL_STRTOREAL] = {"STRTOREAL", "TR", KRL_TYPE_BOOL},
-    [KRL_STRTOSTRING] = {"STRTOSTRING", "TC", KRL_TYPE_BOOL},
-    [KRL_SWRITE] = {"SWRITE", "CSIT+", -1},
-    [KRL_SREAD] = {"SREAD", "TSIT*", -1},
+    [KRL_STRLEN] = {"STRLEN", "T", KRL_TYPE_INT, KRL_WEIGHT_STRLEN},
+    [KRL_STRDECLLEN] = {"STRDECLLEN", "D", KRL_TYPE_INT, KRL_WEIGHT_STRDECLLEN},
+    [KRL_STRCLEAR] = {"STRCLEAR", "C", KRL_TYPE_BOOL, KRL_WEIGHT_STRCLEAR},
+    [KRL_STRADD] = {"STRADD", "CT", KRL_TYPE_INT, KRL_WEIGHT_STRADD},
+    [KRL_STRCOPY] = {"STRCOPY", "CT", KRL_TYPE_BOOL, KRL_WEIGHT_STRCOPY},
+    [KRL_STRCOMP] = {"STRCOMP", "TTM", KRL_TYPE_BOOL, KRL_WEIGHT_STRCOMP},
+    [KRL_STRFIND] = {"STRFIND", "NTTM", KRL_TYPE_INT, KRL_WEIGHT_STRFIND},
+    [KRL_STRTOBOOL] = {"STRTOBOOL", "TB", KRL_TYPE_BOOL, KRL_WEIGHT_STRTOBOOL},
+    [KRL_STRTOINT] = {"STRTOINT", "TI", KRL_TYPE_BOOL, KRL_WEIGHT_STRTOINT},
+    [KRL_STRTOREAL] = {"STRTOREAL", "TR", KRL_TYPE_BOOL, KRL_WEIGHT_STRTOREAL},
+    [KRL_STRTOSTRING] = {"STRTOSTRING", "TC", KRL_TYPE_BOOL, KRL_WEIGHT_STRTOSTRING},
+    [KRL_SWRITE] = {"SWRITE", "CSIT+", -1, KRL_WEIGHT_SWRITE},
+    [KRL_SREAD] = {"SREAD", "TSIT*", -1, KRL_WEIGHT_SREAD},
 };
 
 /* ---------------------------------------------------------------------------- signatures */
@@ -138,8 +139,8 @@ static krl_cell taken(const struct krl_text_call *call, int (*read)(struct krl_l
 
 /* ---------------------------------------------------------------------------- execution */
 
-int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
-                  const struct krl_entry *entry, krl_cell *inputs)
+static int execute(struct krl_machine *machine, enum krl_text_function function,
+                   const struct krl_entry *entry, krl_cell *inputs)
 {
     struct krl_text_call call = {machine, entry, inputs};
     struct krl_letters array = {machine->cells, 0}, text, other;
@@ -193,5 +194,15 @@ int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
     case KRL_TEXT_FUNCTIONS:
         break;
     }
+    return 1;
+}
+
+int krl_call_text(struct krl_machine *machine, enum krl_text_function function,
+                  const struct krl_entry *entry, krl_cell *inputs)
+{
+    int32_t weight = known[function].weight;
+    if (machine->functions < weight || !execute(machine, function, entry, inputs))
+        return 0;
+    machine->functions -= weight;
     return 1;
 }
