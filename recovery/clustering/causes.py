@@ -239,10 +239,13 @@ def _as_one(search: CauseSearch, first: Cause, second: Cause) -> Cause | None:
     """Return both causes as one if one edit repairs what their best edits repair, else ``None``."""
     one, other = first.proposals[0], second.proposals[0]
     negatives = one.accepts_negatives + other.accepts_negatives
+    mended = one.mended | other.mended
     lines = tuple(sorted({*first.lines, *second.lines}))
     for edits, breadth in _for_both(search.finder.profile, one, other):
+        if search.trial.result(edits, mended).mended < mended:
+            continue  # most edits fail here; to try them on all lines costs far more
         both = search.proposal(edits, breadth)
-        if both.mended >= one.mended | other.mended and both.accepts_negatives <= negatives:
+        if both.accepts_negatives <= negatives:
             others = (p for p in first.proposals if p.edits != both.edits)
             return Cause(lines, (both, *others)[:MOST_PROPOSALS])
     return None
