@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError
-from interp.robot.kinematics.solver import Array, matrix_of
+from interp.robot.kinematics.solver import Array, continued, matrix_of, nearest_turns
 from interp.values.poses import sine_cosine
 
 _SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # wrist centre in front of axis 1, or behind it
@@ -28,26 +28,26 @@ _UNDETERMINED = 2e-9
 """Sine of A5 below which A4 is free and stays where it is: 1e-7 degrees."""
 _BENT = 1e-3
 """Sine of A5 above which the wrist is clearly bent."""
-_LARGEST_STEP = 30.0  # degrees between two samples up to which a path counts as continuous
 _MARGIN = 1e-7
 """mm of reach that may be lost by rounding."""
 _OVERHEAD = 1e-3
 """mm from axis 1 within which a point counts as on it; a REAL resolves 1e-4 mm at 1 m."""
 _FAR = 1e9
 """mm beyond which a pose counts as unreachable, like one that is NaN."""
-_TOLERANCE = 1e-9  # degrees, or of a cosine
+_TOLERANCE = 1e-9  # degrees
 
 
 class CentralWrist:
     """The kinematics of one machine, as a `interp.robot.kinematics.solver.Kinematics`.
 
-    Raises `MachineDataError` for a wrist that is not central or whose axes are not perpendicular,
-    and for impossible lengths.
+    Raises `MachineDataError` for a wrist that is not central, and for impossible lengths.
     """
 
     has_wrist_singularity = True
 
     def __init__(self, machine: MachineData) -> None:
+        if not machine.is_wrist_central:
+            raise MachineDataError("the wrist is not central, with axis 4 along the forearm")
         self.machine = machine
         self.elbow = machine.elbow
         self._before = matrix_of(machine.tiroro)
@@ -139,8 +139,7 @@ class CentralWrist:
         a4 = np.where(over < there, a4 + math.pi, a4)
         a4 = np.where(sine < _UNDETERMINED, own, a4)
         found = self._degrees(main, a4, sign * a5, wrist)
-        near: Array = found + 360.0 * np.round((references - found) / 360.0)
-        return near
+        return nearest_turns(found, references)
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
         """Return continuous axes ``(n, 6)`` along a path, in the configuration of ``start``.
@@ -157,9 +156,7 @@ class CentralWrist:
             return None
         a4 = np.arctan2(sign * wrist[:, 1, 2], sign * wrist[:, 0, 2])
         found = self._degrees(main, a4, sign * np.arctan2(sine, wrist[:, 2, 2]), wrist)
-        path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
-        steps = np.abs(np.diff(path, axis=0))
-        return path[1:] if bool((steps < _LARGEST_STEP).all()) else None
+        return continued(references, found)
 
     def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
         """Return the main axes of the upright arm, and the rotation that remains for its wrist."""
@@ -272,19 +269,8 @@ class CentralWrist:
         The sense is 1 if axis 4 points along the forearm, -1 if against it. The zero position is
         the angle of the first wrist axis about axis 4 in radians.
         """
-        name = "the wrist"
-        for link in (self.machine.dh_4, self.machine.dh_5):
-            if abs(link.a) > _TOLERANCE or abs(link.d) > _TOLERANCE:
-                raise MachineDataError(f"{name} is not central: $DH_4 or $DH_5 has a length")
-        first, second = self._twists
-        square = abs(abs(first[2, 1]) - 1.0) < _TOLERANCE
-        if not square or not np.allclose(first @ second, np.eye(3), atol=_TOLERANCE):
-            raise MachineDataError(f"{name} is not square: $DH_4 and $DH_5 are no 90 and -90")
         upright = _about_y(np.array(-math.pi / 2)) @ self._mount
-        along = float(upright[2, 2])
-        if abs(abs(along) - 1.0) > _TOLERANCE:
-            raise MachineDataError(f"{name} is askew: $TX3P3 does not put axis 4 along the forearm")
-        along = math.copysign(1.0, along)
+        along = math.copysign(1.0, float(upright[2, 2]))
         turned = np.diag([along, 1.0, along]) @ upright
         return along, math.atan2(turned[1, 0], turned[0, 0])
 

@@ -206,14 +206,7 @@ class NumericKinematics:
             pose = pose @ frame
             axes.append(pose[..., :3, :3] @ self._directions[place])
             origins.append(pose[..., :3, 3])
-            move = np.zeros((*theta.shape[:-1], 4, 4))
-            move[..., 3, 3] = 1.0
-            if self._linear[place]:
-                move[..., :3, :3] = np.eye(3)
-                move[..., :3, 3] = theta[..., place, None] * self._directions[place]
-            else:
-                move[..., :3, :3] = self._turn(place, theta[..., place])
-            pose = pose @ move
+            pose = pose @ self._move(place, theta[..., place])
         pose = pose @ self._end
         turns = np.stack([axes[place] for place in self._free], axis=-1)
         arms = pose[..., :3, 3:] - np.stack([origins[place] for place in self._free], axis=-1)
@@ -232,12 +225,19 @@ class NumericKinematics:
         )
         return pose, slopes
 
-    def _turn(self, place: int, angle: Array) -> Array:
-        """Return rotations about the axis of a joint (Rodrigues' formula)."""
-        skew = self._skews[place]
-        angle = angle[..., None, None]
-        turn: Array = np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * (skew @ skew)
-        return turn
+    def _move(self, place: int, way: Array) -> Array:
+        """Return transforms ``(..., 4, 4)`` of a joint that slides, or turns (Rodrigues' formula).
+
+        ``way`` is in mm or radians.
+        """
+        move = np.broadcast_to(np.eye(4), (*way.shape, 4, 4)).copy()
+        if self._linear[place]:
+            move[..., :3, 3] = way[..., None] * self._directions[place]
+        else:
+            skew, angle = self._skews[place], way[..., None, None]
+            turn = np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * (skew @ skew)
+            move[..., :3, :3] = turn
+        return move
 
     def _starts(self) -> Array:
         """Return starts spread evenly over the joint ranges (the R sequence, Roberts 2018)."""
@@ -282,12 +282,7 @@ class NumericKinematics:
         for place in range(1, last):
             pose = pose @ self._frames[place]
             if place < last - 1:
-                move = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
-                if self._linear[place]:
-                    move[..., :3, 3] = theta[..., place, None] * self._directions[place]
-                else:
-                    move[..., :3, :3] = self._turn(place, theta[..., place])
-                pose = pose @ move
+                pose = pose @ self._move(place, theta[..., place])
         found: Array = pose[..., :3, 3]
         return found
 

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from interp.robot.kinematics.central_wrist import CentralWrist
 from interp.robot.kinematics.machine_data import MachineDataError, Palletising
-from interp.robot.kinematics.solver import Array, matrix_of
+from interp.robot.kinematics.solver import Array, continued, matrix_of, nearest_turns
 
 _SOLUTIONS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
@@ -25,7 +25,6 @@ _FLAT = 1e-6
 """Length of the projection of the flange axis on the arm's plane, below which it is undefined."""
 _ROUNDS = 100  # more than a few are needed only near axis 1
 _BESIDE = 1e-6  # mm by which the tip may be missed
-_LARGEST_STEP = 30.0  # degrees between two samples up to which a path counts as continuous
 
 
 class Palletiser:
@@ -109,16 +108,13 @@ class Palletiser:
         reached = self._reachable(poses)
         main = self._arm.inverse_near(reached, references)[:, :3]
         found = self._with_wrist(main, reached)
-        near: Array = found + 360.0 * np.round((references - found) / 360.0)
-        return near
+        return nearest_turns(found, references)
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
         """See `interp.robot.kinematics.solver.Kinematics.inverse_along`."""
         references = np.array(start, dtype=np.float64)
         found = self.inverse_near(poses, np.tile(references, (len(poses), 1)))
-        path = np.unwrap(np.concatenate((references[None], found)), period=360.0, axis=0)
-        is_plain = bool((np.abs(np.diff(path, axis=0)) < _LARGEST_STEP).all())
-        return path[1:] if is_plain else None
+        return continued(references, found)
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
         """See `interp.robot.kinematics.solver.Kinematics.status`."""

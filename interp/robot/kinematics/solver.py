@@ -19,6 +19,8 @@ from interp.values.poses import Pose
 
 Array = npt.NDArray[np.float64]
 
+_LARGEST_STEP = 30.0  # degrees between two samples up to which a path counts as continuous
+
 
 class Kinematics(Protocol):
     """Forward and inverse kinematics of an arm."""
@@ -80,6 +82,21 @@ class Kinematics(Protocol):
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
         """Return the distance of the wrist from axis 1 in mm, for axes ``(..., 6)``."""
         ...
+
+
+def nearest_turns(axes: Array, references: Array) -> Array:
+    """Return axes in degrees with full turns added so that each is nearest to its reference."""
+    near: Array = axes + 360.0 * np.round((references - axes) / 360.0)
+    return near
+
+
+def continued(start: Array, path: Array) -> Array | None:
+    """Return a path ``(n, 6)`` in degrees with full turns added so that it continues ``start``.
+
+    Return ``None`` if an axis makes too large a step for that to be certain.
+    """
+    whole = np.unwrap(np.concatenate((start[None], path)), period=360.0, axis=0)
+    return whole[1:] if bool((np.abs(np.diff(whole, axis=0)) < _LARGEST_STEP).all()) else None
 
 
 def matrix_of(pose: Pose) -> Array:

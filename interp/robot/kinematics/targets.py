@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.kinematics.machine_data import Axis
-from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
+from interp.robot.kinematics.solver import Array, Kinematics, matrix_of, nearest_turns
 from interp.values.faults import Fault
 from interp.values.poses import IDENTITY, Pose
 
@@ -283,18 +283,12 @@ def _nearest_solutions(arm: Kinematics, solutions: Array, start: Array) -> Array
         straight = np.abs(choices[:, 4]) <= _ZERO
         choices[straight, 5] += forearm * hand * (choices[straight, 3] - before[3])
         choices[straight, 3] = before[3]
-        choices = _near(choices, before)
+        choices = nearest_turns(choices, before)
         distances = np.abs(choices - before).max(axis=1)
         if np.isnan(distances).all():
             raise Fault("unreachable", "the path cannot be followed", number=1366)
         before = path[place] = choices[int(np.nanargmin(distances))]
     return path
-
-
-def _near(solutions: Array, origin: Array) -> Array:
-    """Return solutions with full turns added so that they are nearest to an origin."""
-    near: Array = solutions + 360.0 * np.round((origin - solutions) / 360.0)
-    return near
 
 
 def _limit_fault(axis: Axis, value: float) -> Fault:
