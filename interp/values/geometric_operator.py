@@ -66,7 +66,11 @@ def _pose(value: StructureValue) -> Pose:
 
 
 def _components(pose: Pose) -> tuple[float, ...]:
-    """Return X to C of a pose as six REAL values."""
+    """Return X to C of a pose as six REAL values.
+
+    `Pose.angles` gives other digits: it takes the length of the projection for the cosine of B, and
+    B counts as 90 degrees only within rounding errors of double precision.
+    """
     (m00, m01, m02, x), (m10, m11, m12, y), (m20, _, _, z) = pose.rows
     across, along = m10, m00
     if math.sqrt(along * along + across * across) < _UPRIGHT:

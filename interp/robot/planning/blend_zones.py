@@ -6,13 +6,13 @@ The criteria of the first motion determine them; each is at most half of its pat
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from interp.robot.arm import Approximation, Motion
 from interp.robot.path.axis_path import Curve, tool_way
-from interp.robot.planning.ramps import Bounds, ramp
+from interp.robot.planning.ramps import ramp
 from interp.robot.planning.tracks import Piece, Track
 
 _HALF = 0.5
@@ -31,17 +31,8 @@ class Zone:
 def wants_blend(motion: Motion) -> bool:
     """Return whether a motion is approximated, with a zone larger than zero."""
     values = motion.settings.approximation
-    if not motion.criteria:
-        return False
-    match motion.criteria[0]:
-        case "C_PTP":
-            return values.cptp > 0.0
-        case "C_VEL":
-            return values.cvel > 0.0
-        case "C_ORI":
-            return values.cori > 0.0
-        case _:
-            return values.cdis > 0.0
+    sizes = {"C_PTP": values.cptp, "C_VEL": values.cvel, "C_ORI": values.cori}
+    return bool(motion.criteria) and sizes.get(motion.criteria[0], values.cdis) > 0.0
 
 
 def zone_of(first: Track, second: Track) -> Zone | None:
@@ -80,17 +71,15 @@ def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: 
     """Return the share of a CP motion; 1 if it has no length for this criterion."""
     curve = _piece(track, at_end=at_end).curve
     pose_path = curve.pose_path
-    if pose_path is None and criterion not in {"C_VEL", "C_ORI"}:
-        return _way_share(curve, max(values.cdis, 0.0), at_end=at_end)
-    length = pose_path.length if pose_path is not None else 0.0
-    if criterion == "C_ORI":
-        angles = pose_path.angles if pose_path is not None else (0.0, 0.0)
-        length, size = math.degrees(max(angles)), values.cori
-    elif criterion == "C_VEL":
+    if criterion == "C_VEL":
         return _braking_share(track, values.cvel / 100.0, at_end=at_end)
-    else:
-        size = values.cdis
-    return max(size, 0.0) / length if length > 0.0 else 1.0
+    if criterion == "C_ORI":
+        angle = 0.0 if pose_path is None else math.degrees(max(pose_path.angles))
+        return max(values.cori, 0.0) / angle if angle > 0.0 else 1.0
+    distance = max(values.cdis, 0.0)
+    if pose_path is None:
+        return _way_share(curve, distance, at_end=at_end)
+    return distance / pose_path.length if pose_path.length > 0.0 else 1.0
 
 
 def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
@@ -100,7 +89,7 @@ def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
     bounds = stretch.bounds(1.0)
     speed = max(share, 0.0) * stretch.programmed
     size = stretch.size
-    sized = Bounds(speed * size, bounds.acceleration * size, bounds.jerk * size)
+    sized = replace(bounds, velocity=speed) * size
     return ramp(speed * size, 0.0, 0.0, sized).distance / size
 
 

@@ -148,8 +148,7 @@ class PathExecution:
         yield leg.state(time), time, tuple(route)
         following = self._timeline.after(leg)
         for each in (leg, *following):
-            while route and route[0].key < each.section.key:
-                route = route[1:]
+            route = _from(route, each.section.key)
             if not route or route[0].key != each.section.key:
                 return
             rest, state = _behind(each, route)
@@ -161,8 +160,7 @@ class PathExecution:
         self, leg: Leg, route: Sequence[Section], time: float, is_hard: bool
     ) -> tuple[float, list[Leg]]:
         """Return the legs of a stop that begins at a time, and the start of the first leg."""
-        while route and route[0].key < leg.section.key:
-            route = route[1:]
+        route = _from(route, leg.section.key)
         # What is planned is no faster than allowed, so a brake that would be begins later.
         for is_strict in (True, False):
             for state, begins, rest in self._ahead_of(leg, route, time):
@@ -205,6 +203,12 @@ class PathExecution:
 
 def _known(entries: Sequence[Entry]) -> list[JoinedStretch]:
     return [joined for _, joined in entries if joined is not None]
+
+
+def _from(route: Sequence[Section], key: Key) -> Sequence[Section]:
+    """Return the part of a route from the section with a key on, or from the first one behind."""
+    place = next((n for n, section in enumerate(route) if section.key >= key), len(route))
+    return route[place:]
 
 
 def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], PathState]:

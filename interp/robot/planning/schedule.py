@@ -39,7 +39,7 @@ def schedule(
     """
     if not stretches:
         return []
-    best: _Plan | None = None
+    best: _Candidate | None = None
     tried: list[list[float]] = []
     for is_loose in (True, False):
         spans = spans_of(stretches, state, override, is_loose=is_loose)
@@ -152,7 +152,7 @@ def _settled(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | 
 
 
 @dataclass(frozen=True, slots=True)
-class _Plan:
+class _Candidate:
     """Spans, a profile for each of their stretches, and the total duration in seconds."""
 
     spans: Sequence[Span]
@@ -162,9 +162,9 @@ class _Plan:
 
 
 def _better(
-    best: _Plan | None, spans: Sequence[Span], start: float, found: _Speeds | None
-) -> _Plan | None:
-    """Return the better plan: less length at excessive speed, then shorter duration."""
+    best: _Candidate | None, spans: Sequence[Span], start: float, found: _Speeds | None
+) -> _Candidate | None:
+    """Return the better candidate: less length at excessive speed, then shorter duration."""
     if found is None or (best is not None and best.over < found.over):
         return best
     profiles: list[SpeedProfile] = []
@@ -175,7 +175,7 @@ def _better(
             duration += profile.duration
         if best is not None and best.over <= found.over and best.duration <= duration:
             return best
-    return _Plan(spans, profiles, found.over, duration)
+    return _Candidate(spans, profiles, found.over, duration)
 
 
 def _ease(spans: Sequence[Span], found: _Speeds | None) -> bool:

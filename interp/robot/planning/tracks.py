@@ -193,14 +193,11 @@ class Tracks:
     ) -> Piece:
         """Return the piece for a path, from the axes of the robot at its start. Raises `Fault`."""
         limits = self.limits.carrying(settings.loads)
-        curve: Curve
-        if settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE:
-            curve = WristCurve(self.arm, settings.placement, pose_path, start, others)
-            paths = self.paths(settings, pose_path.length, 0.0, 0.0, is_spline=kind[0] == "S")
-            self.check_speed(settings, curve, paths)
-            return Piece(curve, curve_limits_of(curve, limits, limits, paths), paths)
-        curve = PosePathCurve(self.arm, settings.placement, pose_path, start, others)
-        swivel, rotation = (math.degrees(angle) for angle in pose_path.angles)
+        is_wrist = settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE
+        kind_of_curve = WristCurve if is_wrist else PosePathCurve
+        curve = kind_of_curve(self.arm, settings.placement, pose_path, start, others)
+        angles = (0.0, 0.0) if is_wrist else pose_path.angles
+        swivel, rotation = (math.degrees(angle) for angle in angles)
         paths = self.paths(settings, pose_path.length, swivel, rotation, is_spline=kind[0] == "S")
         self.check_speed(settings, curve, paths)
         return Piece(curve, curve_limits_of(curve, limits, limits, paths), paths)
