@@ -30,14 +30,13 @@ def project_root(path: Path) -> Path:
 def project_paths(path: Path) -> list[Path]:
     """Return the paths to read for everything a file or folder sees.
 
-    This is its project, or the files beside it. For a folder or an archive without a controller
-    around it, it is the path itself.
+    This is its project; else the files beside a program, and otherwise the path itself.
     """
     archive, _ = in_archive(path)
     if archive is not None or not path.exists():
         return [archive or path]
     root, is_program = project_root(path), path.is_file() and is_krl(path)
-    if _is_controller(root) or (is_program and is_project(root)):
+    if _is_controller(root) or ((is_program or path.is_dir()) and is_project(root)):
         return [_as_given(root, path)]
     return DiskFolders().programs(path.parent) if is_program else [path]
 

@@ -72,7 +72,8 @@ def test_folder_above(tmp_path: Path, files: tuple[str, ...]) -> None:
     is_taken = files != MIXED
     wanted = ["cell/main.src", *sorted(files)] if is_taken else ["main.src"]
     assert wanted == _files(inside)
-    assert [tmp_path if is_taken else tmp_path / "cell"] == project_paths(inside)
+    for path in (inside, inside.parent):
+        assert [tmp_path if is_taken else tmp_path / "cell"] == project_paths(path)
 
 
 SIBLINGS = {
@@ -94,7 +95,7 @@ def test_folders_beside_that_have_what_is_called(tmp_path: Path) -> None:
     cell = _written(tmp_path, SIBLINGS) / "one" / "cell"
     files = ["job/main.src", "parts/lib/grip.src", "parts/other/idle.src"]
     assert files == _files(cell / "job" / "main.src")
-    assert [cell] == project_paths(cell / "job" / "main.src")
+    assert [cell] == project_paths(cell / "job" / "main.src") == project_paths(cell / "job")
     assert ["idle.src"] == _files(cell / "parts" / "other" / "idle.src")
     with ZipFile(tmp_path / "cell.zip", "w") as archive:
         for path in SIBLINGS:
