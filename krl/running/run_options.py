@@ -29,9 +29,10 @@ _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
 #: With automatic inputs, seconds without motion after which the program is taken to wait for ever.
 _AUTO_PATIENCE = 20.0
 #: Statements after which a program counts as endless: the same for all machines, so that their
-#: traces are equal. A loop ends within 5 s of the slowest and of the tree interpreter; functions
-#: are limited to as much time.
+#: traces are equal. A loop ends within some 5 s of the slowest and of the tree interpreter.
 _STATEMENTS, _TREE_STATEMENTS = 5_000_000, 150_000
+#: The same limit for functions in the tree interpreter, where a statement takes longer.
+_TREE_FUNCTIONS = 1_000_000
 
 
 class Executor(StrEnum):
@@ -205,7 +206,9 @@ def prepared_run(
         seconds, patience = (_AUTO_SECONDS, _AUTO_PATIENCE) if is_auto else (_SECONDS, _SECONDS)
     profile = Profile.load(options.profile or _agreed_profile(file))
     executor = options.executor.value if options.executor is not None else available()[-1]
-    most = options.statements or (_TREE_STATEMENTS if executor == "tree" else _STATEMENTS)
+    is_tree = executor == "tree"
+    most = options.statements or (_TREE_STATEMENTS if is_tree else _STATEMENTS)
+    functions = options.statements or (_TREE_FUNCTIONS if is_tree else _STATEMENTS)
     setup = RunSetup(
         executor=executor,
         robot=options.robot.value,
@@ -218,7 +221,7 @@ def prepared_run(
         motion=options.motion.value,
         until=round(seconds * 1e6),
         patience=round(patience * 1e6),
-        limits=Limits(most, options.statements or _STATEMENTS, profile.statements),
+        limits=Limits(most, functions, profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,
         machine=own.machine,
