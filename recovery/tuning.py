@@ -252,6 +252,9 @@ MOST_CONFIGURATIONS_KEPT = 40_000
 #: exponentially many readings and is no good one. Bound: without it one edit could use up the
 #: memory.
 MOST_READINGS = 2_000
+#: States in which one line is read under an edit, for the same reason. Bound: of 600,000 lines read
+#: under edits of the restrictive start none needed more than 281.
+MOST_STATES = 2_000
 #: Mended lines that are looked at for a second reading, the shortest. Not measured.
 LINES_READ_TWICE = 4
 #: Files tried for a line, the shortest, and for a group, and their tokens. Bound on time.

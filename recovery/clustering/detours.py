@@ -23,22 +23,24 @@ from grammar.notation.model import Alternative, Grammar, GrammarError, Repeat, R
 from grammar.parser.lazy_automaton import Configuration, Core
 from grammar.parser.network import Network, Reach, RuleAutomaton, exact_automata
 from grammar.parser.recognizer import Recognizer, State
-from recovery.tuning import MOST_READINGS
+from recovery.tuning import MOST_READINGS, MOST_STATES
 
 #: The first position of a detour, and the position to return to after it, if it reads a text.
 _Detour = tuple[int, int | None]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Detours:
     """Edits as detours: those that begin at each position, and the words the edits reserve.
 
-    ``starts`` caches the core to which they lead from a core, for a token kind.
+    ``starts`` caches the core to which they lead from a core, for a token kind. ``is_endless`` once
+    a line has had too many readings with them; no further line is read then.
     """
 
     at: dict[int, list[_Detour]]
     words: frozenset[str]
     starts: dict[tuple[Core, int], Core | None] = field(default_factory=dict, compare=False)
+    is_endless: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,7 +241,7 @@ class DetourReader:
         for path in paths:
             yield (
                 len(path.states) - 1
-                if cores.isdisjoint(path.cores)
+                if detours.is_endless or cores.isdisjoint(path.cores)
                 else self._read(detours, path, cores)
             )
 
@@ -260,6 +262,9 @@ class DetourReader:
                 todo.append((state, number))
             # a state that is on the path fails at the same token as the path
             while (state, number) not in met and path.states[number : number + 1] != [state]:
+                if len(met) == MOST_STATES:
+                    detours.is_endless = True
+                    return furthest
                 met.add((state, number))
                 following = recognizer.step(state, kinds[number])
                 if following is None:

@@ -122,6 +122,21 @@ def test_edits_together(rules: str, edits: Sequence[Edit], tokens: str) -> None:
     agrees(grammar, edits, [[*tokens.split(), "EOF"]])
 
 
+def test_an_edit_with_too_many_readings() -> None:
+    """It reads a line no further than its limit of states, and no other line any more."""
+    words = "\n".join(f"{name} : '{name}' ;" for name in TOKENS[:-1])
+    grammar = read(f"grammar T;\ns : r EOF ;\nr : A r | B ;\n{words}\nNEWLINE : '\\n' ;\n")
+    recognizer = Recognizer(grammar)
+    reader = DetourReader(grammar, recognizer.network)
+    detours = reader.detours([AddAlternative("r", "A r r")])
+    assert detours is not None
+    kind_of = recognizer.lexer.kind_of
+    short, long = ([kind_of[token] for token in text.split()] for text in ("A B B EOF", "A " * 14))
+    assert [None] == list(reader.read(detours, [reader.path(short)]))
+    paths = [reader.path([*long, kind_of["C"]]), reader.path(short)]
+    assert ([14, 2], True) == (list(reader.read(detours, paths)), detours.is_endless)
+
+
 def test_a_sign_that_the_grammar_does_not_have(random_grammar: RandomGrammar) -> None:
     """An edit with a token that is not there fits no grammar."""
     agrees(random_grammar(Random(1)), [AddAlternative("r0", "'+' A")], [])
