@@ -29,18 +29,20 @@ from recovery.tuning import MOST_READINGS, MOST_STATES
 _Detour = tuple[int, int | None]
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Detours:
     """Edits as detours: those that begin at each position, and the words the edits reserve.
 
-    ``starts`` caches the core to which they lead from a core, for a token kind. ``is_endless`` once
-    a line has had too many readings with them; no further line is read then.
+    ``starts`` caches the core to which they lead from a core, for a token kind.
     """
 
     at: dict[int, list[_Detour]]
     words: frozenset[str]
     starts: dict[tuple[Core, int], Core | None] = field(default_factory=dict, compare=False)
-    is_endless: bool = False
+
+
+class _TooManyReadings(Exception):
+    """A line is read in more than `MOST_STATES` states."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,15 +237,20 @@ class DetourReader:
     # ----------------------------------------------------------------------------- reading
 
     def read(self, detours: Detours, paths: Iterable[Path]) -> Iterator[int | None]:
-        """Yield how many tokens of each path can be read with the edits; ``None`` for all."""
+        """Yield how many tokens of each path can be read with the edits; ``None`` for all.
+
+        From a path with too many readings on, the edits let none be read further.
+        """
         paths = list(paths)
         cores = frozenset[Core]().union(*(self._cores_at[position] for position in detours.at))
         for path in paths:
-            yield (
-                len(path.states) - 1
-                if detours.is_endless or cores.isdisjoint(path.cores)
-                else self._read(detours, path, cores)
-            )
+            furthest: int | None = len(path.states) - 1
+            if not cores.isdisjoint(path.cores):
+                try:
+                    furthest = self._read(detours, path, cores)
+                except _TooManyReadings:
+                    cores = frozenset()
+            yield furthest
 
     def _read(self, detours: Detours, path: Path, cores: frozenset[Core]) -> int | None:
         recognizer, kinds = self.recognizer, path.kinds
@@ -263,8 +270,7 @@ class DetourReader:
             # a state that is on the path fails at the same token as the path
             while (state, number) not in met and path.states[number : number + 1] != [state]:
                 if len(met) == MOST_STATES:
-                    detours.is_endless = True
-                    return furthest
+                    raise _TooManyReadings
                 met.add((state, number))
                 following = recognizer.step(state, kinds[number])
                 if following is None:
