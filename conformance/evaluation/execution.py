@@ -177,7 +177,7 @@ def _run(
         motion=setup.motion,
         is_full=True,
         until=round(case.seconds * 1e6),
-        limits=Limits(_STATEMENTS, _STATEMENTS, profile.statements),
+        limits=Limits(statements=_STATEMENTS, functions=_STATEMENTS, per_slice=profile.statements),
     )
     try:
         return observed(session.run_program(program, wanted), wanted)

@@ -245,7 +245,7 @@ def _run_program(place: int, bounds: RunBounds) -> dict[str, Any]:
         robot=bounds.robot,
         profile=profile,
         until=bounds.until,
-        limits=Limits(_STATEMENTS, _STATEMENTS, profile.statements),
+        limits=Limits(statements=_STATEMENTS, functions=_STATEMENTS, per_slice=profile.statements),
         is_tolerant=bounds.stands_in,
         skips_failures=bounds.stands_in,
     )

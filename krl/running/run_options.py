@@ -221,7 +221,7 @@ def prepared_run(
         motion=options.motion.value,
         until=round(seconds * 1e6),
         patience=round(patience * 1e6),
-        limits=Limits(most, functions, profile.statements),
+        limits=Limits(statements=most, functions=functions, per_slice=profile.statements),
         is_tolerant=not options.strict,
         skips_failures=not options.strict,
         machine=own.machine,

@@ -68,7 +68,7 @@ def _check_arguments(
     given, wanted = node.arguments, symbol.parameters
     is_uncertain = _is_uncertain(symbol, scope)
     if len(given) > len(wanted) and not symbol.has_more:
-        many = "no arguments" if not wanted else _counted(len(wanted))
+        many = "no arguments" if not wanted else counted(len(wanted))
         message = f"{symbol.name} takes {many}, and this is one more"
         if len(given) > len(wanted) + 1:
             message = f"{symbol.name} takes {many}, and these are {len(given)}"
@@ -85,7 +85,8 @@ def _check_arguments(
     _check_output(checker, node, symbol, scope)
 
 
-def _counted(number: int) -> str:
+def counted(number: int) -> str:
+    """Return a number of arguments in words."""
     return "one argument" if number == 1 else f"{number} arguments"
 
 
@@ -99,7 +100,7 @@ def _check_missing(
     needed = [one for one in symbol.parameters if not one.is_optional]
     missing = [one.name for one in symbol.parameters[len(node.arguments) :] if one in needed]
     if missing:
-        message = f"{symbol.name} needs {_counted(len(needed))}"
+        message = f"{symbol.name} needs {counted(len(needed))}"
         reason = f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing"
         checker.report(
             "argument-missing", node, message, reason=reason, is_unconfirmed=is_uncertain

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from grammar.check.analysis.context import Context
+from grammar.check.types.calls import counted
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.package_scope import PackageScope
 from grammar.semantics.scopes import Answer, Found, Undetermined
@@ -86,6 +87,6 @@ def missing_arguments(calls: Iterable[OpenCall]) -> Iterator[Diagnostic]:
             odd = next(call for call in some if call.arguments == few)
             found.setdefault(odd, (usual, counts[usual]))
     for call, (usual, others) in found.items():
-        many = f"{usual} argument{'s' if usual > 1 else ''}"
-        message = f"{call.name} has {many} in its {others} other calls, and {call.arguments} here"
+        many = f"{counted(usual)} in its {others} other calls"
+        message = f"{call.name} has {many}, and {call.arguments} here"
         yield diagnose("argument-missing", call.path, call.region, message)
