@@ -51,7 +51,7 @@ UNRESERVED_FILES = 3
 UNRESERVED_ORIGINS = 2
 
 # -------------------------------------------------------------------- the profile of a grammar
-# `recovery.proposals.grammar_profile`, `keywords`, `collocations`, `similarity`.
+# `recovery.proposals.grammar_profile`, `collocations`, `similarity`, `recovery.forms.keywords`.
 
 #: Alternatives from which on a rule gathers kinds of statement, operand or the like. Not measured.
 HUB_ALTERNATIVES = 4
@@ -86,7 +86,7 @@ NEW_FORM_COST = 2
 MANY_FORMS = 6
 
 # --------------------------------------------------------------------------- phrases of an edit
-# `recovery.proposals.segmentation`, `rule_matcher`, `phrases`, `alignment`.
+# `recovery.proposals.segmentation`, `phrases`, `alignment`, `recovery.forms.rule_matcher`.
 
 #: Tokens of a line that is cut into operands. Bound: the cost grows with the cube.
 LONGEST_SEGMENTED = 120
@@ -303,7 +303,7 @@ MOST_LISTED = 3
 MOST_EXAMPLES = 5
 
 # ----------------------------------------------------------------------------- growing a grammar
-# `recovery.induction`.
+# `recovery.induction`, `recovery.forms`.
 
 #: Different words up to which a context is one of keywords; where names may be too, fewer. Not
 #: measured.

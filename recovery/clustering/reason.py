@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.keywords import Vocabulary
+from recovery.forms.rule_matcher import RuleMatcher
 from recovery.proposals.edit_site import LinePattern
-from recovery.proposals.keywords import Vocabulary
-from recovery.proposals.rule_matcher import RuleMatcher
 from recovery.survey.signature import Signature
 
 #: Words and token kinds; only equality has a meaning.

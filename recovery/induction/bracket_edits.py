@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 
 from grammar.notation.edits import Edit, Insert, Replace
 from grammar.notation.model import Element, Reference, walk
-from recovery.induction.forms.lists import split_at_commas
-from recovery.induction.forms.samples import samples_of
+from recovery.forms.lists import split_at_commas
+from recovery.forms.operand_rules import bracket_pairs
+from recovery.forms.samples import samples_of
+from recovery.forms.symbols import BRACKETS, Symbol
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
-from recovery.induction.operand_rules import bracket_pairs
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
-from recovery.induction.symbols import BRACKETS, Symbol
 from recovery.tuning import BRACKET_ORIGINS, MISSING_RUN
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.keywords import Vocabulary
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
-from recovery.proposals.keywords import Vocabulary
 from recovery.tuning import BALANCED_FILES
 
 

@@ -10,9 +10,9 @@ from itertools import islice
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.failures import Failure
 from grammar.parser.recognizer import Recognizer, State
+from recovery.forms.symbols import BRACKETS
 from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.steps import Evidence
-from recovery.induction.symbols import BRACKETS
 from recovery.language import CorpusFile
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN

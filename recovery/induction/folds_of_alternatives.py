@@ -15,11 +15,11 @@ from grammar.notation.edits import (
     Replace,
 )
 from grammar.notation.model import Literal, Reference, walk
-from recovery.induction.forms.lists import LONG_LIST
-from recovery.induction.forms.samples import samples_of
+from recovery.forms.lists import LONG_LIST
+from recovery.forms.samples import samples_of
+from recovery.forms.symbols import Operand, Symbol
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
-from recovery.induction.symbols import Operand, Symbol
 from recovery.tuning import FOLDING_SYMBOLS, LEAST_STEM
 
 

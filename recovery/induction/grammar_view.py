@@ -13,11 +13,11 @@ from itertools import zip_longest
 
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.forms.loose import is_loose
-from recovery.induction.forms.writer import FormWriter
-from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbol_reader import SymbolReader
-from recovery.induction.symbols import Symbol
+from recovery.forms.loose import is_loose
+from recovery.forms.operand_rules import OperandRules
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import Symbol
+from recovery.forms.writer import FormWriter
 from recovery.proposals.grammar_profile import GrammarProfile
 
 

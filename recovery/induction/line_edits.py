@@ -9,12 +9,12 @@ from itertools import pairwise
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Insert, MakeOptional, Replace
 from grammar.notation.model import Element, Repeat
-from recovery.induction.forms.samples import samples_of
+from recovery.forms.samples import samples_of
+from recovery.forms.symbols import Symbol
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
-from recovery.induction.symbols import Symbol
 from recovery.proposals.edit_site import places_of
 from recovery.tuning import ALIKE_SHARE, ALIKE_WORDS
 

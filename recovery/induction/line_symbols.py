@@ -8,9 +8,9 @@ from itertools import pairwise
 
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer, State
-from recovery.induction.operand_rules import OperandRules, bracket_pairs
-from recovery.induction.symbol_reader import SymbolReader, Token
-from recovery.induction.symbols import BRACKETS, Operand, Symbol
+from recovery.forms.operand_rules import OperandRules, bracket_pairs
+from recovery.forms.symbol_reader import SymbolReader, Token
+from recovery.forms.symbols import BRACKETS, Operand, Symbol
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 

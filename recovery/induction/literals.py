@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 
 from grammar.notation.edits import AddAlternative
 from grammar.parser.lexer import Lexer
-from recovery.induction.chain import Factor, chain_of
+from recovery.forms.chain import Factor, chain_of
 
 _SIGNS = frozenset("+-")
 #: A class of characters and the last character before it that is no digit and no sign.

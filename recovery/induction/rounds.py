@@ -27,6 +27,9 @@ from grammar.notation.model import Grammar, GrammarError
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
+from recovery.forms.operand_rules import OperandRules
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import operands_of
 from recovery.induction.corpus_blocks import blocks_of
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
@@ -38,7 +41,6 @@ from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names
 from recovery.induction.objections import EditReview
-from recovery.induction.operand_rules import OperandRules
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
     AcceptedStep,
@@ -50,8 +52,6 @@ from recovery.induction.steps import (
     described,
     joined,
 )
-from recovery.induction.symbol_reader import SymbolReader
-from recovery.induction.symbols import operands_of
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern

@@ -9,10 +9,10 @@ from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.notation.model import Element, Reference, walk
-from recovery.induction.forms.loose import is_loose
-from recovery.induction.forms.writer import FormWriter
+from recovery.forms.loose import is_loose
+from recovery.forms.symbols import BRACKETS, UNKNOWN, Symbol, all_texts, operands_of
+from recovery.forms.writer import FormWriter
 from recovery.induction.line_symbols import WORD, LineSymbols
-from recovery.induction.symbols import BRACKETS, UNKNOWN, Symbol, all_texts, operands_of
 from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
 

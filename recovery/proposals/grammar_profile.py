@@ -27,7 +27,7 @@ from grammar.notation.model import (
     walk,
 )
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.keywords import Vocabulary
+from recovery.forms.keywords import Vocabulary
 from recovery.tuning import HUB_ALTERNATIVES, SAME_TEXT_BONUS, WIDTH_PER_DOUBLING
 
 _NAMES = re.compile(r"\w+")

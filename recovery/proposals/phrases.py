@@ -12,8 +12,8 @@ from functools import cached_property
 from itertools import islice, product
 
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.rule_matcher import RuleMatcher
 from recovery.proposals.collocations import Before, Collocations, symbols_in
-from recovery.proposals.rule_matcher import RuleMatcher
 from recovery.proposals.segmentation import Segmenter, Word
 from recovery.tuning import (
     HUB_ALTERNATIVES,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from recovery.proposals.rule_matcher import RuleMatcher
+from recovery.forms.rule_matcher import RuleMatcher
 from recovery.tuning import (
     LONGEST_SEGMENTED,
     MOST_ANSWERS_KEPT,

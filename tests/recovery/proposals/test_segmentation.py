@@ -6,7 +6,7 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.rule_matcher import RuleMatcher
+from recovery.forms.rule_matcher import RuleMatcher
 from recovery.proposals.segmentation import Segmenter, Word
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))

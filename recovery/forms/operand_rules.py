@@ -10,9 +10,9 @@ from itertools import pairwise
 from grammar.notation.addresses import sequences
 from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, reached, walk
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.symbols import BRACKETS, Operand
-from recovery.proposals.keywords import Vocabulary
-from recovery.proposals.rule_matcher import RuleMatcher
+from recovery.forms.keywords import Vocabulary
+from recovery.forms.rule_matcher import RuleMatcher
+from recovery.forms.symbols import BRACKETS, Operand
 
 
 class OperandRules:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recovery.induction.forms.chain_text import FactorText, chain_text
+from recovery.forms.chain_text import FactorText, chain_text
 
 _LIST = "NAME (',' NAME)*"
 

@@ -4,7 +4,7 @@ from grammar.notation.edits import AddAlternative, AddToken
 from grammar.notation.g4 import read
 from grammar.notation.model import Group
 from grammar.parser.recognizer import Recognizer
-from recovery.proposals.keywords import Vocabulary
+from recovery.forms.keywords import Vocabulary
 
 VOCABULARY = Vocabulary(
     Recognizer(

@@ -8,8 +8,8 @@ from functools import cached_property
 from itertools import combinations
 
 from grammar.notation.model import Reference
-from recovery.induction.symbol_reader import SymbolReader
-from recovery.induction.symbols import Operand
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import Operand
 from recovery.tuning import READ_TOGETHER_SHARE
 
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
-from recovery.induction.forms.lists import LONG_LIST
-from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbols import CLOSERS, Operand, Symbol, closer_of
+from recovery.forms.lists import LONG_LIST
+from recovery.forms.operand_rules import OperandRules
+from recovery.forms.symbols import CLOSERS, Operand, Symbol, closer_of
 from recovery.tuning import MOST_SAMPLES
 
 

@@ -1,6 +1,6 @@
 """Lines as symbols: words and signs, operands as one symbol each, and groups in brackets.
 
-`recovery.induction.symbol_reader` reads them from tokens; `recovery.induction.operand_rules` says
+`recovery.forms.symbol_reader` reads them from tokens; `recovery.forms.operand_rules` says
 which rules of a grammar read operands.
 """
 

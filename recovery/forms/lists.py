@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from recovery.induction.symbols import Symbol, texts
+from recovery.forms.symbols import Symbol, texts
 from recovery.tuning import ITEMS_BEHIND_THE_FIRST
 
 #: The text of the symbol that stands for a list.

@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import takewhile
 
-from recovery.induction.forms.lists import LIST
-from recovery.induction.symbols import Symbol, texts
+from recovery.forms.lists import LIST
+from recovery.forms.symbols import Symbol, texts
 from recovery.tuning import LONGEST_SIGNS_AHEAD
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from recovery.induction.chain import Factor, chain_of
-from recovery.induction.forms.chain_text import FactorText, chain_text
-from recovery.induction.forms.lists import COMMA, LIST, FoldedLists, fold_lists
-from recovery.induction.forms.marks import Mark, MarkedLine, marked
-from recovery.induction.forms.operand_cover import NoRuleError, OperandCover
-from recovery.induction.forms.operand_splits import split_operands
-from recovery.induction.symbol_reader import SymbolReader
-from recovery.induction.symbols import CLOSERS, Operand, Symbol, texts
+from recovery.forms.chain import Factor, chain_of
+from recovery.forms.chain_text import FactorText, chain_text
+from recovery.forms.lists import COMMA, LIST, FoldedLists, fold_lists
+from recovery.forms.marks import Mark, MarkedLine, marked
+from recovery.forms.operand_cover import NoRuleError, OperandCover
+from recovery.forms.operand_splits import split_operands
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import CLOSERS, Operand, Symbol, texts
 from recovery.tuning import MANY_LISTS
 
 

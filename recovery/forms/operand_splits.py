@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 from itertools import pairwise
 
-from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbol_reader import SymbolReader
-from recovery.induction.symbols import Operand, Symbol
+from recovery.forms.operand_rules import OperandRules
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import Operand, Symbol
 
 
 def split_operands(

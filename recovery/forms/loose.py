@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence, Set
 
 from grammar.notation.g4 import read_rule
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat
-from recovery.induction.forms.lists import split_at_commas
-from recovery.induction.symbols import Symbol, all_texts
+from recovery.forms.lists import split_at_commas
+from recovery.forms.symbols import Symbol, all_texts
 
 
 def is_loose(form: str, lines: Sequence[Sequence[Symbol]]) -> bool:

@@ -5,12 +5,12 @@ import pytest
 from grammar.notation.g4 import read, read_rule
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.induction.forms.loose import is_loose
-from recovery.induction.forms.samples import samples_of
-from recovery.induction.forms.writer import FormWriter
-from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbol_reader import SymbolReader
-from recovery.induction.symbols import Operand, Symbol
+from recovery.forms.loose import is_loose
+from recovery.forms.operand_rules import OperandRules
+from recovery.forms.samples import samples_of
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import Operand, Symbol
+from recovery.forms.writer import FormWriter
 
 _GRAMMAR = """grammar Toy;
 

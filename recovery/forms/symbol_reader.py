@@ -1,4 +1,4 @@
-"""Reads tokens as symbols (`recovery.induction.symbols`).
+"""Reads tokens as symbols (`recovery.forms.symbols`).
 
 An operand is the longest sequence that a rule of operands reads; the grammar determines which rules
 these are. Everything that no rule reads yet remains words, signs and groups in brackets.
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from recovery.induction.operand_rules import OperandRules
-from recovery.induction.symbols import BRACKETS, UNKNOWN, Operand, Symbol, closer_of
+from recovery.forms.operand_rules import OperandRules
+from recovery.forms.symbols import BRACKETS, UNKNOWN, Operand, Symbol, closer_of
 
 # Signs behind a name at the head of a line.
 _BEHIND_NAMES = frozenset({"=", ".", "[", "(", ":"})

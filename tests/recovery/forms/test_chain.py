@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recovery.induction.chain import Factor, chain_of
+from recovery.forms.chain import Factor, chain_of
 
 
 def _pattern(factors: tuple[Factor[str], ...]) -> str:
