@@ -242,36 +242,36 @@ BUILTINS: Mapping[str, PredefinedFunction] = MappingProxyType(
     {name: _builtin(name) for name in sorted({*_COMPUTING, *_ASKING})}
 )
 
-#: As how many statements functions and the operator ``:`` count. One is the time of two
+#: As how many statements functions and the operator ``:`` count. One is the time of an
 #: ``I=I+1``, measured with texts of 80 letters on the bytecode machine in Python, where functions
 #: take longest in comparison. All others take no longer than the statement they are in.
 WEIGHTS: Mapping[str, int] = MappingProxyType(
     {
-        ":": 32,
-        "FRAND": 15,
-        "INV_POS": 69,
-        "SREAD": 80,
-        "STRADD": 26,
-        "STRCLEAR": 16,
-        "STRCOMP": 26,
-        "STRCOPY": 34,
-        "STRDECLLEN": 13,
-        "STRFIND": 31,
-        "STRLEN": 20,
-        "STRTOAXIS": 41,
-        "STRTOBOOL": 12,
-        "STRTOE3AXIS": 51,
-        "STRTOE3POS": 62,
-        "STRTOE6AXIS": 60,
-        "STRTOE6POS": 62,
-        "STRTOFRAME": 42,
-        "STRTOINT": 12,
-        "STRTOPOS": 46,
-        "STRTOREAL": 14,
-        "STRTOSTRING": 20,
-        "SWRITE": 105,
-        "VARSTATE": 14,
-        "VARTYPE": 19,
+        ":": 64,
+        "FRAND": 30,
+        "INV_POS": 138,
+        "SREAD": 160,
+        "STRADD": 52,
+        "STRCLEAR": 32,
+        "STRCOMP": 52,
+        "STRCOPY": 68,
+        "STRDECLLEN": 26,
+        "STRFIND": 62,
+        "STRLEN": 40,
+        "STRTOAXIS": 82,
+        "STRTOBOOL": 24,
+        "STRTOE3AXIS": 102,
+        "STRTOE3POS": 124,
+        "STRTOE6AXIS": 120,
+        "STRTOE6POS": 124,
+        "STRTOFRAME": 84,
+        "STRTOINT": 24,
+        "STRTOPOS": 92,
+        "STRTOREAL": 28,
+        "STRTOSTRING": 40,
+        "SWRITE": 210,
+        "VARSTATE": 28,
+        "VARTYPE": 38,
     }
 )
 

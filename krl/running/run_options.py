@@ -30,9 +30,9 @@ _SECONDS, _AUTO_SECONDS = 3600.0, 600.0
 _AUTO_PATIENCE = 20.0
 #: Statements after which a program counts as endless: the same for all machines, so that their
 #: traces are equal. A loop ends within some 5 s of the slowest and of the tree interpreter.
-_STATEMENTS, _TREE_STATEMENTS = 5_000_000, 150_000
+_STATEMENTS, _TREE_STATEMENTS = 4_000_000, 150_000
 #: The same limit for functions in the tree interpreter, where a statement takes longer.
-_TREE_FUNCTIONS = 1_000_000
+_TREE_FUNCTIONS = 2_000_000
 
 
 class Executor(StrEnum):
@@ -136,7 +136,7 @@ class RunOptions:
             max=2**31 - 1,
             metavar="N",
             help="Statements each program may execute before it counts as endless; default: "
-            "5000000, with the executor tree 150000.",
+            "4000000, with the executor tree 150000.",
         ),
     ] = None
     strict: Annotated[

@@ -44,7 +44,7 @@ def _program(body: str) -> CheckedProgram:
 def test_loop_of_functions_ends(call: str, count: str) -> None:
     """It ends after the same function on every executor, with a trace and without."""
     program = _program(f"LOOP\n{count}{call}\nENDLOOP")
-    setup = RunSetup(limits=Limits(functions=3_000, per_slice=100), until=9_000_000)
+    setup = RunSetup(limits=Limits(functions=6_000, per_slice=100), until=9_000_000)
     runs = [
         run_program(program, replace(setup, executor=one, is_full=is_full, is_traced=is_full))
         for one in EXECUTORS
@@ -66,7 +66,7 @@ def test_loop_of_functions_ends(call: str, count: str) -> None:
 )
 def test_functions_of_a_program_that_waits(body: str) -> None:
     """They count from the last wait on, also where it polls; those of conditions do not."""
-    limits, profile = Limits(functions=5_000), replace(Profile.load(), requests=1)
+    limits, profile = Limits(functions=10_000), replace(Profile.load(), requests=1)
     setup = RunSetup(limits=limits, profile=profile, until=4_000_000)
     program = _program(body)
     assert {"time"} == {
