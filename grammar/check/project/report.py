@@ -1,12 +1,15 @@
 """The report of a check, made from the results of its projects.
 
 The findings of a large corpus take more memory than anything else of it, some 500 bytes each. So
-those of a finished project are compressed, and expanded again when it is their turn.
+those of a finished project are compressed, and expanded again when it is their turn; beyond a few
+megabytes they wait in a temporary file.
 """
 
 from __future__ import annotations
 
+import os
 import pickle
+import tempfile
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
@@ -16,6 +19,9 @@ from grammar.diagnostics.diagnostic import Diagnostic, Located, Region, diagnose
 from support.files import archives
 from support.files.discovery import Found, Skipped
 from support.lazy_dataclass import dataclass
+
+#: Bytes of compressed findings that are held in memory.
+_MOST_IN_MEMORY = 8_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,16 +51,41 @@ class CheckReport:
         return tuple(finding for finding, _ in self.located())
 
 
-class _Part:
-    """The findings of a project in order; all but the first are compressed."""
+class _File:
+    """Compressed findings, in a temporary file if they are many."""
 
-    def __init__(self, found: Sequence[Located]) -> None:
+    def __init__(self) -> None:
+        self._file = tempfile.SpooledTemporaryFile(_MOST_IN_MEMORY)  # noqa: SIM115  closed with this
+
+    def __del__(self) -> None:
+        self._file.close()
+
+    def append(self, found: Sequence[Located]) -> tuple[int, int]:
+        """Return where they are; raises `OSError` with the folder if its disk is full."""
+        start = self._file.seek(0, os.SEEK_END)
+        try:
+            return start, self._file.write(zlib.compress(pickle.dumps(found, 5), 1))
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, tempfile.gettempdir()) from error
+
+    def at(self, start: int, size: int) -> Sequence[Located]:
+        """Return the findings that are there."""
+        self._file.seek(start)
+        found: Sequence[Located] = pickle.loads(zlib.decompress(self._file.read(size)))
+        return found
+
+
+class _Part:
+    """The findings of a project in order; all but the first are in a file."""
+
+    def __init__(self, found: Sequence[Located], file: _File) -> None:
         self._first = found[0]
-        self._rest = zlib.compress(pickle.dumps(found[1:], 5), 1)
+        self._file = file
+        self._place = file.append(found[1:])
 
     def __iter__(self) -> Iterator[Located]:
         yield self._first
-        yield from pickle.loads(zlib.decompress(self._rest))
+        yield from self._file.at(*self._place)
 
 
 def together(results: Iterable[ProjectResult], skipped: Sequence[Skipped]) -> CheckReport:
@@ -65,14 +96,15 @@ def together(results: Iterable[ProjectResult], skipped: Sequence[Skipped]) -> Ch
         diagnose("too-large", one.path, start, one.reason) for one in skipped if is_large(one)
     )
     left_out = [one for one in skipped if not is_large(one)]
-    parts = [_Part([(one, "") for one in large])] if large else []
+    file = _File()
+    parts = [_Part([(one, "") for one in large], file)] if large else []
     paths: list[str] = []
     size = projects = unchanged = 0
     for result in results:
         lines = result.lines
         found = [(one, lines.get((one.path, one.region.line), "")) for one in result.diagnostics]
         if found:
-            parts.append(_Part(found))
+            parts.append(_Part(found, file))
         left_out += result.skipped
         paths += result.sizes
         size += sum(result.sizes.values())

@@ -1,7 +1,13 @@
 """Reports: the findings of all projects in one order, and little of them in memory."""
 
+import errno
+import tempfile
+import tracemalloc
 from collections.abc import Iterable
 
+import pytest
+
+from grammar.check.project import report
 from grammar.check.project.report import together
 from grammar.check.project.result_cache import ProjectResult
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order, merged
@@ -42,10 +48,21 @@ def test_a_part_is_read_when_its_turn_comes() -> None:
     assert [("a", ()), ("a", ("a",)), ("b", ("a",)), ("b", ("a", "b"))] == yielded
 
 
-def test_findings_take_little_memory() -> None:
-    """A report with many findings is far smaller than its findings."""
-    few, many = (
-        sum(len(part._rest) for part in together([project(*found)], ())._parts)
-        for found in ([finding("a", line) for line in range(1, count)] for count in (10, 10_000))
-    )
-    assert many - few < 9_990 * 50
+def test_findings_take_little_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many only the first of each project is in memory; a disk that is full is named."""
+    monkeypatch.setattr(report, "_MOST_IN_MEMORY", 1_000)
+    projects = (project(*(finding(f"p{n}", i) for i in range(1, 1_001))) for n in range(30))
+    tracemalloc.start()
+    try:
+        found = together(projects, ())
+        assert tracemalloc.get_traced_memory()[0] < 300_000
+    finally:
+        tracemalloc.stop()
+    assert 30_000 == len(found.diagnostics)
+    monkeypatch.setattr(tempfile.SpooledTemporaryFile, "write", _full)
+    with pytest.raises(OSError, match=tempfile.gettempdir()):
+        together([project(finding("a", 1))], ())
+
+
+def _full(*_: object) -> int:
+    raise OSError(errno.ENOSPC, "No space left on device")
