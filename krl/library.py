@@ -99,11 +99,11 @@ def check(
     ``jobs`` is the number of processes, by default as many as are useful. Raises `InputError`.
     """
     from grammar.check.project.batch import CheckOptions, check_paths
-    from krl.running.project_folders import project_paths
+    from krl.running.project_folders import project_root
     from support.files.discovery import IngestError
 
     roots = [Path(path) for path in paths]
-    around = [one for path in roots for one in project_paths(path)]
+    around = [project_root(path) for path in roots]
     names = tuple(sorted(name.upper() for name in packages))
     options = CheckOptions(is_complete=complete, packages=names)
     with as_input_errors(IngestError):

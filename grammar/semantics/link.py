@@ -1,10 +1,8 @@
-"""Linking: which files form a project, and which names each file sees.
+"""Linking: which names each file of a project sees.
 
-`link` takes the files of a call, from folders, archives or one by one, and returns a `Workspace` of
-`Project`s. A project is what one controller holds: every backup has a folder with R1 or STEU in it,
-and files around that folder are another project. Files without this layout form one project for
-each origin. If they contain several $CONFIG lists, each of these begins a project. Projects see
-nothing of one another.
+`link` takes the files of a call, and returns a `Workspace` of `Project`s, which see nothing of one
+another. `grammar.semantics.project_grouping` says what a project is; files outside a controller
+are one for each origin, if they do not have several $CONFIG lists.
 
 Within a project, a `.src` or `.sub` file and the `.dat` file of the same name in the same folder
 are one module [SCO-01]. Visible everywhere are the first routine of a file, routines declared
@@ -21,12 +19,14 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, cached_property
+from itertools import chain
 from pathlib import PurePosixPath
 
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.declared_types import DeclaredTypes
 from grammar.semantics.package_scope import PackageScope, called_packages
 from grammar.semantics.predefined import System
+from grammar.semantics.project_grouping import grouped
 from grammar.semantics.scopes import (
     REST,
     Answer,
@@ -46,7 +46,6 @@ from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, RoutineTable, Symbol
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from support.files.discovery import DRIVE_FOLDERS, is_drive
 from support.lazy_dataclass import dataclass
 
 #: Names with this many equal first letters are taken to belong together.
@@ -280,7 +279,11 @@ def link(
     """
     projects, scope = [], SystemScope(system or System.load())
     known = {one.modules[0].path: one for one in before.projects} if before else {}
-    for root, is_controller, members in grouped(files):
+    by_origin: dict[str, list[File]] = defaultdict(list)
+    for file in files:
+        by_origin[file.origin].append(file)
+    groups = (grouped(by_origin[origin]) for origin in sorted(by_origin))
+    for root, is_controller, members in chain.from_iterable(groups):
         project = known.get(members[0].path)
         if project is None or not _is_of(members, project) or root != project.root:
             modules = [_module(file) for file in members]
@@ -404,107 +407,3 @@ def _has_all(modules: Sequence[Module]) -> bool:
     """Return whether the files that every backup of a controller has are present."""
     lists = {module.table.key for module in modules if module.table and module.table.is_system}
     return {"$CONFIG", "$MACHINE"} <= lists and any(module.name == "BAS" for module in modules)
-
-
-# ------------------------------------------------------------------------------------ projects
-
-_DRIVES = {"r1", "steu"}
-_CONFIG = "$config.dat"
-
-_Folder = tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _Placed:
-    """A file and its folders, as written and with letter case folded."""
-
-    file: File
-    folders: _Folder
-    folded: _Folder
-    name: str
-
-
-def _placed(file: File) -> _Placed:
-    *folders, name = file.path.replace("\\", "/").split("/")
-    return _Placed(file, tuple(folders), tuple(map(str.casefold, folders)), name.casefold())
-
-
-def grouped(files: Iterable[File]) -> Iterator[tuple[str, bool, list[File]]]:
-    """Yield the files of each project with its root, and whether the root holds a drive.
-
-    Only their paths and origins count.
-    """
-    by_origin: dict[str, list[File]] = defaultdict(list)
-    for file in files:
-        by_origin[file.origin].append(file)
-    for origin in sorted(by_origin):
-        all_ = list(map(_placed, by_origin[origin]))
-        groups: dict[tuple[bool, _Folder], list[_Placed]] = defaultdict(list)
-        loose = []
-        drives = {root for placed in all_ for root in _drive_roots(placed.folded)}
-        renamed = _renamed_drives(all_)
-        for placed in all_:
-            root = _last(drives, placed.folded, _DRIVES)
-            if root is None:
-                drive = _last(renamed.keys(), placed.folded)
-                root = None if drive is None else renamed[drive]
-            if root is None:
-                loose.append(placed)
-            else:
-                groups[True, root].append(placed)
-        configs = {_config_root(placed.folded) for placed in loose if placed.name == _CONFIG}
-        for placed in loose:
-            root = _last(configs, placed.folded) if len(configs) > 1 else None
-            groups[False, root or ()].append(placed)
-        for (is_controller, root), members in sorted(groups.items()):
-            depth = len(root) or _shared(members)
-            shown = "/".join(members[0].folders[:depth])
-            yield shown, is_controller, [placed.file for placed in members]
-
-
-def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
-    """Yield the folders on a path that certainly hold the drives of a controller."""
-    for depth, name in enumerate(folders):
-        if name in _DRIVES:
-            is_below_krc = depth > 0 and folders[depth - 1] == "krc"
-            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in DRIVE_FOLDERS):
-                yield folders[:depth]
-
-
-def _renamed_drives(files: Iterable[_Placed]) -> dict[_Folder, _Folder]:
-    """Return the drives that are not called R1, each with the root of its project.
-
-    The root is the parent folder if it also has STEU, otherwise the drive itself.
-    """
-    inside: dict[_Folder, set[str]] = defaultdict(set)
-    for placed in files:
-        for depth, name in enumerate(placed.folded):
-            inside[placed.folded[:depth]].add(name)
-    return {
-        folder: folder[:-1] if folder and "steu" in inside[folder[:-1]] else folder
-        for folder, names in inside.items()
-        if is_drive(names) and not (folder and folder[-1] in _DRIVES)
-    }
-
-
-def _last(roots: Set[_Folder], folders: _Folder, inside: Set[str] | None = None) -> _Folder | None:
-    """Return the innermost root on a path, if the next folder is one of ``inside``."""
-    for depth in range(len(folders), -1, -1):
-        if folders[:depth] in roots and (
-            inside is None or (depth < len(folders) and folders[depth] in inside)
-        ):
-            return folders[:depth]
-    return None
-
-
-def _config_root(folders: _Folder) -> _Folder:
-    return folders[:-1] if folders and folders[-1] == "system" else folders
-
-
-def _shared(members: Sequence[_Placed]) -> int:
-    """Return the number of leading folders that all files have in common."""
-    first, last = min(placed.folded for placed in members), max(p.folded for p in members)
-    return next(
-        (depth for depth, (a, b) in enumerate(zip(first, last, strict=False)) if a != b),
-        min(len(first), len(last)),
-    )

@@ -23,6 +23,7 @@ from grammar.check.project.suppression_comments import apply_suppressions, suppr
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
 from grammar.diagnostics.suppression import Selection
 from grammar.semantics.link import File, Project, Workspace, link
+from grammar.semantics.project_grouping import projects_of
 from grammar.semantics.scopes import Answer, Found, Module, Scope, Undetermined
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
@@ -31,7 +32,7 @@ from grammar.syntax.source import Source
 from krl.errors import InputError
 from krl.project_settings import Settings, baseline_place, read_baseline, settings_of
 from support.files import discovery
-from support.files.decode import decode
+from support.files.decode import Decoded, decode
 from support.files.untrusted import read_bytes
 from support.gc_pause import gc_paused
 
@@ -50,6 +51,7 @@ class _Read:
     reading: Reading
     file: File
     given: Contribution
+    is_krl: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,12 +130,14 @@ class OpenProject:
             ]
         except discovery.IngestError:
             return
+        for root, _, members in projects_of(found):
+            for one in members:
+                self._origins.setdefault(one.file.parent, root)
+        self._groups.clear()
         for one in found[:MOST_FILES]:
-            path = one.file.absolute().as_posix()
+            path = one.file.as_posix()
             if one.member is not None:
                 continue
-            self._origins.setdefault(one.file.absolute().parent, one.origin)
-            self._groups.clear()
             if path not in self._files:
                 self.reload(path)
                 yield path
@@ -273,7 +277,7 @@ class OpenProject:
                     agreed = self._settings(path)
                     is_left_out = _is_left_out(path, agreed)
                     self._groups[path] = None if is_left_out else (agreed, self._origin(path))
-                if (group := self._groups[path]) is not None:
+                if (group := self._groups[path]) is not None and one.is_krl:
                     file = replace(one.file, origin=group[1])
                     groups.setdefault(group[0], []).append(file)
             self._workspaces = {
@@ -318,7 +322,9 @@ def _read(path: str, text: str) -> _Read:
     reading = read_source(source)
     table = None if reading.syntax is None else table_of(reading.syntax)
     file = File(path, reading.syntax, table=table, words=reading.words)
-    return _Read(source, reading, file, contribution(path, text, table, reading.words))
+    given = contribution(path, text, table, reading.words)
+    is_krl = isinstance(decode(text.encode(errors="replace")), Decoded)
+    return _Read(source, reading, file, given, is_krl)
 
 
 def _is_left_out(path: str, agreed: Settings) -> bool:

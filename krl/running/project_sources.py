@@ -2,18 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from krl.errors import InputError, as_input_errors
-from krl.running.folder_contents import ArchiveFolders, DiskFolders
-from krl.running.project_folders import (
-    PARTS,
-    files_near,
-    in_archive,
-    is_project,
-    project_root,
-    root_around,
-)
+from krl.running.project_folders import project_root
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source
@@ -27,19 +19,27 @@ _MOST_SHOWN = 5
 def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     """Return the files of a file's project, its own path among them, and what was left out.
 
-    The files are those below `project_root` that `grammar.semantics.link` puts into the file's
-    project. Files that cannot be read are left out, except the requested one.
+    Paths begin at the root of the project, wherever it lies. Files that cannot be read are left
+    out, except the requested one.
     """
+    from grammar.semantics.project_grouping import projects_of
     from grammar.syntax.source import Source
-    from support.files.discovery import Skipped, read_source
+    from support.files.discovery import Skipped, archive_around, read_source
 
-    archive, inner = in_archive(file)
-    files = _files_on_disk(file) if archive is None else _files_in_archive(file, archive, inner)
-    main = _shown(files.asked, files.root)
-    whole = chosen = _of_one_project(files.found, files.root, main)
+    if file.is_dir() or (file.suffix.lower() == ".zip" and file.is_file()):
+        raise InputError(f"{file}: holds {_programs_in(file)}")
+    if archive_around(file) is None and not file.is_file():
+        raise InputError(f"{file}: no such file")
+    found = _discovered(project_root(file))
+    asked = _named(file, found)
+    projects = projects_of(found)
+    root, is_controller, whole = next(one for one in projects if asked in one[2])
+
+    def shown(one: "Found") -> str:
+        return one.path.removeprefix(f"{root}/") if root else one.path
+
     is_large = len(whole) > _MOST_FILES or sum(one.size for one in whole) > _MOST_BYTES
-    if files.are_mixed or is_large:
-        chosen = _named_from(files.asked, whole)
+    chosen = _named_from(asked, whole, is_controller=is_controller) if is_large else whole
     sources: list[Source] = []
     left: list[str] = []
     if len(chosen) < len(whole):
@@ -48,65 +48,35 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     for one in chosen:
         read = read_source(one)
         if not isinstance(read, Skipped):
-            sources.append(Source(read.text, _shown(one, files.root)))
-        elif one is files.asked:
-            raise InputError(f"{one.path}: {read.reason}")
+            sources.append(Source(read.text, shown(one)))
+        elif one is asked:
+            raise InputError(f"{file}: {read.reason}")
         else:
-            left.append(f"{one.path}: {read.reason}")
-    return sources, main, left
+            left.append(f"{shown(one)}: {read.reason}")
+    return sources, shown(asked), left
 
 
-class _Files(NamedTuple):
-    """The files below the root of a project, and the one that was asked for.
-
-    If they ``are_mixed``, the root is no project as a whole.
-    """
-
-    root: Path
-    asked: "Found"
-    found: "list[Found]"
-    are_mixed: bool
-
-
-def _files_on_disk(file: Path) -> _Files:
-    if not file.is_file() and not file.is_dir():
-        raise InputError(f"{file}: no such file")
-    if file.is_dir() or file.suffix.lower() == ".zip":
-        raise InputError(f"{file}: holds {_programs_in(file)}")
-    root = project_root(file)
-    are_mixed = not is_project(root)
-    roots = DiskFolders().below(root) or files_near(root) if are_mixed else [root]
-    found = [one for one in _discovered(roots) if one.member is None]
-    asked = _named(file, found, root, file.resolve().relative_to(root).as_posix())
-    return _Files(root, asked, found, are_mixed)
-
-
-def _files_in_archive(file: Path, archive: Path, inner: str) -> _Files:
-    found = _discovered([archive])
-    asked = _named(file, found, archive, inner)
-    paths = {one: PurePosixPath(_shown(one, archive)) for one in found}
-    folders = ArchiveFolders({path: one for one, path in paths.items()})
-    inside = root_around(paths[asked].parent, folders)
-    inner_files = [one for one, path in paths.items() if path.is_relative_to(inside)]
-    return _Files(archive / inside, asked, inner_files, are_mixed=False)
-
-
-def _discovered(roots: Sequence[Path]) -> "list[Found]":
+def _discovered(root: Path) -> "list[Found]":
+    """Return the files below a folder or in an archive; raises `InputError` if there are none."""
     from support.files.discovery import Found, IngestError, discover
 
     with as_input_errors(IngestError):
-        return [one for one in discover(roots) if isinstance(one, Found)]
+        return [one for one in discover([root]) if isinstance(one, Found)]
 
 
-def _named(file: Path, found: "Sequence[Found]", root: Path, path: str) -> "Found":
-    """Return the file at a path below the root; raises `InputError` if it was not found."""
+def _named(file: Path, found: "Sequence[Found]") -> "Found":
+    """Return the file at a path; raises `InputError` if it was not found."""
     from support.files.discovery import printable
 
-    wanted = PurePosixPath(printable(path))
-    for one in found:
-        if PurePosixPath(_shown(one, root)) == wanted:
-            return one
-    raise InputError(f"{file}: no KRL program")
+    if file.is_file():
+        place = file.resolve()
+        one = next((one for one in found if one.member is None and one.file == place), None)
+    else:
+        path = PurePosixPath(printable(file.as_posix()))
+        one = next((one for one in found if one.member and PurePosixPath(one.path) == path), None)
+    if one is None:
+        raise InputError(f"{file}: no KRL program")
+    return one
 
 
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
@@ -124,7 +94,7 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
             yield one.found.origin, Source(one.text, one.path)
 
 
-def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
+def _named_from(asked: "Found", found: "Sequence[Found]", *, is_controller: bool) -> "list[Found]":
     """Return the files to which a file refers, directly or not, with system data and submit."""
     from grammar.semantics.link import words_of
     from support.files.discovery import SourceFile, read_source
@@ -136,7 +106,7 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
         path = PurePosixPath(one.path)
         by_name.setdefault(path.stem.upper(), []).append(one)
         if path.name.startswith("$") or path.suffix.lower() == ".sub":
-            todo += [one] if path.parent == folder or _is_in_drive(one.path) else []
+            todo += [one] if is_controller or path.parent == folder else []
     todo += by_name.pop(PurePosixPath(asked.path).stem.upper())
     named: dict[Found, None] = {}
     while todo:
@@ -152,42 +122,10 @@ def _named_from(asked: "Found", found: "Sequence[Found]") -> "list[Found]":
 def _programs_in(place: Path) -> str:
     """Return the programs in a folder or archive as text, those in Program folders first."""
     programs = sorted(
-        (one.path for one in _discovered([place]) if one.path.lower().endswith(".src")),
+        (one.path for one in _discovered(place) if one.path.lower().endswith(".src")),
         key=lambda path: ("/program/" not in path.lower(), path),
     )
     if not programs:
         return "no program"
     more = f" and {len(programs) - _MOST_SHOWN} more" if len(programs) > _MOST_SHOWN else ""
     return f"programs: name one of {', '.join(programs[:_MOST_SHOWN])}{more}"
-
-
-def _of_one_project(found: "Sequence[Found]", root: Path, main: str) -> "list[Found]":
-    """Return the files in the same project as ``main``, judged by their paths."""
-    from grammar.semantics.link import File, link
-
-    by_path = {_shown(one, root): one for one in found}
-    for project in link([File(path, None) for path in by_path]).projects:
-        paths = [module.path for module in project.modules]
-        if main in paths:
-            if project.is_controller:
-                return [by_path[path] for path in paths]
-            is_inside = _is_in_drive(main)
-            return [by_path[path] for path in paths if _is_in_drive(path) == is_inside]
-    return []
-
-
-def _is_in_drive(path: str) -> bool:
-    """Return whether a file lies in R1 or STEU; files beside these are another project."""
-    return not PARTS.isdisjoint(path.upper().split("/")[:-1])
-
-
-def _shown(found: "Found", root: Path) -> str:
-    """Return the path of a file below the root of its project, without control characters.
-
-    It does not depend on where the project lies.
-    """
-    from support.files.discovery import printable
-
-    if found.member is not None:
-        return found.path.removeprefix(f"{printable(root.as_posix())}/")
-    return printable(found.file.relative_to(root).as_posix())

@@ -95,6 +95,37 @@ def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
     return _survey(_resolved(roots))
 
 
+def files_around(folder: Path, most: int) -> list[Found]:
+    """Return the files below the outermost folder around ``folder`` that holds few others.
+
+    That is at most ``most`` files and folders; none are returned if ``folder`` itself has more.
+    Archives are not opened; what cannot be read is left out.
+    """
+    found: list[Found] = []
+    inner = folder
+    for outer in (folder, *folder.parents):
+        more: list[str] = []
+        pending = [str(outer)]
+        while pending:
+            try:
+                with os.scandir(pending.pop()) as entries:
+                    listed = list(entries)
+            except OSError:
+                continue
+            most -= len(listed)
+            if most < 0:
+                return found
+            for entry in listed:
+                if entry.is_dir(follow_symlinks=False):
+                    if entry.path != str(inner) and not _ignored(entry.name):
+                        pending += [] if _is_link(entry) else [entry.path]
+                elif entry.name.lower().endswith(SUFFIXES) and entry.is_file(follow_symlinks=False):
+                    more.append(entry.path)
+        found += [Found(printable(Path(one).as_posix()), "", 0, Path(one), None) for one in more]
+        inner = outer
+    return found
+
+
 def is_drive(names: Iterable[str]) -> bool:
     """Return whether a folder with subfolders of these names is a drive of a controller.
 
@@ -175,7 +206,7 @@ def _resolved(roots: Sequence[Path]) -> list[_Root]:
         raise IngestError("no file or folder was named")
     found: dict[tuple[Path, str], _Root] = {}
     for given in sorted(map(Path, roots), key=lambda root: _order(root.as_posix())):
-        root = _archive_around(given) or given
+        root = archive_around(given) or given
         shown, inside = root.as_posix(), "" if root == given else given.as_posix()
         try:
             mode = root.stat().st_mode
@@ -195,7 +226,7 @@ def _resolved(roots: Sequence[Path]) -> list[_Root]:
     return list(found.values())
 
 
-def _archive_around(path: Path) -> Path | None:
+def archive_around(path: Path) -> Path | None:
     """Return the archive through which a path leads, or ``None``."""
     try:
         return next((one for one in path.parents if is_archive(one.name) and one.is_file()), None)

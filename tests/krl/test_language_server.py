@@ -106,6 +106,36 @@ def test_a_line_that_cannot_be_read_hides_no_place(project: OpenProject) -> None
         listed(project, "CELL.src", "PARTS\n", "PIECES")
 
 
+def test_empty_file_has_no_findings(tmp_path: Path) -> None:
+    """A file without KRL is no program, as in a check, until something is written into it."""
+    made = OpenProject()
+    path = f"{tmp_path.as_posix()}/new.src"
+    for text, count in (("", 0), ("DEF new ( )\nIF\nEND\n", 1), ("; later\n", 0)):
+        made.change(path, text)
+        looked = made.look(path)
+        assert looked is not None
+        assert count == len(looked.diagnostics)
+
+
+@pytest.mark.parametrize(
+    ("paths", "count"),
+    [
+        (("a/one.src", "b/two.src"), 1),
+        (("other.src", "a/one.src", "a/x/two.src", "b/one.src"), 3),
+    ],
+)
+def test_projects_are_those_of_a_check(tmp_path: Path, paths: tuple[str, ...], count: int) -> None:
+    """Folders that call one another are one project, copies are not."""
+    for path in paths:
+        (file := tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        call = "lost" if path == "other.src" else "two"
+        file.write_text(f"DEF {file.stem} ( )\n{call} ( )\nEND\n", "utf-8")
+    made = OpenProject()
+    looked = [made.look(path) for path in [*made.add_folder(tmp_path)]]
+    assert len(paths) == len(looked)
+    assert count == len({one.project for one in looked if one})
+
+
 def test_a_routine_is_renamed_in_all_files(project: OpenProject) -> None:
     """Its head and its calls are written anew."""
     assert ["CELL.src:6", "CELL.src:9", "OTHER.src:4"] == listed(

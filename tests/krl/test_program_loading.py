@@ -1,13 +1,15 @@
 """Which files are one project, from wherever one enters it."""
 
-from pathlib import Path
+from itertools import chain
+from pathlib import Path, PurePath
 from zipfile import ZipFile
 
 import pytest
 
 from krl.cli import main
+from krl.library import check
 from krl.running.program_loading import load_program
-from krl.running.project_folders import project_paths, project_root
+from krl.running.project_folders import project_root
 from krl.running.project_sources import read_sources
 
 FILES = {
@@ -59,106 +61,91 @@ def test_two_controllers(tmp_path: Path) -> None:
     assert len(FILES) == len(files)
 
 
-MIXED = ("notes.txt", "plan.pdf", "a.png", "b.png", "other.src", "help.src")
-
-
-@pytest.mark.parametrize("files", [MIXED, ("part.src", *MIXED[4:])])
-def test_folder_above(tmp_path: Path, files: tuple[str, ...]) -> None:
-    """A folder above is of a project where half of its files are KRL, for a run and a check."""
-    for name in (*files, "cell/main.src"):
-        (file := tmp_path / name).parent.mkdir(exist_ok=True)
-        file.write_text(f"DEF {file.stem} ( )\nEND\n", "utf-8")
-    inside = tmp_path / "cell" / "main.src"
-    is_taken = files != MIXED
-    wanted = ["cell/main.src", *sorted(files)] if is_taken else ["main.src"]
-    assert wanted == _files(inside)
-    for path in (inside, inside.parent):
-        assert [tmp_path if is_taken else tmp_path / "cell"] == project_paths(path)
-
-
-SIBLINGS = {
-    "one/cell/job/main.src": "DEF main ( )\ngrip ( )\nEND\n",
-    "one/cell/parts/lib/grip.src": "DEF grip ( )\nEND\n",
-    "one/cell/parts/other/idle.src": "DEF idle ( )\nEND\n",
+TREES = {
+    "folders that call one another": {
+        "one/cell/job/main.src": "grip",
+        "one/cell/parts/lib/grip.src": "",
+        "one/cell/parts/other/idle.src": "lost",
+    },
+    "copies beside programs": {
+        f"{folder}{part}.src": "part" if part == "job" else "lost"
+        for folder in ("copies/a/", "copies/b/", "")
+        for part in ("job", "parts/part")
+    },
+    "programs and two controllers": {
+        "main.src": "grip",
+        "left/R1/Program/main.src": "grip",
+        "left/R1/System/$config.dat": "",
+        "right/KRC/R1/grip.src": "",
+    },
+    "two robots in a folder": {
+        "robots/left/main.src": "grip",
+        "robots/left/x/part.src": "main",
+        "robots/right/main.src": "grip",
+        "robots/right/x/grip.src": "lost",
+    },
+}
+TREES["much else beside"] = TREES["folders that call one another"] | {
+    f"one/cell/notes/{number}.txt": "" for number in range(9)
 }
 
 
 def _written(folder: Path, files: dict[str, str]) -> Path:
-    for path, text in files.items():
+    for path, call in files.items():
         (file := folder / path).parent.mkdir(exist_ok=True, parents=True)
-        file.write_text(text, "utf-8")
+        name, text = file.stem, f"{call} ( )\n" if call else ""
+        is_list = file.suffix == ".dat"
+        content = f"DEFDAT {name}\nENDDAT\n" if is_list else f"DEF {name} ( )\n{text}END\n"
+        file.write_text(content, "utf-8")
     return folder
 
 
-def test_folders_beside_that_have_what_is_called(tmp_path: Path) -> None:
-    """The smallest folder around that has it is the project, on disk and in an archive."""
-    cell = _written(tmp_path, SIBLINGS) / "one" / "cell"
-    files = ["job/main.src", "parts/lib/grip.src", "parts/other/idle.src"]
-    assert files == _files(cell / "job" / "main.src")
-    assert [cell] == project_paths(cell / "job" / "main.src") == project_paths(cell / "job")
-    assert ["idle.src"] == _files(cell / "parts" / "other" / "idle.src")
-    with ZipFile(tmp_path / "cell.zip", "w") as archive:
-        for path in SIBLINGS:
-            archive.write(tmp_path / path, path)
-    assert files == _files(tmp_path / "cell.zip" / "one" / "cell" / "job" / "main.src")
+def _packed(folder: Path, archive: Path) -> Path:
+    with ZipFile(archive, "w") as packed:
+        for one in sorted(folder.rglob("*")):
+            packed.write(one, one.relative_to(folder))
+    return archive
 
 
-@pytest.mark.parametrize(
-    "more",
-    [
-        {"one/cell/parts/main.src": "DEF main ( )\nEND\n"},  # another robot
-        {f"one/cell/notes/{number}.txt": "" for number in range(4)},  # much else
-    ],
-)
-def test_folders_beside_that_are_left_alone(tmp_path: Path, more: dict[str, str]) -> None:
-    """Programs of the same names, or other files for the most part, are no part of a project."""
-    _written(tmp_path, SIBLINGS | more)
-    assert ["main.src"] == _files(tmp_path / "one" / "cell" / "job" / "main.src")
+def _seen(path: Path) -> list[str]:
+    """What a check finds in files and folders, with ``complete`` names that a project lacks."""
+    return sorted(
+        f"{Path(one.path).name} {one.message}" for one in check(path, complete=True).findings
+    )
+
+
+@pytest.mark.parametrize("tree", TREES)
+def test_tree(tree: str, tmp_path: Path) -> None:
+    """A file has one project in a folder and in an archive, for a run and for a check."""
+    folder = _written(tmp_path / "tree", TREES[tree])
+    archive = _packed(folder, tmp_path / "tree.zip")
+    assert _seen(folder) == _seen(archive)
+    for path in TREES[tree]:
+        if path.endswith(".src"):
+            assert _files(folder / path) == _files(archive / path)
+    entries = {path: _seen(folder / path) for path in TREES[tree] if not path.endswith(".txt")}
+    assert any(entries.values())
+    for outer in {parent for path in entries for parent in PurePath(path).parents}:
+        inside = (entries[path] for path in entries if outer in PurePath(path).parents)
+        assert sorted(chain.from_iterable(inside)) == _seen(folder / outer)
 
 
 def test_link_beside_a_program(tmp_path: Path) -> None:
-    """A folder with links in it is no backup."""
-    _written(tmp_path, SIBLINGS)
-    (tmp_path / "one" / "cell" / "latest").symlink_to(tmp_path / "one" / "cell" / "job")
-    assert ["main.src"] == _files(tmp_path / "one" / "cell" / "job" / "main.src")
-
-
-def test_program_among_other_files(tmp_path: Path) -> None:
-    """Of a folder in which other files are the most a program has what it names."""
-    for name in (*MIXED, "lib/Lib/part.src", "lib/own.src", "text/more/far.src", "main.src"):
-        (file := tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
-        file.write_text(f"DEF {file.stem} ( )\nEND\n", "utf-8")
-    (tmp_path / "main.src").write_text("DEF main ( )\nhelp ( )\npart ( )\nEND\n", "utf-8")
-    sources, _, left = read_sources(tmp_path / "main.src")
-    assert ["help.src", "lib/Lib/part.src", "main.src"] == sorted(one.path for one in sources)
-    assert ["3 of 6 files that the program does not name"] == left
-
-
-@pytest.mark.parametrize("name", ["copies/a/job", "copies/a/parts/part", "job", "copies/b/job"])
-def test_archive_without_a_controller(tmp_path: Path, name: str) -> None:
-    """Copies side by side in an archive are as little one project as in the folder."""
-    folder = tmp_path / "cell"
-    for copy in ("copies/a", "copies/b", "."):
-        for part in ("job", "parts/part"):
-            file = folder / copy / f"{part}.src"
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(f"DEF {file.stem}()\nEND\n", "utf-8")
-    with ZipFile(tmp_path / "cell.zip", "w") as archive:
-        for file in folder.rglob("*.src"):
-            archive.write(file, file.relative_to(folder).as_posix())
-    path = f"{name}.src"
-    assert _files(folder / path) == _files(tmp_path / "cell.zip" / path)
+    """A link is not followed, neither for a program that lies beside it nor for a check."""
+    cell = _written(tmp_path, TREES["folders that call one another"]) / "one" / "cell"
+    (cell / "latest").symlink_to(cell / "job")
+    assert 3 == len(_files(cell / "job" / "main.src"))
 
 
 def test_unreadable_file_is_left_out(tmp_path: Path) -> None:
     """A file that cannot be read is left out with its reason, and the program is loaded."""
     backup = _backup(tmp_path / "KRC")
-    (backup / "R1" / "System" / "broken.src").write_text("DEF broken ( )\nIF\nEND\n", "utf-8")
+    for name, text in (("broken", "DEF broken ( )\nIF\nEND\n"), ("empty", "")):
+        (backup / "R1" / "System" / f"{name}.src").write_text(text, encoding="utf-8")
     program, left = load_program(backup / "R1" / "Program" / "main.src")
-    assert (len(FILES), ["R1/System/broken.src"]) == (
-        len(program.units),
-        [reason.partition(":")[0] for reason in left],
-    )
+    assert len(FILES) == len(program.units)
+    unread = sorted(reason.partition(":")[0] for reason in left)
+    assert ["R1/System/broken.src", "R1/System/empty.src"] == unread
 
 
 def test_only_what_is_named_is_read_of_a_large_project(

@@ -1,6 +1,6 @@
 """Checks folders and archives: every file is checked as part of its project.
 
-Files are grouped into projects by their location, before any is read (`grammar.semantics.link`).
+Files are grouped into projects by their location (`grammar.semantics.project_grouping`).
 Projects are checked one after another in parallel processes; a large one uses all processes
 (`support.parallel.sticky_pool`). The order of the findings does not depend on processes. Results
 are cached: of an unchanged project completely, of any other project those of the files that need
@@ -13,6 +13,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -40,9 +41,9 @@ from grammar.check.project.result_cache import (
 )
 from grammar.check.project.suppression_comments import apply_suppressions
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
-from grammar.semantics.link import File, grouped
+from grammar.semantics.project_grouping import projects_of
 from support.files.decode import digest
-from support.files.discovery import Found, Skipped, discover, read
+from support.files.discovery import Found, IngestError, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
@@ -104,11 +105,10 @@ class _Work:
     """The projects to check, of ``count`` files with ``size`` bytes.
 
     ``names`` are the paths to report the files under, by their own paths; others are only read.
-    Without ``names`` all are reported under their own.
     """
 
     projects: deque[list[Found | Skipped]]
-    names: Mapping[str, str] | None
+    names: Mapping[str, str]
     skipped: Sequence[Skipped]
     count: int
     size: int
@@ -127,28 +127,37 @@ def _work_of(
 
     asked = list(filter(is_left, discover(roots)))
     skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
-    names: dict[str, str] | None = None
-    if around:
-        wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
-        there = filter(is_left, discover(around))
-        members = [one for one in there if isinstance(one, Found) or is_large(one)]
-        found = [one for one in members if isinstance(one, Found)]
-        names = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
-    else:
-        members = [one for one in asked if isinstance(one, Found) or is_large(one)]
+    wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
+    names: dict[str, str] = {}
+    projects = deque[list[Found | Skipped]]()
+    size = 0
+    for root in _outermost(around or roots):
+        there = [one for one in _below(root) if isinstance(one, Found) or is_large(one)]
+        for _, _, members in projects_of(filter(is_left, there)):
+            found = [one for one in members if isinstance(one, Found)]
+            own = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
+            if own:
+                names |= own
+                projects.append(members)
+                size += sum(one.size for one in found)
+    count = sum(isinstance(one, Found) for some in projects for one in some)
+    return _Work(projects, names, skipped, count, size)
 
-    def is_asked(one: Found | Skipped) -> bool:
-        return isinstance(one, Found) if names is None else one.path in names
 
-    projects = deque(some for some in _projects(members) if any(map(is_asked, some)))
-    sizes = [one.size for some in projects for one in some if isinstance(one, Found)]
-    return _Work(projects, names, skipped, len(sizes), sum(sizes))
+def _outermost(roots: Sequence[Path]) -> list[Path]:
+    """Return the roots that do not lie in others, each once."""
+    places = {root.resolve(): root for root in reversed(roots)}
+    return [root for place, root in places.items() if places.keys().isdisjoint(place.parents)]
 
 
-def _reported(result: ProjectResult, names: Mapping[str, str] | None) -> ProjectResult:
+def _below(root: Path) -> Iterator[Found | Skipped]:
+    """Yield what is below a root, if anything."""
+    with suppress(IngestError):
+        yield from discover([root])
+
+
+def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
     """What is to be said of a project: that of the files with a name, under that."""
-    if names is None:
-        return result
     return replace(
         result,
         diagnostics=tuple(
@@ -166,14 +175,6 @@ def _reported(result: ProjectResult, names: Mapping[str, str] | None) -> Project
 def _place(found: Found) -> tuple[Path, str | None]:
     """Return the location of a file, however it was found."""
     return found.file, found.member
-
-
-def _projects(found: Sequence[Found | Skipped]) -> Iterator[list[Found | Skipped]]:
-    """Return the files of each project; files that are too large may use any of its names."""
-    files = [File(candidate.path, None, candidate.origin) for candidate in found]
-    candidates = dict(zip(map(id, files), found, strict=True))
-    for _, _, members in grouped(files):
-        yield [candidates[id(file)] for file in members]
 
 
 # --------------------------------------------------------------------------------- one by one
@@ -222,9 +223,9 @@ class _Project:
         self._read = looked
         self._needs = needs(self.contents, looked, self.options)
         stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
-        places = [(content.path, content.origin) for content in self.contents]
+        paths = [content.path for content in self.contents]
         self._parts = [
-            pool.submit(process, check_part, number, places, looked, again, self.options)
+            pool.submit(process, check_part, number, paths, looked, again, self.options)
             for process, again in enumerate(_shares(stale, pool.count))
         ]
 

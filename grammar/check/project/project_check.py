@@ -221,8 +221,7 @@ def recheck(
     looked |= read_part(project, new, options)
     needed = needs(contents, looked, options)
     stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
-    places = [(content.path, content.origin) for content in contents]
-    checked = check_part(project, places, looked, stale, options)
+    checked = check_part(project, [one.path for one in contents], looked, stale, options)
     return completed(contents, looked, known, checked, needed)
 
 
@@ -233,9 +232,9 @@ def needs(
     found = [NO_NEEDS] * len(contents)
     if not options.kept:
         return found
-    places = [(content.path, content.origin) for content in contents]
-    by_path = {path: index for index, (path, _) in enumerate(places)}
-    for project in _linked(_files(places, looked, {}), CheckOptions()):
+    paths = [content.path for content in contents]
+    by_path = {path: index for index, path in enumerate(paths)}
+    for project in _linked(_files(paths, looked, {}), CheckOptions()):
         members = [by_path[module.path] for module in project.modules]
         given = [looked[index].contribution for index in members]
         for index, needed in zip(members, needs_of(project, given), strict=True):
@@ -319,21 +318,21 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
 
 def check_part(
     project: int,
-    places: Sequence[tuple[str, str]],
+    paths: Sequence[str],
     looked: Mapping[int, FileResult],
     again: Mapping[int, Content],
     options: CheckOptions,
 ) -> dict[int, FileResult]:
     """Check those files of a project that `read_part` kept here, and some that were known.
 
-    ``places`` are path and origin of all its files, in order, and ``looked`` what reading them
-    gave, here or elsewhere: files that are no KRL belong to no project. ``again`` are files whose
-    text was known, so that none of them was read now.
+    ``paths`` are those of all its files, in order, and ``looked`` what reading them gave, here or
+    elsewhere: files that are no KRL belong to no project. ``again`` are files whose text was known,
+    so that none of them was read now.
     """
     kept = _KEPT.pop(project, {}) | _read_all(again, options)[1]
     if not kept:
         return {}
-    files = _files(places, looked, kept)
+    files = _files(paths, looked, kept)
     # modules are identified by their tables, which are the same objects
     own = {id(tree.table): (index, tree) for index, tree in kept.items()}
     checked = {}
@@ -355,17 +354,17 @@ def _linked(files: Iterable[File], options: CheckOptions) -> tuple[Project, ...]
 
 
 def _files(
-    places: Sequence[tuple[str, str]],
+    paths: Sequence[str],
     looked: Mapping[int, FileResult],
     kept: Mapping[int, _Tree],
 ) -> list[File]:
     """Return the files of a project to link: those that are KRL."""
     files = []
-    for index, (path, origin) in enumerate(places):
+    for index, path in enumerate(paths):
         known, tree = looked[index], kept.get(index)
         if known.skipped is None:
             table = tree.table if tree else known.table
-            files.append(File(path, None, origin, table, known.words))
+            files.append(File(path, None, table=table, words=known.words))
     return files
 
 

@@ -222,14 +222,14 @@ class _Check:
 
     def _report(self) -> "CheckReport":
         from grammar.check.project.batch import check_paths
-        from krl.running.project_folders import project_paths
+        from krl.running.project_folders import project_root
         from support.files.discovery import IngestError
 
         with as_input_errors(IngestError), progress_bar("checking") as bar:
             report = check_paths(
                 self.paths,
                 self.options,
-                around=[one for path in self.paths for one in project_paths(path)],
+                around=[project_root(path) for path in self.paths],
                 leaves_out=self.agreed.leaves_out if self.agreed.exclude else None,
                 jobs=self.jobs,
                 cache=self.cache,

@@ -1,0 +1,213 @@
+"""Which files are one project: one rule for folders and archives, wherever one enters them.
+
+1. What a controller holds is a project: a folder with R1 or STEU in it, or a drive under another
+   name. Programs around it are no part of it. Where other files have several $CONFIG lists, each of
+   these begins a project.
+2. Any other file belongs to the outermost folder around it that is one project; without such a
+   folder, to the files beside it. A folder is one project, with all that is below it, if no file
+   name occurs twice in it, and it holds programs itself or its folders call one another. So two
+   robots, copies, and the repositories of a corpus stay apart.
+3. An archive is a folder that shares nothing with what lies around it.
+
+Only files with KRL count, so that a folder and its archive give the same.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
+from functools import cache
+from itertools import chain
+from typing import Generic, Protocol, TypeVar
+
+from support.files.archives import is_archive
+from support.files.discovery import DRIVE_FOLDERS, Found, Skipped, SourceFile, is_drive, read_source
+from support.lazy_dataclass import dataclass
+
+_DRIVES = {"r1", "steu"}
+_CONFIG = "$config.dat"
+#: Also matches names in comments, which does no harm here.
+_CALL = re.compile(r"\b([A-Z_]\w*)[ \t]*\(", re.IGNORECASE | re.ASCII)
+
+_Folder = tuple[str, ...]
+
+
+class _HasPath(Protocol):
+    @property
+    def path(self) -> str: ...
+
+
+_File = TypeVar("_File", bound=_HasPath)
+_Candidate = TypeVar("_Candidate", bound=Found | Skipped)
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed(Generic[_File]):
+    """A file and its folders, as written and with letter case folded."""
+
+    file: _File
+    folders: _Folder
+    folded: _Folder
+    name: str
+
+
+def _placed(file: _File) -> _Placed[_File]:
+    *folders, name = file.path.replace("\\", "/").split("/")
+    return _Placed(file, tuple(folders), tuple(map(str.casefold, folders)), name.casefold())
+
+
+def projects_of(files: Iterable[_Candidate]) -> Iterator[tuple[str, bool, list[_Candidate]]]:
+    """Yield the root of each project, whether it is a controller's, and its files.
+
+    Few of the files are read: those whose calls decide.
+    """
+
+    @cache
+    def calls(file: _Candidate) -> Set[str]:
+        read = read_source(file)
+        text = read.text if isinstance(read, SourceFile) else ""
+        return {name.casefold() for name in _CALL.findall(text)}
+
+    yield from grouped(files, calls)
+
+
+def grouped(
+    files: Iterable[_File], calls: Callable[[_File], Set[str]] | None = None
+) -> Iterator[tuple[str, bool, list[_File]]]:
+    """Yield the files of each project with its root, and whether the root holds a drive.
+
+    ``calls`` are the names that a file calls, in lower case. Without it, files outside a controller
+    are taken to be one project, unless they have several $CONFIG lists.
+    """
+    by_archive: dict[_Folder, list[_Placed[_File]]] = defaultdict(list)
+    for placed in map(_placed, files):
+        depths = [d for d, name in enumerate(placed.folded, 1) if is_archive(name)]
+        by_archive[placed.folded[: max(depths, default=0)]].append(placed)
+    for _, inside in sorted(by_archive.items()):
+        for (is_controller, root), members in sorted(_by_layout(inside).items()):
+            for some in [members] if is_controller or not calls else _joined(members, calls):
+                depth = len(root) if is_controller else _shared(some)
+                shown = "/".join(some[0].folders[:depth])
+                yield shown, is_controller, [placed.file for placed in some]
+
+
+def _by_layout(
+    files: Sequence[_Placed[_File]],
+) -> dict[tuple[bool, _Folder], list[_Placed[_File]]]:
+    """Return the files of each controller, and the others, those of each of several $CONFIG."""
+    groups: dict[tuple[bool, _Folder], list[_Placed[_File]]] = defaultdict(list)
+    loose = []
+    drives = {root for placed in files for root in _drive_roots(placed.folded)}
+    renamed = _renamed_drives(files)
+    for placed in files:
+        root = _last(drives, placed.folded, _DRIVES)
+        if root is None:
+            drive = _last(renamed.keys(), placed.folded)
+            root = None if drive is None else renamed[drive]
+        if root is None:
+            loose.append(placed)
+        else:
+            groups[True, root].append(placed)
+    configs = {_config_root(placed.folded) for placed in loose if placed.name == _CONFIG}
+    for placed in loose:
+        root = _last(configs, placed.folded) if len(configs) > 1 else None
+        groups[False, root or ()].append(placed)
+    return groups
+
+
+def _joined(
+    files: Sequence[_Placed[_File]], calls: Callable[[_File], Set[str]]
+) -> Iterable[list[_Placed[_File]]]:
+    """Return the files of each project; none of them is a controller's."""
+    own: dict[_Folder, list[_Placed[_File]]] = defaultdict(list)
+    for placed in files:
+        own[placed.folded].append(placed)
+    inner: dict[_Folder, list[list[_Placed[_File]]]] = defaultdict(list)
+    wholes = set()
+    every = {folder[:depth] for folder in own for depth in range(len(folder) + 1)}
+    for folder in sorted(every, key=len, reverse=True):
+        parts = inner.pop(folder, [])
+        if _is_one(own.get(folder, []), parts, calls):
+            wholes.add(folder)
+        inner[folder[:-1]].append([*own.get(folder, ()), *chain.from_iterable(parts)])
+    found: dict[_Folder, list[_Placed[_File]]] = defaultdict(list)
+    for placed in files:
+        root = _first(wholes, placed.folded)
+        found[root].append(placed)
+    return found.values()
+
+
+def _is_one(
+    own: Sequence[_Placed[_File]],
+    folders: Sequence[Sequence[_Placed[_File]]],
+    calls: Callable[[_File], Set[str]],
+) -> bool:
+    """Return whether a folder is one project: the files in it, and those below each folder."""
+    every = [*own, *chain.from_iterable(folders)]
+    if len({placed.name for placed in every}) < len(every):
+        return False
+    others = [_stems(every) - _stems(part) for part in folders]
+    return bool(own) or any(
+        calls(placed.file) & names
+        for part, names in zip(folders, others, strict=True)
+        for placed in part
+    )
+
+
+def _stems(files: Iterable[_Placed[_File]]) -> set[str]:
+    return {placed.name.rpartition(".")[0] for placed in files}
+
+
+def _first(roots: Set[_Folder], folders: _Folder) -> _Folder:
+    """Return the outermost root on a path, by default its end."""
+    ways = (folders[:depth] for depth in range(len(folders)))
+    return next((way for way in ways if way in roots), folders)
+
+
+def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
+    """Yield the folders on a path that certainly hold the drives of a controller."""
+    for depth, name in enumerate(folders):
+        if name in _DRIVES:
+            is_below_krc = depth > 0 and folders[depth - 1] == "krc"
+            if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in DRIVE_FOLDERS):
+                yield folders[:depth]
+
+
+def _renamed_drives(files: Iterable[_Placed[_File]]) -> dict[_Folder, _Folder]:
+    """Return the drives that are not called R1, each with the root of its project.
+
+    The root is the parent folder if it also has STEU, otherwise the drive itself.
+    """
+    inside: dict[_Folder, set[str]] = defaultdict(set)
+    for placed in files:
+        for depth, name in enumerate(placed.folded):
+            inside[placed.folded[:depth]].add(name)
+    return {
+        folder: folder[:-1] if folder and "steu" in inside[folder[:-1]] else folder
+        for folder, names in inside.items()
+        if is_drive(names) and not (folder and folder[-1] in _DRIVES)
+    }
+
+
+def _last(roots: Set[_Folder], folders: _Folder, inside: Set[str] | None = None) -> _Folder | None:
+    """Return the innermost root on a path, if the next folder is one of ``inside``."""
+    for depth in range(len(folders), -1, -1):
+        if folders[:depth] in roots and (
+            inside is None or (depth < len(folders) and folders[depth] in inside)
+        ):
+            return folders[:depth]
+    return None
+
+
+def _config_root(folders: _Folder) -> _Folder:
+    return folders[:-1] if folders and folders[-1] == "system" else folders
+
+
+def _shared(members: Sequence[_Placed[_File]]) -> int:
+    """Return the number of leading folders that all files have in common."""
+    first, last = min(placed.folded for placed in members), max(p.folded for p in members)
+    return next(
+        (depth for depth, (a, b) in enumerate(zip(first, last, strict=False)) if a != b),
+        min(len(first), len(last)),
+    )

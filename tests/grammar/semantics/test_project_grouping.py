@@ -1,0 +1,53 @@
+"""Which files are one project."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+from grammar.semantics.project_grouping import projects_of
+from support.files.discovery import Found
+
+#: Paths of files, and the routine that each calls; the sets are the projects.
+PROJECTS = {
+    "programs in a folder": [{"main.src": "", "part.src": "", "x/y/other.src": ""}],
+    "folders that call": [{"a/main.src": "grip", "b/lib/grip.src": "", "c/idle.src": ""}],
+    "folders that do not": [{"a/main.src": "lost"}, {"b/lib/grip.src": ""}],
+    "a folder in between": [{"main.src": "", "lib/a/one.src": "", "lib/b/two.src": ""}],
+    "two robots": [{"left/main.src": "grip"}, {"right/main.src": "", "right/grip.src": ""}],
+    "two robots beside a program": [
+        {"idle.src": "x"},
+        {"left/main.src": "", "left/grip.src": "main"},
+        {"right/main.src": "", "right/grip.src": "main"},
+    ],
+    "copies of a program": [{"main.src": "a"}, {"old/main.src": "a"}, {"x/a.src": ""}],
+    "a list twice": [{"a/x.src": "y", "a/$config.dat": ""}, {"b/y.src": "", "b/$config.dat": ""}],
+    "a folder inside two robots": [
+        {"left/main.src": "", "left/x/a.src": "", "left/x/y/b.src": ""},
+        {"right/main.src": ""},
+    ],
+    "a controller and programs around it": [
+        {"cell/R1/Program/main.src": "a", "cell/STEU/Mada/$custom.dat": ""},
+        {"a.src": "main", "cell/b.src": ""},
+    ],
+    "an archive": [{"main.src": "old"}, {"old.zip/old.src": "main"}, {"old.zip/a.zip/a.src": "b"}],
+    "letters of any case": [{"a/MAIN.SRC": "grip"}, {"b/main.src": "", "b/grip.src": ""}],
+}  # fmt: skip
+
+
+def _projects(folder: Path, files: Iterable[str]) -> list[set[str]]:
+    found = [Found(f"cell/{path}", "", 0, folder / path, None) for path in files]
+    return [{one.path.removeprefix("cell/") for one in some} for _, _, some in projects_of(found)]
+
+
+@pytest.mark.parametrize("name", PROJECTS)
+def test_projects(name: str, tmp_path: Path) -> None:
+    """A project is what a controller holds, or a folder in which one part needs another."""
+    projects = PROJECTS[name]
+    for path, call in [pair for some in projects for pair in some.items()]:
+        (file := tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        text = f"{call} ( )\n" if call else ""
+        file.write_text(f"DEF {file.stem} ( )\n{text}END\n", "utf-8")
+    every = [path for some in projects for path in some]
+    expected = sorted(map(sorted, projects))
+    assert expected == sorted(map(sorted, _projects(tmp_path, every)))
