@@ -167,3 +167,12 @@ def _mutated(tokens: Sequence[str], chance: Random, names: Sequence[str]) -> lis
 def mutated() -> Callable[[Sequence[str], Random, Sequence[str]], list[str]]:
     """``mutated(tokens, chance, names)``: one to three tokens deleted, replaced or inserted."""
     return _mutated
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _tests_are_no_project(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Keep the folders of two tests from being one project: a name occurs twice beside them."""
+    for number in "12":
+        folder = tmp_path_factory.getbasetemp() / "apart" / number
+        folder.mkdir(parents=True)
+        (folder / "apart.src").touch()

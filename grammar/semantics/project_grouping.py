@@ -27,8 +27,11 @@ from support.lazy_dataclass import dataclass
 
 _DRIVES = {"r1", "steu"}
 _CONFIG = "$config.dat"
-#: Also matches names in comments, which does no harm here.
-_CALL = re.compile(r"\b([A-Z_]\w*)[ \t]*\(", re.IGNORECASE | re.ASCII)
+#: Calls, and what only looks like one.
+_CALL = re.compile(
+    r";.*|^[ \t]*(?:GLOBAL[ \t]+)?DEF(?:FCT)?\b.*|\b([A-Z_]\w*)[ \t]*\(",
+    re.IGNORECASE | re.ASCII | re.MULTILINE,
+)
 
 _Folder = tuple[str, ...]
 
@@ -53,7 +56,7 @@ class _Placed(Generic[_File]):
 
 
 def _placed(file: _File) -> _Placed[_File]:
-    *folders, name = file.path.replace("\\", "/").split("/")
+    *folders, name = file.path.split("/")
     return _Placed(file, tuple(folders), tuple(map(str.casefold, folders)), name.casefold())
 
 
@@ -67,7 +70,7 @@ def projects_of(files: Iterable[_Candidate]) -> Iterator[tuple[str, bool, list[_
     def calls(file: _Candidate) -> Set[str]:
         read = read_source(file)
         text = read.text if isinstance(read, SourceFile) else ""
-        return {name.casefold() for name in _CALL.findall(text)}
+        return {name.casefold() for name in _CALL.findall(text) if name}
 
     yield from grouped(files, calls)
 

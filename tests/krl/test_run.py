@@ -349,8 +349,8 @@ def test_project_of_a_backup(run: Run, tmp_path: Path, folder: str) -> None:
 
 def test_project_of_a_loose_file(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file beside R1, not in it, belongs to the files of its own folder only."""
-    (tmp_path / "R1").mkdir()
-    for name, folder in (("near", tmp_path), ("far", tmp_path / "R1")):
+    (program := tmp_path / "R1" / "Program").mkdir(parents=True)
+    for name, folder in (("near", tmp_path), ("far", program)):
         (folder / f"{name}.src").write_text(f"DEF {name} ( )\nHALT\nEND\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.src").write_text("DEF a ( )\nnear ( )\nEND\n", encoding="utf-8")

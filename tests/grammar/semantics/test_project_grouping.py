@@ -12,7 +12,7 @@ from support.files.discovery import Found
 PROJECTS = {
     "programs in a folder": [{"main.src": "", "part.src": "", "x/y/other.src": ""}],
     "folders that call": [{"a/main.src": "grip", "b/lib/grip.src": "", "c/idle.src": ""}],
-    "folders that do not": [{"a/main.src": "lost"}, {"b/lib/grip.src": ""}],
+    "folders that do not": [{"a/main.src": ""}, {"b/lib/lost.src": ""}],
     "a folder in between": [{"main.src": "", "lib/a/one.src": "", "lib/b/two.src": ""}],
     "two robots": [{"left/main.src": "grip"}, {"right/main.src": "", "right/grip.src": ""}],
     "two robots beside a program": [
@@ -46,8 +46,8 @@ def test_projects(name: str, tmp_path: Path) -> None:
     projects = PROJECTS[name]
     for path, call in [pair for some in projects for pair in some.items()]:
         (file := tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
-        text = f"{call} ( )\n" if call else ""
-        file.write_text(f"DEF {file.stem} ( )\n{text}END\n", "utf-8")
+        text = f"{call} ( )\n" if call else ";lost ( )\n"
+        file.write_text(f"DEF {file.stem} ( )\n{text}END\nDEF lost ( )\nEND\n", "utf-8")
     every = [path for some in projects for path in some]
     expected = sorted(map(sorted, projects))
     assert expected == sorted(map(sorted, _projects(tmp_path, every)))
