@@ -5,8 +5,9 @@
    these begins a project.
 2. Any other file belongs to the outermost folder around it that is one project; without such a
    folder, to the files beside it. A folder is one project, with all that is below it, if no file
-   name occurs twice in it, and it holds programs itself or its folders call one another. So two
-   robots, copies, and the repositories of a corpus stay apart.
+   name occurs twice in it, and it holds programs itself or its folders call one another. If a name
+   occurs twice, programs in the folder are one project with the folders without such a name that
+   call them or are called. So two robots, copies, and the repositories of a corpus stay apart.
 3. An archive is a folder that shares nothing with what lies around it.
 
 Only files with KRL count, so that a folder and its archive give the same.
@@ -15,11 +16,11 @@ Only files with KRL count, so that a folder and its archive give the same.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import cache
 from itertools import chain
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeAlias, TypeVar
 
 from support.files.archives import is_archive
 from support.files.discovery import DRIVE_FOLDERS, Found, Skipped, SourceFile, is_drive, read_source
@@ -53,6 +54,10 @@ class _Placed(Generic[_File]):
     folders: _Folder
     folded: _Folder
     name: str
+
+
+#: Files that are in the same project.
+_Part: TypeAlias = list[_Placed[_File]]
 
 
 def _placed(file: _File) -> _Placed[_File]:
@@ -121,51 +126,66 @@ def _by_layout(
 
 def _joined(
     files: Sequence[_Placed[_File]], calls: Callable[[_File], Set[str]]
-) -> Iterable[list[_Placed[_File]]]:
+) -> list[_Part[_File]]:
     """Return the files of each project; none of them is a controller's."""
-    own: dict[_Folder, list[_Placed[_File]]] = defaultdict(list)
+    own: dict[_Folder, _Part[_File]] = defaultdict(list)
     for placed in files:
         own[placed.folded].append(placed)
-    inner: dict[_Folder, list[list[_Placed[_File]]]] = defaultdict(list)
-    wholes = set()
+    below: dict[_Folder, list[_Part[_File]]] = defaultdict(list)
     every = {folder[:depth] for folder in own for depth in range(len(folder) + 1)}
     for folder in sorted(every, key=len, reverse=True):
-        parts = inner.pop(folder, [])
-        if _is_one(own.get(folder, []), parts, calls):
-            wholes.add(folder)
-        inner[folder[:-1]].append([*own.get(folder, ()), *chain.from_iterable(parts)])
-    found: dict[_Folder, list[_Placed[_File]]] = defaultdict(list)
-    for placed in files:
-        root = _first(wholes, placed.folded)
-        found[root].append(placed)
-    return found.values()
+        parts = _joined_in(own.get(folder, []), below.pop(folder, []), calls)
+        below[folder[:-1]] += parts
+    return below[()]
 
 
-def _is_one(
-    own: Sequence[_Placed[_File]],
-    folders: Sequence[Sequence[_Placed[_File]]],
-    calls: Callable[[_File], Set[str]],
-) -> bool:
-    """Return whether a folder is one project: the files in it, and those below each folder."""
-    every = [*own, *chain.from_iterable(folders)]
-    if len({placed.name for placed in every}) < len(every):
-        return False
-    others = [_stems(every) - _stems(part) for part in folders]
-    return bool(own) or any(
-        calls(placed.file) & names
-        for part, names in zip(folders, others, strict=True)
-        for placed in part
-    )
+def _joined_in(
+    own: _Part[_File], parts: list[_Part[_File]], calls: Callable[[_File], Set[str]]
+) -> list[_Part[_File]]:
+    """Return the parts of a folder: its own files, and those below it, as far as they are joined.
+
+    What is not joined may still be so in an outer folder.
+    """
+    counts = Counter(placed.name for placed in chain(own, *parts))
+    if max(counts.values()) == 1:
+        is_one = own or any(True for _ in _calls_between(parts, calls))
+        return [[*own, *chain.from_iterable(parts)]] if is_one else parts
+    if not own:
+        return parts
+    free, apart = [own], list[_Part[_File]]()
+    for part in parts:
+        (apart if any(counts[placed.name] > 1 for placed in part) else free).append(part)
+    near = _connected_to_first(_calls_between(free, calls))
+    joined = [*chain.from_iterable(part for number, part in enumerate(free) if number in near)]
+    return [joined, *apart, *(part for number, part in enumerate(free) if number not in near)]
 
 
-def _stems(files: Iterable[_Placed[_File]]) -> set[str]:
-    return {placed.name.rpartition(".")[0] for placed in files}
+def _calls_between(
+    parts: Sequence[_Part[_File]], calls: Callable[[_File], Set[str]]
+) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of two parts where the first calls a file of the second by its name."""
+    having: dict[str, set[int]] = defaultdict(set)
+    for number, part in enumerate(parts):
+        for placed in part:
+            having[placed.name.rpartition(".")[0]].add(number)
+    for number, part in enumerate(parts):
+        for placed in part:
+            for name in calls(placed.file) & having.keys():
+                yield from ((number, other) for other in having[name] if other != number)
 
 
-def _first(roots: Set[_Folder], folders: _Folder) -> _Folder:
-    """Return the outermost root on a path, by default its end."""
-    ways = (folders[:depth] for depth in range(len(folders)))
-    return next((way for way in ways if way in roots), folders)
+def _connected_to_first(pairs: Iterable[tuple[int, int]]) -> set[int]:
+    """Return 0 and all numbers that pairs connect with it."""
+    near: dict[int, set[int]] = defaultdict(set)
+    for one, other in pairs:
+        near[one].add(other)
+        near[other].add(one)
+    found, todo = {0}, [0]
+    while todo:
+        more = near[todo.pop()] - found
+        found |= more
+        todo += more
+    return found
 
 
 def _drive_roots(folders: _Folder) -> Iterator[_Folder]:

@@ -20,7 +20,11 @@ PROJECTS = {
         {"left/main.src": "", "left/grip.src": "main"},
         {"right/main.src": "", "right/grip.src": "main"},
     ],
-    "copies of a program": [{"main.src": "a"}, {"old/main.src": "a"}, {"x/a.src": ""}],
+    "copies of a program": [
+        {"main.src": "a", "x/a.src": "", "x/y/b.src": "", "z/c.src": "main"},
+        {"old/main.src": "a"},
+        {"idle/d.src": ""},
+    ],
     "a list twice": [{"a/x.src": "y", "a/$config.dat": ""}, {"b/y.src": "", "b/$config.dat": ""}],
     "a folder inside two robots": [
         {"left/main.src": "", "left/x/a.src": "", "left/x/y/b.src": ""},
